@@ -1,0 +1,139 @@
+"""The one call that launch files and scripts use; the commands use it too."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from typing import NamedTuple
+
+from multibot_rewrite.model import Change, Finding, InputError, UsageError
+from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rewriting import pipeline
+from multibot_rewrite.rewriting.changes import list_changes
+from multibot_rewrite.rosnames import check_robot_name
+from multibot_rewrite.vocabulary import load_vocabulary
+
+Source = str | bytes | os.PathLike[str]
+
+
+class Rewrite(NamedTuple):
+    """A description as one robot needs it.
+
+    ``data`` are the output bytes, ``text`` the same as str (for ``robot_description``).
+    ``findings`` are warnings about the input. ``changes`` lists every renamed and inserted value.
+    """
+
+    robot: str
+    data: bytes
+    findings: tuple[Finding, ...]
+    template: pipeline.Template
+
+    @property
+    def text(self) -> str:
+        """The output as str, without its encoding declaration getting in the way."""
+        return self.data.decode()
+
+    @property
+    def changes(self) -> list[Change]:
+        """Every renamed or inserted value, in source order."""
+        return list_changes(self.template, self.robot)
+
+
+def rewrite(source: Source, robot: str, **options: object) -> Rewrite:
+    """Rewrite a robot description for ``robot`` and prove the result.
+
+    ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
+    ending in ``.xacro`` is expanded. ``options`` are those of ``rewrite_all``. In a launch file:
+
+        parameters=[{"robot_description": rewrite("rover.urdf", "robot1").text}]
+
+    Raises InputError (cannot be read), UsageError (a wrong option or robot name), RewriteRefused
+    (the content does not allow it; ``.findings``), VocabularyError, ProofError.
+    """
+    return next(rewrite_all(source, [robot], **options))  # type: ignore[arg-type]
+
+
+def rewrite_all(
+    source: Source,
+    robots: Sequence[str],
+    *,
+    layout: str = "postfix",
+    affix: str = "postfix",
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Sequence[str] = (),
+    again: bool = False,
+    file: str = "",
+) -> Iterator[Rewrite]:
+    """Rewrite one description for several robots: one parse, then about a copy of the text each.
+
+    ``layout`` is one of tf-per-robot, frames-per-robot, both, postfix (or L1 to L4); ``affix`` is
+    postfix or prefix; ``topics`` is postfix, prefix or namespace (default: what the layout
+    implies); ``separators`` maps kinds to separators; ``again`` allows a second rewrite; ``file``
+    is the name used in messages. Raises as ``rewrite`` does, before the first result.
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics)
+    _check_robots(robots)
+    data, name = read_source(source, xacro_args or {})
+    template = pipeline.prepare(data, file or name, naming, _tree(tuple(vocabulary)))
+    texts = pipeline.render(template, robots, again)
+    findings = tuple(template.findings)
+    return (Rewrite(r, t, findings, template) for r, t in zip(robots, texts, strict=True))
+
+
+def strip(
+    source: Source,
+    robot: str,
+    *,
+    naming: Naming | None = None,
+    vocabulary: Sequence[str] = (),
+    file: str = "",
+) -> bytes:
+    """Undo ``rewrite`` from the rewritten text alone; the options must be those it was made with."""
+    data, name = read_source(source, {})
+    check_robot_name(robot)
+    chosen = naming or make_naming()
+    return pipeline.strip(data, file or name, robot, chosen, _tree(tuple(vocabulary)))
+
+
+def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, str]:
+    """The bytes of a source and the name for messages."""
+    if isinstance(source, bytes):
+        return source, "<bytes>"
+    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
+        return source.encode(), "<text>"
+    path = os.fspath(source)
+    if path.endswith(".xacro"):
+        from multibot_rewrite.xacro_source import expand  # noqa: PLC0415
+
+        return expand(path, xacro_args), path
+    if xacro_args:
+        raise UsageError(f"{path}: xacro arguments given, but the file is not named ….xacro")
+    return read_file(path), path
+
+
+def read_file(path: str) -> bytes:
+    """The bytes of a file; raises InputError with the reason."""
+    try:
+        with open(path, "rb") as file:  # noqa: PTH123
+            return file.read()
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+
+
+def _check_robots(robots: Sequence[str]) -> None:
+    for robot in robots:
+        check_robot_name(robot)
+    twice = sorted({robot for robot in robots if robots.count(robot) > 1})
+    if twice:
+        raise UsageError(f"robot name {twice[0]!r} is given twice; every robot needs its own")
+
+
+@lru_cache(maxsize=8)
+def _tree(vocabulary: tuple[str, ...]) -> Tree:
+    return Tree(load_vocabulary(vocabulary))

@@ -1,0 +1,119 @@
+"""Frozen records that pass from one step to the next, and the errors that stop a job.
+
+Text positions are byte offsets into the source; lines and columns count from 1.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+WARNING = "warning"
+ERROR = "error"
+
+
+class Finding(NamedTuple):
+    """Something a person should know about the input.
+
+    ``level`` is ``"warning"`` or ``"error"``; an error stops the job. ``code`` is permanent.
+    """
+
+    code: str
+    level: str
+    message: str
+    hint: str
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        place = f"{self.file}:{self.line}:{self.column}"
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{place}: {self.level}: {self.code} {self.message}{hint}"
+
+
+class Site(NamedTuple):
+    """The rule that at ``path`` below its section's element lives a declaration or a reference.
+
+    ``role`` is ``"declares"``, ``"uses"`` or ``"keep"`` (never renamed; ``note`` says why).
+    ``kinds`` are tried in order until one resolves. ``form`` says where inside the value the names
+    are (see ``rewriters.forms``). ``default`` is the literal the consumer falls back to.
+    ``namespaced`` is true where a ROS namespace reaches the value.
+    """
+
+    path: str
+    role: str
+    kinds: tuple[str, ...]
+    form: str
+    default: str
+    namespaced: bool
+    section: str
+    note: str
+    line: int
+
+
+class Claim(NamedTuple):
+    """One value of a document that a site claims. ``attribute`` is empty for element text.
+
+    ``start`` is the byte offset of the element's start tag; ``value`` is the parsed value.
+    """
+
+    site: Site
+    element: _Element
+    start: int
+    attribute: str
+    value: str
+
+
+class Edit(NamedTuple):
+    """Replace source bytes ``start:end`` by ``before + robot + after``.
+
+    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it).
+    """
+
+    start: int
+    end: int
+    before: bytes
+    after: bytes | None
+
+
+class Change(NamedTuple):
+    """One renamed or inserted value, as listed by ``--changes``."""
+
+    line: int
+    column: int
+    kind: str
+    path: str
+    old: str
+    new: str
+    rule: str
+
+
+class MultibotError(Exception):
+    """Base of all errors this package raises on purpose."""
+
+
+class UsageError(MultibotError):
+    """An option or a name is wrong; the message proposes a right one."""
+
+
+class InputError(MultibotError):
+    """The input cannot be read as a robot description."""
+
+
+class VocabularyError(MultibotError):
+    """A vocabulary file is wrong; the message names file and line."""
+
+
+class RewriteRefused(MultibotError):
+    """The content does not allow a rewrite; ``findings`` says why."""
+
+    def __init__(self, findings: tuple[Finding, ...]) -> None:
+        super().__init__("\n".join(str(finding) for finding in findings))
+        self.findings = findings
+
+
+class ProofError(MultibotError):
+    """The rewritten text failed its proof: a fault of this package, never of the user's file."""

@@ -1,0 +1,230 @@
+"""How a name is spelled for a robot: kinds, layouts, separators, shared names.
+
+A renamed value is always the old value with one insertion, so a name's spelling is an ``Affix``:
+where to insert, and what stands before and after the robot's name there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.model import UsageError
+
+PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
+SHARED_FRAMES = ("world", "map")
+SHARED_TOPICS = ("/clock", "/rosout", "/parameter_events", "/diagnostics")
+TF_TOPICS = ("tf", "tf_static")
+# Order and grouping as shown in reports; the value is the default separator.
+SEPARATORS = {
+    "link": "/",
+    "joint": "_",
+    "frame": "/",
+    "sensor": "_",
+    "transmission": "_",
+    "actuator": "_",
+    "hardware": "_",
+    "gpio": "_",
+    "model": "_",
+    "node": "_",
+    "camera": "_",
+    "topic": "/",
+    "service": "/",
+    "namespace": "/",
+}
+FRAME_KINDS = frozenset({"link", "frame"})
+TOPIC_KINDS = frozenset({"topic", "service"})
+# A use of one of these must be declared in the same file.
+CLOSED_KINDS = frozenset({"link", "joint"})
+# Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
+NOT_PLAIN = frozenset("{}$ ")
+
+
+class Layout(NamedTuple):
+    """Where tf lives: are frames spelled per robot, is there a tf topic per robot, a namespace."""
+
+    name: str
+    short: str
+    frames: bool
+    tf_per_robot: bool
+    namespaced: bool
+    about: str
+
+
+LAYOUTS = (
+    Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, bare frames"),
+    Layout("frames-per-robot", "L2", True, False, True, "one /tf, frames per robot"),
+    Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
+    Layout("postfix", "L4", True, True, False, "everything spelled per robot, no namespaces"),
+)
+
+
+class Affix(NamedTuple):
+    """Insert ``before + robot + after`` at character ``at`` of the old value."""
+
+    at: int
+    before: str
+    after: str
+
+    def spell(self, text: str, robot: str) -> str:
+        """``text`` as it is spelled for ``robot``."""
+        return f"{text[: self.at]}{self.before}{robot}{self.after}{text[self.at :]}"
+
+
+class Naming(NamedTuple):
+    """The whole naming policy of one job; ``separators`` holds only the kinds that are renamed."""
+
+    layout: Layout
+    affix: str
+    topics: str
+    separators: Mapping[str, str]
+    shared_frames: frozenset[str]
+    shared_topics: frozenset[str]
+
+
+def make_naming(
+    layout: str = "postfix",
+    affix: str = POSTFIX,
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+) -> Naming:
+    """Build the policy from plain words; raises UsageError for a word that is not known.
+
+    ``layout`` is a name or short name of ``LAYOUTS``; ``affix`` is ``prefix`` or ``postfix``;
+    ``topics`` is ``postfix``, ``prefix`` or ``namespace`` (default: what the layout implies).
+    """
+    chosen = find_layout(layout)
+    _one_of("affix", affix, (POSTFIX, PREFIX))
+    strategy = topics or (NAMESPACE if chosen.namespaced else affix)
+    _one_of("topics", strategy, (POSTFIX, PREFIX, NAMESPACE))
+    return Naming(
+        chosen,
+        affix,
+        strategy,
+        _active(chosen, strategy, _separators(separators or {})),
+        frozenset(name.strip("/") for name in shared_frames),
+        frozenset(name.strip("/") for name in shared_topics)
+        | (frozenset() if chosen.tf_per_robot else frozenset(TF_TOPICS)),
+    )
+
+
+def find_layout(word: str) -> Layout:
+    """The layout called ``word``; raises UsageError naming the four."""
+    for layout in LAYOUTS:
+        if word in (layout.name, layout.short):
+            return layout
+    _one_of("layout", word, tuple(layout.name for layout in LAYOUTS))
+    raise AssertionError(word)
+
+
+def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
+    if word in allowed:
+        return
+    from difflib import get_close_matches  # only an error message needs it
+
+    near = get_close_matches(word, allowed, 1, 0.4)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise UsageError(f"{what} {word!r} is not known, use one of {', '.join(allowed)}{hint}")
+
+
+def _separators(given: Mapping[str, str]) -> dict[str, str]:
+    for kind, separator in given.items():
+        _one_of("separator kind", kind, tuple(SEPARATORS))
+        if not separator or not set(separator) <= set("/_-.") or separator.startswith("//"):
+            raise UsageError(f"separator {kind}={separator!r}: use one of / _ - .")
+    result = {**SEPARATORS, **given}
+    # A frame names a link more often than not: they only differ where both were asked for.
+    if "link" in given and "frame" not in given:
+        result["frame"] = given["link"]
+    return result
+
+
+def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
+    """The kinds that this layout and topic strategy rename at all."""
+    kinds = {"topic", "service"}
+    kinds |= {"namespace"} if topics == NAMESPACE else {"node", "camera"}
+    if layout.frames:
+        kinds |= set(SEPARATORS) - {"topic", "service", "namespace", "node", "camera"}
+    return {kind: separators[kind] for kind in SEPARATORS if kind in kinds}
+
+
+def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
+    """How ``text``, a name of ``kind``, is spelled for any robot; None where it stays as it is.
+
+    ``namespaced`` tells whether a ROS namespace reaches the value.
+    """
+    separator = naming.separators.get(kind)
+    if separator is None:
+        return None
+    if kind in TOPIC_KINDS:
+        return _topic_affix(naming, separator, text, namespaced)
+    if kind == "namespace":
+        return _namespace_affix(separator, text)
+    if not text or (kind in FRAME_KINDS and text.strip("/") in naming.shared_frames):
+        return None
+    return _name_affix(naming.affix, separator, text)
+
+
+def _name_affix(side: str, separator: str, text: str) -> Affix:
+    if side == POSTFIX:
+        return Affix(len(text), separator, "")
+    return Affix(1 if text.startswith("/") else 0, "", separator)
+
+
+def _topic_affix(naming: Naming, separator: str, text: str, namespaced: bool) -> Affix | None:
+    bare = text.strip("/")
+    if not bare or bare in naming.shared_topics or text.startswith(("~", "__")):
+        return None
+    if text.endswith("/") or not NOT_PLAIN.isdisjoint(text):
+        return None
+    if naming.topics != NAMESPACE:
+        return _name_affix(naming.topics, separator, text)
+    if namespaced and not text.startswith("/"):
+        return None
+    return _name_affix(PREFIX, separator, text)
+
+
+def _namespace_affix(separator: str, text: str) -> Affix | None:
+    if not NOT_PLAIN.isdisjoint(text):
+        return None
+    at = 1 if text.startswith("/") else 0
+    return Affix(at, "", separator if text[at:] else "")
+
+
+def removal(
+    naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False
+) -> tuple[int, int] | None:
+    """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
+    separator = naming.separators.get(kind)
+    if separator is None:
+        return None
+    for inserted in (separator + robot, robot + separator, robot):
+        for start in (len(text) - len(inserted), 0, 1):
+            if start < 0 or not text.startswith(inserted, start):
+                continue
+            stem = text[:start] + text[start + len(inserted) :]
+            there = affix(naming, kind, stem, namespaced)
+            if there is not None and there.spell(stem, robot) == text:
+                return start, start + len(inserted)
+    return None
+
+
+def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:
+    """Pairs of robots one of whose names ends (begins) like the other's affix, with that separator.
+
+    Only for such pairs can two different old names become one: with a postfix, ``arm`` of
+    ``left_b`` and ``arm_left`` of ``b`` are both ``arm_left_b``.
+    """
+    names = set(robots)
+    pairs = set()
+    for separator in set(naming.separators.values()):
+        for robot in names:
+            pieces = robot.split(separator)
+            for cut in range(1, len(pieces)):
+                part = pieces[cut:] if naming.affix == POSTFIX else pieces[:cut]
+                other = separator.join(part)
+                if other in names:
+                    pairs.add((robot, other, separator))
+    return sorted(pairs)

@@ -1,0 +1,1 @@
+"""The tree of rewriters: vocabulary sections hung where they apply, and code for the odd ones."""

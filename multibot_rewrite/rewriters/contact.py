@@ -1,0 +1,106 @@
+"""Contact sensors name collisions that the URDF -> SDF conversion makes up from link names.
+
+A lumped name depends on the tree (which fixed joints are merged, in which order) and on how the
+names begin, so it is computed anew from the structure and never edited as text. Measured with
+libsdformat 12.3: ``{collision or link}_collision[_N]``, N counting over all collisions of the link
+that is left, and ``{left}_fixed_joint_lump__`` in front unless the text begins with that link.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator
+
+from lxml import etree
+
+from multibot_rewrite.model import Claim
+
+Respell = Callable[[str, str], str]
+LUMP = "_fixed_joint_lump__"
+
+
+def respell_collisions(
+    root: etree._Element, claims: Iterable[Claim], respell: Respell
+) -> list[tuple[Claim, str]]:
+    """Each contact collision whose name changes, with its new text.
+
+    ``respell(kind, name)`` is the new spelling of a link or joint.
+    """
+    contacts = [claim for claim in claims if claim.site.form == "collision"]
+    if not contacts:
+        return []
+    names = collision_map(root, respell)
+    result = []
+    for claim in contacts:
+        scope, colons, old = claim.value.rpartition("::")
+        new = names.get(old, old)
+        if new != old:
+            result.append((claim, f"{scope}{colons}{new}"))
+    return result
+
+
+def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
+    """Old made-up collision name -> new one, for every collision of the description."""
+    old = _names(root, lambda kind, name: name)
+    new = _names(root, respell)
+    return {old[key]: new[key] for key in old}
+
+
+def _names(root: etree._Element, spell: Respell) -> dict[tuple[str, int], str]:
+    links = {link.get("name", ""): link for link in root.iterchildren("link")}
+    lumped = _lumped(root, spell)
+    merged_away = {child for children in lumped.values() for _, child in children}
+    return {
+        key: name
+        for left in links
+        if left not in merged_away
+        for key, name in _named(spell("link", left), _merged(left, links, lumped), spell)
+    }
+
+
+def _named(
+    left: str, collisions: list[tuple[str, int, str]], spell: Respell
+) -> Iterator[tuple[tuple[str, int], str]]:
+    for number, (link, place, own) in enumerate(collisions):
+        name = f"{own or spell('link', link)}_collision" + (f"_{number}" if number else "")
+        yield (link, place), name if name.startswith(left) else f"{left}{LUMP}{name}"
+
+
+def _lumped(root: etree._Element, spell: Respell) -> dict[str, list[tuple[str, str]]]:
+    """Parent link -> (joint as spelled, child link) of the fixed joints that are merged."""
+    kept = {
+        block.get("reference")
+        for block in root.iterchildren("gazebo")
+        for tag in ("preserveFixedJoint", "disableFixedJointLumping")
+        if (block.findtext(tag) or "").strip() in ("true", "1")
+    }
+    lumped = defaultdict(list)
+    for joint in root.iterchildren("joint"):
+        name = joint.get("name", "")
+        parent, child = joint.find("parent"), joint.find("child")
+        if joint.get("type") != "fixed" or name in kept or parent is None or child is None:
+            continue
+        if parent.get("link") != "world":
+            lumped[parent.get("link", "")].append((spell("joint", name), child.get("link", "")))
+    return lumped
+
+
+def _merged(
+    link: str, links: dict[str, etree._Element], lumped: dict[str, list[tuple[str, str]]]
+) -> list[tuple[str, int, str]]:
+    """(link, index, own name) of all collisions ``link`` holds at the end.
+
+    urdfdom sorts sibling joints by name, so the children come in the order of their new spelling.
+    """
+    result = []
+    waiting = [link]
+    seen = set()
+    while waiting:
+        name = waiting.pop()
+        if name in seen or name not in links:
+            continue
+        seen.add(name)
+        found = links[name].iterchildren("collision")
+        result += [(name, place, item.get("name", "")) for place, item in enumerate(found)]
+        waiting += [child for _, child in sorted(lumped.get(name, ()), reverse=True)]
+    return result

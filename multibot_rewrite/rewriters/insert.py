@@ -1,0 +1,125 @@
+"""What has to be added: defaults and hard-wired topics that every robot would share otherwise."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+from xml.sax.saxutils import escape, quoteattr
+
+from lxml import etree
+
+from multibot_rewrite.model import Site
+from multibot_rewrite.naming import NAMESPACE, Naming, affix
+from multibot_rewrite.rewriters.forms import Part
+from multibot_rewrite.rewriters.spelling import HOLE, Declared, resolve
+from multibot_rewrite.rosnames import expand, parse_remap
+from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
+
+# Read from the plugin itself where it has no <ros>; a <ros> would hide them (gazebo_ros node.cpp).
+ROS_CHILDREN = ("namespace", "remapping", "argument", "parameter", "qos")
+
+
+class Insertion(NamedTuple):
+    """An element to insert into ``parent``, inside a new ``wrap`` element unless that is empty.
+
+    ``xml`` and ``new`` hold ``HOLE`` where the robot's name goes; ``old`` is what the consumer
+    would use without it.
+    """
+
+    parent: etree._Element
+    wrap: str
+    xml: str
+    kind: str
+    old: str
+    new: str
+
+
+def insertions(
+    host: etree._Element, rewriter: Rewriter, declared: Declared, naming: Naming
+) -> list[Insertion]:
+    """Everything ``host``, served by ``rewriter``, needs beyond what it says itself."""
+    if not rewriter.inserts:
+        return []
+    hidden = "ros/" if _ros_home(host) is host else ""
+    found = list(_defaults(host, rewriter, declared, naming, hidden))
+    if any(site.path == "ros/remapping" for site in rewriter.sites):
+        found += _remaps(host, rewriter, naming)
+    return found
+
+
+def _ros_home(host: etree._Element) -> etree._Element | None:
+    """Where ROS settings of a plugin go; None where a ``<ros>`` must be made first."""
+    ros = host.find("ros")
+    if ros is not None:
+        return ros
+    return host if any(host.find(tag) is not None for tag in ROS_CHILDREN) else None
+
+
+def _defaults(
+    host: etree._Element, rewriter: Rewriter, declared: Declared, naming: Naming, hidden: str
+) -> Iterator[Insertion]:
+    for site in rewriter.sites:
+        default = _default(site, naming)
+        if not default or site.path.startswith("@"):
+            continue
+        path = site.path.removeprefix(hidden)
+        if host.find(path) is not None:
+            continue
+        kind = resolve(Part(0, default, site.kinds), "uses", declared)
+        there = affix(naming, kind, default, site.namespaced) if kind else None
+        if there is not None:
+            new = there.spell(default, HOLE)
+            yield _insertion(host, path, kind, default, new)
+
+
+def _default(site: Site, naming: Naming) -> str:
+    """The value in force where the site is absent; without a namespace element that is the root.
+
+    The direct spelling of ROS settings is never made up: it only counts without a ``<ros>``.
+    """
+    if "namespace" in site.kinds and naming.topics == NAMESPACE:
+        return "" if site.path == "namespace" else site.default or "/"
+    return site.default
+
+
+def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -> Insertion:
+    steps, attribute = split_path(path)
+    parent, wrap = host, ""
+    for step in steps[:-1]:
+        child = parent.find(step)
+        if child is None:
+            wrap = split_step(step)[0]
+        else:
+            parent = child
+    tag, key, value = split_step(steps[-1])
+    given = f" {key}={quoteattr(value)}" if key else ""
+    if attribute:
+        return Insertion(parent, wrap, f"<{tag}{given} {attribute}={quoteattr(new)}/>", kind, old, new)
+    return Insertion(parent, wrap, f"<{tag}{given}>{escape(new)}</{tag}>", kind, old, new)
+
+
+def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterator[Insertion]:
+    """A rule for each topic that only a remap can move, unless the file has one."""
+    home = _ros_home(host)
+    rules = [] if home is None else [parse_remap((e.text or "").strip()) for e in home.findall("remapping")]
+    namespace = "" if home is None else (home.findtext("namespace") or "").strip()
+    node = host.get("name", "")
+    taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}
+    for topic in rewriter.publishes + rewriter.subscribes:
+        target = _remap_target(topic, naming)
+        if target and expand(topic, namespace, node) not in taken:
+            parent, wrap = (host, "ros") if home is None else (home, "")
+            xml = f"<remapping>{topic}:={target}</remapping>"
+            yield Insertion(parent, wrap, xml, "topic", topic, target)
+
+
+def _remap_target(topic: str, naming: Naming) -> str:
+    """Where a topic goes, always relative: gz_ros2_control makes a robot's rules process-wide, and
+    a relative target still ends in each robot's own namespace. Empty where it may stay."""
+    relative = topic.lstrip("/")
+    if topic.startswith("~") or relative in naming.shared_topics:
+        return ""
+    if naming.topics == NAMESPACE:
+        return relative if topic.startswith("/") else ""
+    there = affix(naming, "topic", relative)
+    return there.spell(relative, HOLE) if there else ""

@@ -1,0 +1,48 @@
+"""What each claimed value becomes: its names found, resolved to a kind, and spelled."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from multibot_rewrite.model import Claim
+from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, Affix, Naming, affix
+from multibot_rewrite.rewriters.forms import FORMS, Part
+
+HOLE = "\0"
+Declared = Mapping[str, Mapping[str, Claim]]
+# Kind and affix of each renamed name in one value, in order; ``at`` counts from the value's start.
+Spelling = tuple[tuple[str, Affix], ...]
+
+
+def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
+    """Kind and affix of every name in the claimed value; empty where it stays as it is."""
+    site = claim.site
+    result = []
+    for part in FORMS[site.form](claim.value, site.kinds):
+        kind = resolve(part, site.role, declared)
+        there = affix(naming, kind, part.text, site.namespaced) if kind else None
+        if there is not None:
+            result.append((kind, Affix(part.at + there.at, there.before, there.after)))
+    return tuple(result)
+
+
+def resolve(part: Part, role: str, declared: Declared) -> str:
+    """Which of its kinds a name is; empty for a use of something that is not declared.
+
+    A frame that names a link is spelled like the link, a leading slash aside.
+    """
+    if role == "declares":
+        return part.kinds[0]
+    for kind in part.kinds:
+        if kind in FRAME_KINDS and part.text.strip("/") in declared["link"]:
+            return "link"
+        if kind not in CLOSED_KINDS or part.text in declared[kind]:
+            return kind
+    return ""
+
+
+def respelled(value: str, spelling: Spelling, robot: str) -> str:
+    """The value with every affix in place."""
+    for _, there in reversed(spelling):
+        value = there.spell(value, robot)
+    return value

@@ -1,0 +1,163 @@
+"""Hang the vocabulary's sections on one another the way the document nests.
+
+A ``Node`` answers, for one element, which of its attributes and text are sites and which node
+serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
+are made when a document first asks for them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from multibot_rewrite.model import Site, VocabularyError
+from multibot_rewrite.vocabulary import Rewriter, Vocabulary, split_path, split_step
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+
+class Node:
+    """What is known about the elements at one place of the document.
+
+    ``select`` is set where the element itself decides which node serves it.
+    """
+
+    __slots__ = ("asked", "attributes", "children", "keeps", "rewriter", "select", "text", "values")
+
+    def __init__(self, rewriter: Rewriter | None = None, sites: tuple[Site, ...] = ()) -> None:
+        self.rewriter = rewriter
+        self.children: dict[str, Node] = {}
+        self.attributes: tuple[tuple[str, Site], ...] = ()
+        self.text: Site | None = None
+        self.keeps: dict[str, Site] = {}
+        self.select: Callable[[_Element], Node] | None = None
+        self.asked = ""
+        self.values: dict[str, Node] = {}
+        for site in sites:
+            self._add(site)
+
+    def _add(self, site: Site) -> None:
+        steps, attribute = split_path(site.path)
+        node = self
+        for step in steps:
+            node = node._step(step)
+        if site.role == "keep":
+            node.keeps[attribute] = site
+        elif attribute:
+            node.attributes = (*node.attributes, (attribute, site))
+        else:
+            node.text = site
+
+    def _step(self, step: str) -> Node:
+        tag, attribute, value = split_step(step)
+        child = self.children.setdefault(tag, Node())
+        if not attribute:
+            return child
+        child.asked, child.select = attribute, child._by_value
+        return child.values.setdefault(value, Node())
+
+    def _by_value(self, element: _Element) -> Node:
+        return self.values.get(element.get(self.asked, ""), self)
+
+
+class Tree:
+    """The whole tree for one vocabulary: ``formats`` maps a document's root tag to its node."""
+
+    def __init__(self, vocabulary: Vocabulary) -> None:
+        self.vocabulary = vocabulary
+        self.formats: dict[str, Node] = {}
+        self._chosen: dict[tuple[str, Rewriter], Node] = {}
+        rewriters = vocabulary.rewriters("element")
+        nodes = {name: Node(r, r.sites) for r in rewriters for name in r.names}
+        for name, node in nodes.items():
+            self._hang(name, node, nodes)
+
+    def _hang(self, name: str, node: Node, nodes: dict[str, Node]) -> None:
+        rewriter = node.rewriter
+        assert rewriter is not None
+        tag = name.rpartition(".")[2]
+        if rewriter.select:
+            if rewriter.select not in SELECTORS:
+                raise _wrong(rewriter, f"select: is one of {', '.join(SELECTORS)}")
+            node.select = self._selector(node, rewriter.select)
+        for parent in rewriter.at:
+            if parent != "/" and parent not in nodes:
+                raise _wrong(rewriter, f"at: {parent}: there is no [element {parent}]")
+            children = self.formats if parent == "/" else nodes[parent].children
+            if children.setdefault(tag, node) is not node:
+                raise _wrong(rewriter, f"{parent}/{tag} has a section or sites already")
+
+    def _selector(self, base: Node, type_: str) -> Callable[[_Element], Node]:
+        keys = SELECTORS[type_]
+
+        def select(element: _Element) -> Node:
+            for key in keys(element):
+                found = self.vocabulary.find(type_, key)
+                if found:
+                    return self._node(base, _flavour(found, element))
+            return base
+
+        return select
+
+    def _node(self, base: Node, rewriter: Rewriter) -> Node:
+        assert base.rewriter is not None
+        key = (base.rewriter.names[0], rewriter)
+        if key not in self._chosen:
+            node = Node(rewriter, base.rewriter.sites + rewriter.sites)
+            for tag, child in base.children.items():
+                node.children.setdefault(tag, child)
+            self._chosen[key] = node
+        return self._chosen[key]
+
+
+def _wrong(rewriter: Rewriter, message: str) -> VocabularyError:
+    return VocabularyError(f"{rewriter.file}:{rewriter.line}: [{rewriter.name}] {message}")
+
+
+def plugin_keys(element: _Element) -> list[str]:
+    """The names a ``<plugin>`` may be known by: its library, else its class (gz-sim accepts both).
+
+    gz-sim's loader reads ``ignition-gazebo`` as ``gz-sim`` and takes versioned library names.
+    """
+    library = element.get("filename", "").strip().rpartition("/")[2]
+    class_ = element.get("name", "").strip()
+    return [library_key(library), class_.replace("ignition::gazebo::", "gz::sim::")]
+
+
+def library_key(library: str) -> str:
+    """``libignition-gazebo6-imu-system.so`` -> ``gz-sim-imu-system``."""
+    key = library.removesuffix(".so").removesuffix(".dylib").removeprefix("lib")
+    for family in ("ignition-gazebo", "gz-sim"):
+        if key.startswith(family):
+            return "gz-sim" + key[len(family) :].lstrip("0123456789")
+    return key
+
+
+def hardware_keys(element: _Element) -> list[str]:
+    """The class a ``<ros2_control>`` loads."""
+    class_ = element.findtext("hardware/plugin")
+    return [class_.strip()] if class_ else []
+
+
+SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
+    "plugin": plugin_keys,
+    "hardware": hardware_keys,
+}
+
+
+def _flavour(found: list[Rewriter], element: _Element) -> Rewriter:
+    """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
+
+    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace) and ros2 (snake_case,
+    a ``ros`` child).
+    """
+    if len(found) == 1:
+        return found[0]
+    tags = {child.tag for child in element}
+
+    def known(rewriter: Rewriter) -> tuple[int, str]:
+        own = {split_step(split_path(site.path)[0][0])[0] for site in rewriter.sites if site.path[0] != "@"}
+        return len(own & tags), rewriter.ros
+
+    return max(found, key=known)

@@ -1,0 +1,1 @@
+"""The steps of a rewrite, one module each: document, collect, plan, apply, verify."""

@@ -1,0 +1,42 @@
+"""Plan -> text: cut the source once at every hole, then each robot is one ``bytes.join``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from multibot_rewrite.model import Edit
+
+
+def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
+    """The source with all edits made, in pieces; the robot's name goes between them.
+
+    ``edits`` are in source order and do not overlap.
+    """
+    pieces = []
+    held = b""
+    last = 0
+    for start, end, before, after in edits:
+        if after is None:
+            held += source[last:start] + before
+        else:
+            pieces.append(held + source[last:start] + before)
+            held = after
+        last = end
+    pieces.append(held + source[last:])
+    return pieces
+
+
+def fill(pieces: list[bytes], robot: str) -> bytes:
+    """The text for one robot."""
+    return robot.encode().join(pieces)
+
+
+def invert(edits: Iterable[Edit], source: bytes, robot: str) -> list[Edit]:
+    """Edits on the text for ``robot`` that give the source back."""
+    shift = 0
+    back = []
+    for start, end, before, after in edits:
+        new = len(before) + (len(robot) + len(after) if after is not None else 0)
+        back.append(Edit(start + shift, start + shift + new, source[start:end], None))
+        shift += new - (end - start)
+    return back

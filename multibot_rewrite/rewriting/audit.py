@@ -1,0 +1,233 @@
+"""What a person should know about a description before it is rewritten: one function a question."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
+from difflib import get_close_matches
+
+from multibot_rewrite.model import ERROR, WARNING, Claim, Finding
+from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, POSTFIX, Naming, affix, removal
+from multibot_rewrite.rewriters.forms import FORMS
+from multibot_rewrite.rewriters.spelling import resolve
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.rewriting.document import XACRO, finding
+from multibot_rewrite.rewriting.inserted import markers
+
+
+def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
+    """All findings that do not depend on the robot's name, in source order."""
+    found = [
+        *leftover_xacro(inventory),
+        *duplicates(inventory),
+        *dangling(inventory, naming),
+        *ambiguous(inventory),
+        *leading_slashes(inventory),
+        *unknown_plugins(inventory, tree),
+        *reordered(inventory, naming),
+    ]
+    return sorted(found, key=lambda item: (item.line, item.column, item.code))
+
+
+def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
+    """Elements and substitutions that only xacro understands."""
+    document = inventory.document
+    hint = "expand it first: give the file the name ….xacro, or run xacro"
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        tag = str(element.tag)
+        if XACRO in tag or "ros.org/xacro" in tag or tag.startswith("xacro:"):
+            yield finding(document, start, "MB105", ERROR, f"xacro element <{element.tag}>", hint)
+            return
+    at = next((at for at in (document.source.find(b"${"), document.source.find(b"$(arg")) if at > 0), -1)
+    if at > 0 and any("${" in claim.value or "$(arg" in claim.value for claim in inventory.claims):
+        yield finding(document, at, "MB105", ERROR, "xacro substitution left in the text", hint)
+
+
+def duplicates(inventory: Inventory) -> Iterator[Finding]:
+    """Two declarations of one name: a reference could mean either."""
+    for claim in inventory.claims:
+        kind = claim.site.kinds[0]
+        if claim.site.role != "declares" or kind not in CLOSED_KINDS:
+            continue
+        first = inventory.declared[kind][claim.value.strip()]
+        if first is not claim:
+            line = finding(inventory.document, first.start, "", "", "").line
+            message = f"{kind} {claim.value!r} is declared twice, first at line {line}"
+            yield finding(inventory.document, claim.start, "MB201", ERROR, message, "rename one")
+
+
+def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """Uses of a link or joint that nothing declares: they stay as they are."""
+    for claim in inventory.claims:
+        site = claim.site
+        if site.role != "uses" or site.kinds[-1] not in CLOSED_KINDS:
+            continue
+        for part in FORMS[site.form](claim.value, site.kinds):
+            if part.text in naming.shared_frames or resolve(part, site.role, inventory.declared):
+                continue
+            yield _dangling(inventory, claim, part.text, part.kinds)
+
+
+def _dangling(
+    inventory: Inventory, claim: Claim, name: str, kinds: tuple[str, ...]
+) -> Finding:
+    words = " or ".join(kinds)
+    known = [known for kind in kinds for known in inventory.declared.get(kind, ())]
+    near = get_close_matches(name, known, 1)
+    where = f"{claim.element.tag}@{claim.attribute}" if claim.attribute else f"<{claim.element.tag}>"
+    return finding(
+        inventory.document,
+        claim.start,
+        "MB202",
+        WARNING,
+        f"{where} names the {words} {name!r}, which is not declared: it stays as it is",
+        f"did you mean {near[0]!r}?" if near else "",
+    )
+
+
+def ambiguous(inventory: Inventory) -> Iterator[Finding]:
+    """A ``<gazebo reference>`` that is the name of a link and of a joint: the link is taken."""
+    for claim in inventory.claims:
+        if claim.site.kinds != ("link", "joint"):
+            continue
+        if all(claim.value in inventory.declared[kind] for kind in claim.site.kinds):
+            message = f"{claim.value!r} is both a link and a joint; it is taken for the link"
+            yield finding(
+                inventory.document, claim.start, "MB203", WARNING, message, "SDF refuses such a pair"
+            )
+
+
+def leading_slashes(inventory: Inventory) -> Iterator[Finding]:
+    """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
+    for claim in inventory.claims:
+        kinds = claim.site.kinds
+        if claim.site.form == "whole" and kinds[0] in FRAME_KINDS and claim.value[:1] == "/":
+            message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
+            yield finding(inventory.document, claim.start, "MB301", WARNING, message, "drop the slash")
+
+
+def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
+    """Plugins no section knows: what their parameters name can only be guessed."""
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is None or rewriter.type != "element" or rewriter.select != "plugin":
+            continue
+        name = host.element.get("filename") or host.element.get("name") or ""
+        near = get_close_matches(name.removeprefix("lib").removesuffix(".so"), tree.vocabulary.names("plugin"), 1, 0.75)
+        yield finding(
+            inventory.document,
+            host.start,
+            "MB902",
+            WARNING,
+            f"plugin {name!r} is not in the vocabulary: its parameters stay as they are",
+            f"the nearest known one is {near[0]!r}" if near else "",
+        )
+
+
+def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
+    of pinocchio's configuration vector."""
+    if naming.affix != POSTFIX or "joint" not in naming.separators:
+        return
+    siblings: dict[str, list[str]] = defaultdict(list)
+    for name, claim in inventory.declared["joint"].items():
+        parent = claim.element.find("parent")
+        if parent is not None:
+            siblings[parent.get("link", "")].append(name)
+    for link, names in siblings.items():
+        new = sorted(names, key=lambda name: _ordered(naming, name))
+        if new != sorted(names):
+            yield finding(
+                inventory.document,
+                inventory.declared["joint"][new[0]].start,
+                "MB405",
+                WARNING,
+                f"the joints below link {link!r} change their order: {', '.join(new)}",
+                "urdfdom sorts them by name; use --affix prefix or --separator joint=/",
+            )
+
+
+def _ordered(naming: Naming, name: str) -> str:
+    there = affix(naming, "joint", name)
+    # Letters, digits and underscores all sort before this stand-in would matter: same for all.
+    return there.spell(name, "r") if there else name
+
+
+def already_rewritten(inventory: Inventory, naming: Naming, robot: str) -> Finding | None:
+    """Refuse a document that carries the robot's affix on every name, or its marker."""
+    document = inventory.document
+    mark = next((mark for mark in markers(document) if mark.robot == robot), None)
+    declared = [(k, n) for k, names in inventory.declared.items() for n in names]
+    own = [(k, n) for k, n in declared if affix(naming, k, n) is not None]
+    spelled = own and all(removal(naming, robot, kind, name) for kind, name in own)
+    if mark is None and not spelled:
+        return None
+    message = f"the description is already rewritten for {robot}"
+    return finding(document, 0, "MB106", ERROR, message, "--again insists, --strip undoes")
+
+
+def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> list[Finding]:
+    """Names that stay as they are and are what another name becomes for some robot."""
+    found = []
+    for kind, names in inventory.declared.items():
+        kept = [name for name in names if affix(naming, kind, name) is None]
+        for robot in robots if kept else ():
+            found += [
+                _collision(inventory, kind, name, robot)
+                for name in kept
+                if _stem(naming, robot, kind, name) in names
+            ]
+    return found
+
+
+def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
+    span = removal(naming, robot, kind, name)
+    return name[: span[0]] + name[span[1] :] if span else ""
+
+
+def _collision(inventory: Inventory, kind: str, name: str, robot: str) -> Finding:
+    claim = inventory.declared[kind][name]
+    message = f"another {kind} becomes {name!r} for {robot}, which is there already"
+    return finding(inventory.document, claim.start, "MB302", ERROR, message, "choose another separator")
+
+
+def meeting(
+    inventory: Inventory, naming: Naming, pairs: Collection[tuple[str, str, str]]
+) -> list[Finding]:
+    """Names of two different robots that come out alike; ``pairs`` are from ``naming.overlap``."""
+    found = []
+    for robot, other, _ in pairs:
+        for kind, names in inventory.declared.items():
+            theirs = {_spelled(naming, kind, name, other) for name in names}
+            both = sorted({_spelled(naming, kind, n, robot) for n in names} & theirs - set(names))
+            if both:
+                message = f"{kind} {both[0]!r} comes out for {robot} and for {other}"
+                hint = "rename a robot or choose another separator"
+                found.append(finding(inventory.document, 0, "MB303", ERROR, message, hint))
+    return found
+
+
+def _spelled(naming: Naming, kind: str, name: str, robot: str) -> str:
+    there = affix(naming, kind, name)
+    return there.spell(name, robot) if there else name
+
+
+def not_rewritten(inventory: Inventory, naming: Naming, robot: str) -> list[Finding]:
+    """Links and joints without the affix that ``--strip`` is to take off."""
+    found = []
+    for kind, names in inventory.declared.items():
+        for name, claim in names.items():
+            renamed = affix(naming, kind, name) is not None
+            if renamed and removal(naming, robot, kind, name) is None:
+                message = f"{kind} {name!r} is not spelled for {robot}"
+                hint = "give --strip the robot and the options the file was made with"
+                found.append(finding(inventory.document, claim.start, "MB107", ERROR, message, hint))
+    return found[:1]
+
+
+def other_options(inventory: Inventory, robot: str) -> Finding:
+    """The stripped text does not lead back to the file."""
+    message = f"the file is not what a rewrite for {robot} with these options makes"
+    hint = "give --strip the options the file was made with"
+    return finding(inventory.document, 0, "MB108", ERROR, message, hint)

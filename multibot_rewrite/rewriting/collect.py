@@ -1,0 +1,83 @@
+"""Document -> inventory: every value a site claims, every symbol declared, every plugin met."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.model import Claim, InputError
+from multibot_rewrite.naming import CLOSED_KINDS
+from multibot_rewrite.rewriters.tree import Node, Tree
+from multibot_rewrite.rewriting.document import Document
+
+
+class Host(NamedTuple):
+    """An element whose rewriter was chosen by what it loads: a plugin or a ros2_control system."""
+
+    element: etree._Element
+    start: int
+    node: Node
+
+
+class Inventory(NamedTuple):
+    """Everything a plan needs. ``declared`` maps a closed kind to its declarations by name."""
+
+    document: Document
+    claims: list[Claim]
+    hosts: list[Host]
+    declared: dict[str, dict[str, Claim]]
+
+
+def collect(document: Document, tree: Tree) -> Inventory:
+    """Walk the document in order beside the tree of rewriters."""
+    claims: list[Claim] = []
+    hosts: list[Host] = []
+    walk = zip(document.root.iter("*"), document.starts, strict=True)
+    root, _ = next(walk)
+    node = _format(document, tree)
+    below: dict[etree._Element, dict[str, Node]] = {root: node.children}
+    _claim(claims, node, root, document.starts[0])
+    for element, start in walk:
+        children = below.get(element.getparent())  # type: ignore[call-overload]
+        if children is None:
+            continue
+        found = children.get(element.tag)
+        if found is None:
+            continue
+        if found.select is not None:
+            found = found.select(element)
+            if found.rewriter is not None:
+                hosts.append(Host(element, start, found))
+        if found.children:
+            below[element] = found.children
+        if found.attributes or found.text is not None:
+            _claim(claims, found, element, start)
+    return Inventory(document, claims, hosts, _declared(claims))
+
+
+def _format(document: Document, tree: Tree) -> Node:
+    tag = document.root.tag
+    node = tree.formats.get(tag)
+    if node is None:
+        known = " or ".join(f"<{name}>" for name in sorted(tree.formats))
+        raise InputError(f"{document.file}:1:1: the root element is <{tag}>, expected {known}")
+    return node
+
+
+def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int) -> None:
+    for attribute, site in node.attributes:
+        value = element.get(attribute)
+        if value is not None:
+            claims.append(Claim(site, element, start, attribute, value))
+    if node.text is not None and element.text:
+        claims.append(Claim(node.text, element, start, "", element.text.strip()))
+
+
+def _declared(claims: list[Claim]) -> dict[str, dict[str, Claim]]:
+    declared: dict[str, dict[str, Claim]] = {kind: {} for kind in CLOSED_KINDS}
+    for claim in claims:
+        site = claim.site
+        if site.role == "declares" and site.kinds[0] in declared:
+            declared[site.kinds[0]].setdefault(claim.value.strip(), claim)
+    return declared

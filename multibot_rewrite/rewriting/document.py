@@ -1,0 +1,147 @@
+"""Source bytes -> lxml tree and byte positions. Everything later decides on the tree and edits the
+bytes, so whatever is not edited stays as it was.
+
+A position is found by scanning one start tag; a value is editable only if what stands there reads
+back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.model import Finding, InputError
+
+MAX_BYTES = 16 * 1024 * 1024
+XACRO = "http://www.ros.org/wiki/xacro"
+_OPENING = re.compile(rb"<[A-Za-z_:\x80-\xff]")
+_SILENT = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
+_TAG = re.compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_HINTS = (
+    ("Excessive depth", "a robot description is never nested this deep"),
+    ("XML or text declaration not at start", "delete what stands before <?xml ...?>"),
+    ("Namespace prefix", "declare it on the root element: xmlns:prefix=\"...\""),
+    ("Unsupported version", "write <?xml version=\"1.0\"?>"),
+    ("Document is empty", "the file holds no XML"),
+    ("Start tag expected", "the file is not XML"),
+    ("Premature end", "the file is cut short"),
+)
+
+
+class Document(NamedTuple):
+    """One parsed file. ``starts`` are the byte offsets of the elements' start tags, in the order of
+    ``root.iter("*")``. ``file`` is the name used in messages."""
+
+    source: bytes
+    file: str
+    root: etree._Element
+    starts: list[int]
+
+
+def read_document(source: bytes, file: str) -> Document:
+    """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done."""
+    _refuse_bytes(source, file)
+    # Entities are never resolved, nothing is loaded: the input may come from anywhere.
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    try:
+        root = etree.fromstring(source, parser)
+    except etree.XMLSyntaxError as error:
+        raise InputError(_syntax_message(error, file)) from None
+    document = Document(source, file, root, _starts(source))
+    _refuse_tree(document)
+    return document
+
+
+def _refuse_bytes(source: bytes, file: str) -> None:
+    if not source.strip():
+        raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
+    if len(source) > MAX_BYTES:
+        size = len(source) / 2**20
+        limit = MAX_BYTES // 2**20
+        raise InputError(f"{file}: {size:.0f} MB is over the limit of {limit} MB; is this a mesh?")
+    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<")):
+        raise InputError(f"{file}: the text is UTF-16; convert it: iconv -f UTF-16 -t UTF-8")
+
+
+def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
+    message = " ".join(str(error.msg).split())
+    hint = next((hint for start, hint in _HINTS if start in message), "mend the XML and try again")
+    return f"{file}:{error.lineno or 1}:{error.offset or 1}: not well-formed XML: {message}; {hint}"
+
+
+def _refuse_tree(document: Document) -> None:
+    source, file, root, _ = document
+    info = root.getroottree().docinfo
+    if info.internalDTD is not None:
+        raise InputError(f"{file}: DOCTYPE and entities are not accepted; expand them first")
+    encoding = (info.encoding or "UTF-8").upper()
+    if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
+        raise InputError(f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8")
+
+
+def _starts(source: bytes) -> list[int]:
+    if b"<!--" in source or b"<![CDATA[" in source or b"<?" in source[1:]:
+        # Same length, so that every offset still holds.
+        source = _SILENT.sub(lambda found: b" " * len(found[0]), source)
+    return [found.start() for found in _OPENING.finditer(source)]
+
+
+def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
+    """Where the value of an attribute stands, or None if it does not read back as ``value``."""
+    key = b" " + name.encode() + b'="'
+    begin = source.find(key, start) + len(key)
+    raw = value.encode()
+    end = begin + len(raw)
+    # The common spelling, inside this tag; anything else takes the exact way.
+    if begin > len(key) and source.startswith(raw + b'"', begin) and source.find(b">", start) > end:
+        return begin, end
+    tag = _TAG.match(source, start)
+    pattern = rb"\s" + re.escape(name.encode()) + rb"\s*=\s*(\"[^\"]*\"|'[^']*')"
+    found = re.compile(pattern).search(source, start, tag.end() if tag else start)
+    if found is None:
+        return None
+    begin, end = found.start(1) + 1, found.end(1) - 1
+    return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
+
+
+def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
+    """Where the text right after a start tag stands, white space around it aside; None if it does
+    not read back as ``value``."""
+    raw = value.encode()
+    begin = source.find(b">", start) + 1
+    end = begin + len(raw)
+    if source.startswith(raw, begin) and source[end : end + 1] == b"<":
+        return begin, end
+    begin = tag_end(source, start)
+    text = source[begin : source.find(b"<", begin)]
+    begin += len(text) - len(text.lstrip())
+    text = text.strip()
+    return (begin, begin + len(text)) if _reads_as(b"<a>%s</a>", text, value) else None
+
+
+def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:
+    element = etree.fromstring(frame % raw.replace(b'"', b"&quot;"))
+    return (element.get("b") if b"b=" in frame else element.text or "") == value
+
+
+def tag_end(source: bytes, start: int) -> int:
+    """The offset right after the ``>`` of the start tag at ``start``."""
+    tag = _TAG.match(source, start)
+    assert tag is not None, "lxml read a start tag here"
+    return tag.end()
+
+
+def locate(source: bytes, offset: int) -> tuple[int, int]:
+    """Line and column, from 1, of a byte offset; the column counts characters."""
+    line_start = source.rfind(b"\n", 0, offset) + 1
+    column = len(source[line_start:offset].decode("utf-8", "replace")) + 1
+    return source.count(b"\n", 0, offset) + 1, column
+
+
+def finding(
+    document: Document, offset: int, code: str, level: str, message: str, hint: str = ""
+) -> Finding:
+    """A finding at a byte offset of the document."""
+    return Finding(code, level, message, hint, document.file, *locate(document.source, offset))

@@ -1,0 +1,115 @@
+"""Names of the description that stand where no site claims them: what a rewrite may have missed."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Collection, Iterator
+
+from lxml import etree
+
+from multibot_rewrite.model import WARNING, Finding, Site
+from multibot_rewrite.rewriters.tree import Node, Tree
+from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.rewriting.document import Document, attribute_slot, finding, text_slot
+
+_ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
+_TEXTS = etree.XPath("//text()[normalize-space()]", smart_strings=False)
+_BETWEEN = re.compile(r":=|::|[\s,;/]+")
+_NUMBERS = re.compile(r"[-+0-9.eE\s]*$")
+
+
+def slot_values(root: etree._Element) -> Counter[str]:
+    """How often each value stands in an attribute or text of the document."""
+    texts: list[str] = _TEXTS(root)  # type: ignore[assignment]
+    attributes: list[str] = _ATTRIBUTES(root)  # type: ignore[assignment]
+    values = Counter(attributes)
+    values.update([text.strip() for text in texts])
+    return values
+
+
+def find_mentions(inventory: Inventory, names: Collection[str], tree: Tree) -> list[Finding]:
+    """A warning for each unclaimed value that is one of ``names`` or holds one as a list item,
+    path segment, scope or side of a remap rule. Values with a ``keep`` site are no mention."""
+    if not names:
+        return []
+    names = frozenset(names)
+    claimed = Counter(claim.value for claim in inventory.claims)
+    suspects = {
+        value
+        for value, count in slot_values(inventory.document.root).items()
+        if count > claimed[value] and _mentioned(value, names)
+    }
+    if not suspects:
+        return []
+    return [
+        _mention(inventory.document, *slot, names)
+        for slot in _unclaimed(inventory, tree)
+        if slot[3] in suspects
+    ]
+
+
+def _mentioned(value: str, names: frozenset[str]) -> str:
+    if value in names:
+        return value
+    if _NUMBERS.match(value):
+        return ""
+    return next((word for word in _BETWEEN.split(value) if word in names), "")
+
+
+def _unclaimed(
+    inventory: Inventory, tree: Tree
+) -> Iterator[tuple[etree._Element, int, str, str]]:
+    """(element, start, attribute or "", value) of every slot without a site, in order."""
+    claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
+    document = inventory.document
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        slots = [*element.attrib.items(), ("", element.text or "")]
+        slots += [("", child.tail or "") for child in element]
+        for attribute, value in slots:
+            open_ = (start, attribute) not in claimed and value.strip()
+            if open_ and not kept(element, str(attribute), tree):
+                yield element, start, str(attribute), str(value).strip() if not attribute else str(value)
+
+
+def kept(element: etree._Element, attribute: str, tree: Tree) -> Site | None:
+    """The ``keep`` site for a value, if the vocabulary has one."""
+    node = node_of(element, tree)
+    return node.keeps.get(attribute) if node else None
+
+
+def node_of(element: etree._Element, tree: Tree) -> Node | None:
+    """The node of the tree that serves an element."""
+    parent = element.getparent()
+    children = tree.formats if parent is None else None
+    if parent is not None:
+        above = node_of(parent, tree)
+        children = above.children if above else None
+    node = children.get(element.tag) if children else None
+    return node.select(element) if node is not None and node.select is not None else node
+
+
+def _mention(
+    document: Document,
+    element: etree._Element,
+    start: int,
+    attribute: str,
+    value: str,
+    names: frozenset[str],
+) -> Finding:
+    slot = (
+        attribute_slot(document.source, start, attribute, value)
+        if attribute
+        else text_slot(document.source, start, value)
+    )
+    name = _mentioned(value, names)
+    where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
+    text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
+    return finding(
+        document,
+        slot[0] if slot else start,
+        "MB901",
+        WARNING,
+        f"unclaimed mention: {text}, and nothing known says what it means: it stays as it is",
+        "add a line to a vocabulary file: a uses/declares site, or keep",
+    )

@@ -1,0 +1,127 @@
+"""Inventory + naming -> plan: what each claimed value becomes, as edits of the source bytes.
+
+A plan holds for every robot: the robot's name is a hole in its edits.
+"""
+
+from __future__ import annotations
+
+from operator import itemgetter
+from typing import NamedTuple
+
+from multibot_rewrite.model import ERROR, Claim, Edit, Finding
+from multibot_rewrite.naming import Naming, affix
+from multibot_rewrite.rewriters.contact import Respell, respell_collisions
+from multibot_rewrite.rewriters.insert import Insertion, insertions
+from multibot_rewrite.rewriters.spelling import HOLE, Spelling, spell
+from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.rewriting.document import attribute_slot, finding, text_slot
+from multibot_rewrite.rewriting.inserted import hole_edits, insertion_edits
+
+_START = itemgetter(0)
+
+
+class Plan(NamedTuple):
+    """Edits in source order, what they mean, and what prevents them.
+
+    ``spellings`` are aligned with the inventory's claims. ``collisions`` are the recomputed contact
+    collisions, by claim index.
+    """
+
+    edits: list[Edit]
+    spellings: list[Spelling]
+    collisions: list[tuple[Claim, str]]
+    insertions: list[Insertion]
+    findings: list[Finding]
+
+
+def make_plan(inventory: Inventory, naming: Naming) -> Plan:
+    """Apply ``naming`` once to every distinct name and place the results."""
+    spellings = _spellings(inventory, naming)
+    edits, findings = _edits(inventory, spellings)
+    document, claims, hosts, declared = inventory
+    collisions = respell_collisions(document.root, claims, respeller(naming))
+    for claim, new in collisions:
+        slot = text_slot(document.source, claim.start, claim.value)
+        if slot is None:
+            findings.append(_not_editable(inventory, claim))
+        else:
+            edits += hole_edits(*slot, new)
+    added = [
+        item
+        for host in hosts
+        if host.node.rewriter is not None
+        for item in insertions(host.element, host.node.rewriter, declared, naming)
+    ]
+    edits += insertion_edits(document, added)
+    # Stable: several edits at one place stay in the order they were made.
+    edits.sort(key=_START)
+    return Plan(edits, spellings, collisions, added, findings)
+
+
+def respeller(naming: Naming) -> Respell:
+    """The new spelling of a link or joint, with ``HOLE`` for the robot."""
+
+    def respell(kind: str, name: str) -> str:
+        there = affix(naming, kind, name)
+        return there.spell(name, HOLE) if there else name
+
+    return respell
+
+
+def _spellings(inventory: Inventory, naming: Naming) -> list[Spelling]:
+    known: dict[tuple[int, str], Spelling] = {}
+    result = []
+    for claim in inventory.claims:
+        key = (id(claim.site), claim.value)
+        spelling = known.get(key)
+        if spelling is None:
+            spelling = known[key] = spell(claim, inventory.declared, naming)
+        result.append(spelling)
+    return result
+
+
+def _edits(
+    inventory: Inventory, spellings: list[Spelling]
+) -> tuple[list[Edit], list[Finding]]:
+    source = inventory.document.source
+    edits = []
+    findings = []
+    for claim, spelling in zip(inventory.claims, spellings, strict=True):
+        if not spelling:
+            continue
+        _, _, start, attribute, value = claim
+        if attribute:
+            slot = attribute_slot(source, start, attribute, value)
+        else:
+            slot = text_slot(source, start, value)
+        for _, (at, before, after) in spelling:
+            place = value_place(source, slot, value, at) if slot else None
+            if place is None:
+                findings.append(_not_editable(inventory, claim))
+                break
+            edits.append(Edit(place, place, before.encode(), after.encode()))
+    return edits, findings
+
+
+def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
+    """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
+    begin, end = slot
+    if at == 0:
+        return begin
+    if at == len(value):
+        return end
+    head, whole = value[:at].encode(), value.encode()
+    if len(whole) != end - begin:
+        head, whole = head.replace(b"\n", b"\r\n"), whole.replace(b"\n", b"\r\n")
+    return begin + len(head) if source[begin:end] == whole else None
+
+
+def _not_editable(inventory: Inventory, claim: Claim) -> Finding:
+    return finding(
+        inventory.document,
+        claim.start,
+        "MB104",
+        ERROR,
+        f"{claim.value.strip()!r} cannot be edited in place",
+        "write it as plain text, without escapes, CDATA or comments inside",
+    )

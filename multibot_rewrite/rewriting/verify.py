@@ -1,0 +1,77 @@
+"""The proof that runs on every rewrite. It trusts the output bytes only, not the plan's word."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from multibot_rewrite.model import InputError, ProofError
+from multibot_rewrite.naming import Naming
+from multibot_rewrite.rewriters.spelling import HOLE, respelled
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rewriting.apply import cut, invert
+from multibot_rewrite.rewriting.collect import Inventory, collect
+from multibot_rewrite.rewriting.document import read_document
+from multibot_rewrite.rewriting.inserted import removals
+from multibot_rewrite.rewriting.mentions import slot_values
+from multibot_rewrite.rewriting.plan import Plan
+from multibot_rewrite.rewriting.strip import outside, strip_edits
+
+
+def verify(
+    inventory: Inventory, plan: Plan, output: bytes, robot: str, naming: Naming, tree: Tree
+) -> None:
+    """Raise ProofError unless ``output`` is the input with its names respelled and nothing else."""
+    source, file = inventory.document.source, inventory.document.file
+    try:
+        result = collect(read_document(output, f"{file} for {robot}"), tree)
+    except InputError as error:
+        raise ProofError(f"the output does not parse: {error}") from None
+    _same_graph(inventory, plan, result, robot)
+    _nothing_left(inventory, plan, result, robot)
+    if b"".join(cut(output, invert(plan.edits, source, robot))) != source:
+        raise ProofError(f"{file}: undoing the edits does not give the input back")
+    if b"".join(cut(output, strip_edits(result, naming, robot))) != source:
+        raise ProofError(f"{file}: stripping {robot} from the output does not give the input back")
+
+
+def _same_graph(inventory: Inventory, plan: Plan, result: Inventory, robot: str) -> None:
+    """The same sites in the same order, each with the planned value, and as many symbols."""
+    file = inventory.document.file
+    inserted = removals(result.document, robot)
+    found = outside(result.claims, inserted)
+    if len(found) != len(inventory.claims):
+        raise ProofError(f"{file}: {len(inventory.claims)} names went in, {len(found)} came out")
+    expected = _expected(inventory, plan, robot)
+    for claim, new, value in zip(inventory.claims, found, expected, strict=True):
+        if new.site is not claim.site or new.value != value:
+            raise ProofError(f"{file}: {claim.value!r} became {new.value!r}, expected {value!r}")
+    for kind, symbols in inventory.declared.items():
+        if len(symbols) != len(result.declared[kind]):
+            raise ProofError(f"{file}: two {kind}s have one name for {robot}")
+
+
+def _expected(inventory: Inventory, plan: Plan, robot: str) -> list[str]:
+    values = [
+        respelled(claim.value, spelling, robot) if spelling else claim.value
+        for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
+    ]
+    if plan.collisions:
+        by_place = {claim.start: new for claim, new in plan.collisions}
+        for index, claim in enumerate(inventory.claims):
+            if claim.site.form == "collision" and claim.start in by_place:
+                values[index] = by_place[claim.start].replace(HOLE, robot)
+    return values
+
+
+def _nothing_left(inventory: Inventory, plan: Plan, result: Inventory, robot: str) -> None:
+    """Each old name stands in the output as often as the plan leaves it, in claimed slots or not."""
+    gone: Counter[str] = Counter()
+    come: Counter[str] = Counter()
+    for claim, value in zip(inventory.claims, _expected(inventory, plan, robot), strict=True):
+        if value != claim.value:
+            gone[claim.value] += 1
+            come[value] += 1
+    before, after = slot_values(inventory.document.root), slot_values(result.document.root)
+    for name, count in gone.items():
+        if after[name] > before[name] - count + come[name]:
+            raise ProofError(f"{inventory.document.file}: the old name {name!r} is still there")
