@@ -27,15 +27,17 @@ SEPARATORS = {
     "gpio": "_",
     "model": "_",
     "node": "_",
-    "camera": "_",
+    "stem": "_",
     "topic": "/",
+    "subtopic": "/",
     "service": "/",
     "namespace": "/",
 }
 FRAME_KINDS = frozenset({"link", "frame"})
-TOPIC_KINDS = frozenset({"topic", "service"})
+# A stem is a word topics are made of (camera_name); a subtopic stands below a stem or namespace.
+TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # A use of one of these must be declared in the same file.
-CLOSED_KINDS = frozenset({"link", "joint"})
+CLOSED_KINDS = frozenset({"link", "joint", "model"})
 # Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
 NOT_PLAIN = frozenset("{}$ ")
 
@@ -143,10 +145,9 @@ def _separators(given: Mapping[str, str]) -> dict[str, str]:
 
 def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
     """The kinds that this layout and topic strategy rename at all."""
-    kinds = {"topic", "service"}
-    kinds |= {"namespace"} if topics == NAMESPACE else {"node", "camera"}
+    kinds = {"stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
     if layout.frames:
-        kinds |= set(SEPARATORS) - {"topic", "service", "namespace", "node", "camera"}
+        kinds |= set(SEPARATORS) - TOPIC_KINDS - {"stem", "namespace", "node"}
     return {kind: separators[kind] for kind in SEPARATORS if kind in kinds}
 
 
@@ -159,7 +160,10 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
     if separator is None:
         return None
     if kind in TOPIC_KINDS:
-        return _topic_affix(naming, separator, text, namespaced)
+        below = kind == "subtopic" or (namespaced and naming.topics == NAMESPACE)
+        return _topic_affix(naming, separator, text, below)
+    if kind == "stem" and namespaced and naming.topics == NAMESPACE:
+        return None
     if kind == "namespace":
         return _namespace_affix(separator, text)
     if not text or (kind in FRAME_KINDS and text.strip("/") in naming.shared_frames):
@@ -173,17 +177,17 @@ def _name_affix(side: str, separator: str, text: str) -> Affix:
     return Affix(1 if text.startswith("/") else 0, "", separator)
 
 
-def _topic_affix(naming: Naming, separator: str, text: str, namespaced: bool) -> Affix | None:
+def _topic_affix(naming: Naming, separator: str, text: str, below: bool) -> Affix | None:
+    """``below`` tells that a relative name is put under something that is the robot's already."""
     bare = text.strip("/")
     if not bare or bare in naming.shared_topics or text.startswith(("~", "__")):
         return None
     if text.endswith("/") or not NOT_PLAIN.isdisjoint(text):
         return None
-    if naming.topics != NAMESPACE:
-        return _name_affix(naming.topics, separator, text)
-    if namespaced and not text.startswith("/"):
+    if below and not text.startswith("/"):
         return None
-    return _name_affix(PREFIX, separator, text)
+    side = POSTFIX if naming.topics == POSTFIX else PREFIX
+    return _name_affix(side, separator, text)
 
 
 def _namespace_affix(separator: str, text: str) -> Affix | None:

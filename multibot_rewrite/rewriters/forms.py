@@ -41,9 +41,15 @@ def listed(value: str, kinds: tuple[str, ...]) -> tuple[Part, ...]:
 
 
 def scoped(value: str, kinds: tuple[str, ...]) -> tuple[Part, ...]:
-    """``model::link``: only the last piece is a name of this file."""
-    name = value.strip().rpartition("::")[2]
-    return (Part(value.rindex(name), name, kinds),) if name else ()
+    """``model::link``: the last piece is the name, the ones before it are models."""
+    parts = []
+    at = len(value) - len(value.lstrip())
+    pieces = value.strip().split("::")
+    for number, name in enumerate(pieces, 1):
+        if name:
+            parts.append(Part(at, name, kinds if number == len(pieces) else ("model",)))
+        at += len(name) + 2
+    return tuple(parts)
 
 
 def remap(value: str, kinds: tuple[str, ...]) -> tuple[Part, ...]:
@@ -67,6 +73,7 @@ FORMS: dict[str, Form] = {
     "whole": whole,
     "list": listed,
     "scoped": scoped,
+    "prefix": whole,
     "remap": remap,
     "argument": remap,
     "collision": nothing,

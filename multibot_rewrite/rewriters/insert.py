@@ -8,7 +8,6 @@ from xml.sax.saxutils import escape, quoteattr
 
 from lxml import etree
 
-from multibot_rewrite.model import Site
 from multibot_rewrite.naming import NAMESPACE, Naming, affix
 from multibot_rewrite.rewriters.forms import Part
 from multibot_rewrite.rewriters.spelling import HOLE, Declared, resolve
@@ -59,11 +58,11 @@ def _defaults(
     host: etree._Element, rewriter: Rewriter, declared: Declared, naming: Naming, hidden: str
 ) -> Iterator[Insertion]:
     for site in rewriter.sites:
-        default = _default(site, naming)
-        if not default or site.path.startswith("@"):
+        default = site.default
+        if not default:
             continue
         path = site.path.removeprefix(hidden)
-        if host.find(path) is not None:
+        if _present(host, path):
             continue
         kind = resolve(Part(0, default, site.kinds), "uses", declared)
         there = affix(naming, kind, default, site.namespaced) if kind else None
@@ -72,21 +71,23 @@ def _defaults(
             yield _insertion(host, path, kind, default, new)
 
 
-def _default(site: Site, naming: Naming) -> str:
-    """The value in force where the site is absent; without a namespace element that is the root.
+def _present(host: etree._Element, path: str) -> bool:
+    steps, attribute = split_path(path)
+    found = host.find("/".join(_query(step) for step in steps))
+    return found is not None and (not attribute or found.get(attribute) is not None)
 
-    The direct spelling of ROS settings is never made up: it only counts without a ``<ros>``.
-    """
-    if "namespace" in site.kinds and naming.topics == NAMESPACE:
-        return "" if site.path == "namespace" else site.default or "/"
-    return site.default
+
+def _query(step: str) -> str:
+    """The step as lxml's find takes it."""
+    tag, attribute, value = split_step(step)
+    return f"{tag}[@{attribute}={quoteattr(value)}]" if attribute else tag
 
 
 def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -> Insertion:
     steps, attribute = split_path(path)
     parent, wrap = host, ""
     for step in steps[:-1]:
-        child = parent.find(step)
+        child = parent.find(_query(step))
         if child is None:
             wrap = split_step(step)[0]
         else:
@@ -105,7 +106,7 @@ def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterato
     namespace = "" if home is None else (home.findtext("namespace") or "").strip()
     node = host.get("name", "")
     taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}
-    for topic in rewriter.publishes + rewriter.subscribes:
+    for topic in rewriter.topics:
         target = _remap_target(topic, naming)
         if target and expand(topic, namespace, node) not in taken:
             parent, wrap = (host, "ros") if home is None else (home, "")

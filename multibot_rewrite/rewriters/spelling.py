@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from multibot_rewrite.model import Claim
-from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, Affix, Naming, affix
+from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, PREFIX, Affix, Naming, affix
 from multibot_rewrite.rewriters.forms import FORMS, Part
 
 HOLE = "\0"
@@ -17,6 +17,8 @@ Spelling = tuple[tuple[str, Affix], ...]
 def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     """Kind and affix of every name in the claimed value; empty where it stays as it is."""
     site = claim.site
+    if site.form == "prefix" and naming.affix != PREFIX:
+        return ()
     result = []
     for part in FORMS[site.form](claim.value, site.kinds):
         kind = resolve(part, site.role, declared)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator
-from difflib import get_close_matches
 
 from multibot_rewrite.model import ERROR, WARNING, Claim, Finding
-from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, POSTFIX, Naming, affix, removal
+from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, POSTFIX, PREFIX, Naming, affix, removal
 from multibot_rewrite.rewriters.forms import FORMS
 from multibot_rewrite.rewriters.spelling import resolve
-from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rewriters.tree import Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import XACRO, finding
 from multibot_rewrite.rewriting.inserted import markers
@@ -23,6 +22,7 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
         *duplicates(inventory),
         *dangling(inventory, naming),
         *ambiguous(inventory),
+        *prefix_only(inventory, naming),
         *leading_slashes(inventory),
         *unknown_plugins(inventory, tree),
         *reordered(inventory, naming),
@@ -45,13 +45,13 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
 
 
 def duplicates(inventory: Inventory) -> Iterator[Finding]:
-    """Two declarations of one name: a reference could mean either."""
+    """Two declarations of one name in one scope; a <gazebo> block may repeat a URDF joint (PR2)."""
     for claim in inventory.claims:
         kind = claim.site.kinds[0]
         if claim.site.role != "declares" or kind not in CLOSED_KINDS:
             continue
-        first = inventory.declared[kind][claim.value.strip()]
-        if first is not claim:
+        first = inventory.declared[kind].get(claim.value.strip(), claim)
+        if first is not claim and first.site is claim.site:
             line = finding(inventory.document, first.start, "", "", "").line
             message = f"{kind} {claim.value!r} is declared twice, first at line {line}"
             yield finding(inventory.document, claim.start, "MB201", ERROR, message, "rename one")
@@ -59,14 +59,19 @@ def duplicates(inventory: Inventory) -> Iterator[Finding]:
 
 def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
     """Uses of a link or joint that nothing declares: they stay as they are."""
+    declared = inventory.declared
     for claim in inventory.claims:
         site = claim.site
         if site.role != "uses" or site.kinds[-1] not in CLOSED_KINDS:
             continue
+        if any(claim.value in declared[kind] for kind in site.kinds):
+            continue
         for part in FORMS[site.form](claim.value, site.kinds):
-            if part.text in naming.shared_frames or resolve(part, site.role, inventory.declared):
+            # Another model, or one nested in this, is no fault.
+            if part.kinds == ("model",) or part.text in naming.shared_frames:
                 continue
-            yield _dangling(inventory, claim, part.text, part.kinds)
+            if not resolve(part, site.role, declared):
+                yield _dangling(inventory, claim, part.text, part.kinds)
 
 
 def _dangling(
@@ -74,7 +79,7 @@ def _dangling(
 ) -> Finding:
     words = " or ".join(kinds)
     known = [known for kind in kinds for known in inventory.declared.get(kind, ())]
-    near = get_close_matches(name, known, 1)
+    near = nearest(name, known)
     where = f"{claim.element.tag}@{claim.attribute}" if claim.attribute else f"<{claim.element.tag}>"
     return finding(
         inventory.document,
@@ -82,8 +87,15 @@ def _dangling(
         "MB202",
         WARNING,
         f"{where} names the {words} {name!r}, which is not declared: it stays as it is",
-        f"did you mean {near[0]!r}?" if near else "",
+        f"did you mean {near!r}?" if near else "",
     )
+
+
+def nearest(name: str, known: Collection[str]) -> str:
+    """The known name most like ``name``, or an empty string."""
+    from difflib import get_close_matches  # only a message needs it
+
+    return next(iter(get_close_matches(name, known, 1, 0.7)), "")
 
 
 def ambiguous(inventory: Inventory) -> Iterator[Finding]:
@@ -95,6 +107,18 @@ def ambiguous(inventory: Inventory) -> Iterator[Finding]:
             message = f"{claim.value!r} is both a link and a joint; it is taken for the link"
             yield finding(
                 inventory.document, claim.start, "MB203", WARNING, message, "SDF refuses such a pair"
+            )
+
+
+def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """Parameters that the consumer puts in front of names: they cannot hold a postfix."""
+    if naming.affix == PREFIX or "sensor" not in naming.separators:
+        return
+    for claim in inventory.claims:
+        if claim.site.form == "prefix":
+            message = f"{claim.value!r} is put in front of names in code, a postfix cannot reach them"
+            yield finding(
+                inventory.document, claim.start, "MB304", WARNING, message, "use --affix prefix"
             )
 
 
@@ -114,14 +138,14 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
         if rewriter is None or rewriter.type != "element" or rewriter.select != "plugin":
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
-        near = get_close_matches(name.removeprefix("lib").removesuffix(".so"), tree.vocabulary.names("plugin"), 1, 0.75)
+        near = nearest(library_key(name), tree.vocabulary.names("plugin"))
         yield finding(
             inventory.document,
             host.start,
             "MB902",
             WARNING,
             f"plugin {name!r} is not in the vocabulary: its parameters stay as they are",
-            f"the nearest known one is {near[0]!r}" if near else "",
+            f"the nearest known one is {near!r}" if near else "",
         )
 
 

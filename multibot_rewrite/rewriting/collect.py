@@ -78,6 +78,7 @@ def _declared(claims: list[Claim]) -> dict[str, dict[str, Claim]]:
     declared: dict[str, dict[str, Claim]] = {kind: {} for kind in CLOSED_KINDS}
     for claim in claims:
         site = claim.site
-        if site.role == "declares" and site.kinds[0] in declared:
-            declared[site.kinds[0]].setdefault(claim.value.strip(), claim)
+        name = claim.value.strip()
+        if name and site.role == "declares" and site.kinds[0] in declared:
+            declared[site.kinds[0]].setdefault(name, claim)
     return declared

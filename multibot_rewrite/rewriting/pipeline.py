@@ -18,6 +18,10 @@ from multibot_rewrite.rewriting.strip import strip_edits
 from multibot_rewrite.rewriting.verify import verify
 
 
+# Kinds whose names are telling enough to be looked for where no site is.
+MENTIONED = ("link", "joint")
+
+
 class Template(NamedTuple):
     """A description ready for any number of robots: one parse, one plan, one cut."""
 
@@ -75,7 +79,7 @@ def _renamed(inventory: Inventory, plan: Plan) -> set[str]:
     return {
         claim.value.strip()
         for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
-        if spelling and claim.site.role == "declares" and claim.site.kinds[0] in inventory.declared
+        if spelling and claim.site.role == "declares" and claim.site.kinds[0] in MENTIONED
     }
 
 

@@ -26,17 +26,18 @@ from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
 
 TYPES = ("element", "plugin", "hardware", "block")
-SETTINGS = ("at", "about", "source", "with", "select", "ros", "publishes", "subscribes", "insert")
+SETTINGS = ("at", "about", "source", "with", "select", "ros", "publishes", "subscribes", "serves", "insert")
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
-FORMS = ("whole", "list", "scoped", "remap", "argument", "collision")
+FORMS = ("whole", "list", "scoped", "prefix", "remap", "argument", "collision")
 HERE = os.path.dirname(__file__)  # noqa: PTH120  (pathlib costs the command 3 ms of start)
 
 
 class Rewriter(NamedTuple):
     """One section: what is known about an element, a plugin, a hardware class or a shared block.
 
-    ``publishes`` and ``subscribes`` are topics that no element controls, only a remap moves.
+    ``publishes``, ``subscribes`` and ``serves`` are topics and services that no element controls:
+    only a remap rule moves them.
     ``inserts`` is false where the consumer throws on children it does not know.
     """
 
@@ -48,6 +49,7 @@ class Rewriter(NamedTuple):
     ros: str
     publishes: tuple[str, ...]
     subscribes: tuple[str, ...]
+    serves: tuple[str, ...]
     inserts: bool
     about: str
     source: str
@@ -59,6 +61,11 @@ class Rewriter(NamedTuple):
         """The name reports and case files use: ``plugin gazebo_ros_diff_drive``."""
         flavour = f" (ROS {self.ros})" if self.ros else ""
         return f"{self.type} {self.names[0]}{flavour}"
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """All names that only a remap rule moves."""
+        return self.publishes + self.subscribes + self.serves
 
 
 class Vocabulary:
@@ -156,6 +163,7 @@ def _assemble(
         settings.get("ros", ""),
         tuple(settings.get("publishes", "").split()),
         tuple(settings.get("subscribes", "").split()),
+        tuple(settings.get("serves", "").split()),
         settings.get("insert", "yes") == "yes",
         settings.get("about", ""),
         settings.get("source", ""),
