@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 
+from lxml import etree
+
 from multibot_rewrite.model import InputError, ProofError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.spelling import HOLE, respelled
@@ -71,6 +73,8 @@ def _nothing_left(inventory: Inventory, plan: Plan, result: Inventory, robot: st
         if value != claim.value:
             gone[claim.value] += 1
             come[value] += 1
+    for item in plan.insertions:
+        come.update(slot_values(etree.fromstring(item.xml.replace(HOLE, robot))))
     before, after = slot_values(inventory.document.root), slot_values(result.document.root)
     for name, count in gone.items():
         if after[name] > before[name] - count + come[name]:
