@@ -1,0 +1,1 @@
+"""The commands: one file each. They read, call the library, print and write; they decide nothing."""
