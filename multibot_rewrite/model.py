@@ -40,7 +40,8 @@ class Site(NamedTuple):
     ``role`` is ``"declares"``, ``"uses"`` or ``"keep"`` (never renamed; ``note`` says why).
     ``kinds`` are tried in order until one resolves. ``form`` says where inside the value the names
     are (see ``rewriters.forms``). ``default`` is the literal the consumer falls back to.
-    ``namespaced`` is true where a ROS namespace reaches the value.
+    ``namespaced`` is true where a ROS namespace reaches the value. ``plain`` is the kind where the
+    whole value is the name of a link or joint and of nothing else.
     """
 
     path: str
@@ -52,6 +53,7 @@ class Site(NamedTuple):
     section: str
     note: str
     line: int
+    plain: str = ""
 
 
 class Claim(NamedTuple):

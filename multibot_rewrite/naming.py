@@ -202,12 +202,15 @@ def removal(
 ) -> tuple[int, int] | None:
     """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
     separator = naming.separators.get(kind)
-    if separator is None:
+    if separator is None or robot not in text:
         return None
-    for inserted in (separator + robot, robot + separator, robot):
-        for start in (len(text) - len(inserted), 0, 1):
-            if start < 0 or not text.startswith(inserted, start):
-                continue
+    lead = 1 if text.startswith("/") else 0
+    for start, inserted in (
+        (len(text) - len(separator + robot), separator + robot),
+        (lead, robot + separator),
+        (lead, robot),
+    ):
+        if start >= 0 and text.startswith(inserted, start):
             stem = text[:start] + text[start + len(inserted) :]
             there = affix(naming, kind, stem, namespaced)
             if there is not None and there.spell(stem, robot) == text:

@@ -60,7 +60,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="urdf-postfix",
         description="Rewrite a robot description for one robot or many, and prove nothing was missed.",
         epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+        formatter_class=_formatter,
         allow_abbrev=False,
     )
     add = parser.add_argument
@@ -90,6 +90,11 @@ def _parser() -> argparse.ArgumentParser:
     add("--quiet", action="store_true", help="no report, only findings")
     add("--version", action="version", version=f"%(prog)s {__version__}")
     return parser
+
+
+def _formatter(prog: str) -> argparse.HelpFormatter:
+    # A given width spares argparse the import of shutil at every start.
+    return argparse.RawDescriptionHelpFormatter(prog, width=96)
 
 
 def _run(options: argparse.Namespace) -> int:

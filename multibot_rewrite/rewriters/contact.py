@@ -16,6 +16,8 @@ from lxml import etree
 from multibot_rewrite.model import Claim
 
 Respell = Callable[[str, str], str]
+Links = dict[str, etree._Element]
+Lumped = dict[str, list[tuple[str, str]]]
 LUMP = "_fixed_joint_lump__"
 
 
@@ -41,21 +43,21 @@ def respell_collisions(
 
 def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:
     """Old made-up collision name -> new one, for every collision of the description."""
-    old = _names(root, lambda kind, name: name)
-    new = _names(root, respell)
-    return {old[key]: new[key] for key in old}
-
-
-def _names(root: etree._Element, spell: Respell) -> dict[tuple[str, int], str]:
     links = {link.get("name", ""): link for link in root.iterchildren("link")}
-    lumped = _lumped(root, spell)
+    lumped = _lumped(root)
     merged_away = {child for children in lumped.values() for _, child in children}
-    return {
-        key: name
-        for left in links
-        if left not in merged_away
-        for key, name in _named(spell("link", left), _merged(left, links, lumped), spell)
-    }
+    result = {}
+    for left in links:
+        if left not in merged_away:
+            old = _names(left, links, lumped, lambda kind, name: name)
+            new = _names(left, links, lumped, respell)
+            result.update({old[key]: new[key] for key in old})
+    return result
+
+
+def _names(left: str, links: Links, lumped: Lumped, spell: Respell) -> dict[tuple[str, int], str]:
+    """Name of each collision that ends in link ``left``, by link and index."""
+    return dict(_named(spell("link", left), _merged(left, links, lumped, spell), spell))
 
 
 def _named(
@@ -66,8 +68,8 @@ def _named(
         yield (link, place), name if name.startswith(left) else f"{left}{LUMP}{name}"
 
 
-def _lumped(root: etree._Element, spell: Respell) -> dict[str, list[tuple[str, str]]]:
-    """Parent link -> (joint as spelled, child link) of the fixed joints that are merged."""
+def _lumped(root: etree._Element) -> Lumped:
+    """Parent link -> (joint, child link) of the fixed joints that are merged."""
     kept = {
         block.get("reference")
         for block in root.iterchildren("gazebo")
@@ -76,17 +78,16 @@ def _lumped(root: etree._Element, spell: Respell) -> dict[str, list[tuple[str, s
     }
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):
-        name = joint.get("name", "")
-        parent, child = joint.find("parent"), joint.find("child")
-        if joint.get("type") != "fixed" or name in kept or parent is None or child is None:
+        if joint.get("type") != "fixed" or joint.get("name") in kept:
             continue
-        if parent.get("link") != "world":
-            lumped[parent.get("link", "")].append((spell("joint", name), child.get("link", "")))
+        parent, child = joint.find("parent"), joint.find("child")
+        if parent is not None and child is not None and parent.get("link") != "world":
+            lumped[parent.get("link", "")].append((joint.get("name", ""), child.get("link", "")))
     return lumped
 
 
 def _merged(
-    link: str, links: dict[str, etree._Element], lumped: dict[str, list[tuple[str, str]]]
+    link: str, links: Links, lumped: Lumped, spell: Respell
 ) -> list[tuple[str, int, str]]:
     """(link, index, own name) of all collisions ``link`` holds at the end.
 
@@ -102,5 +103,6 @@ def _merged(
         seen.add(name)
         found = links[name].iterchildren("collision")
         result += [(name, place, item.get("name", "")) for place, item in enumerate(found)]
-        waiting += [child for _, child in sorted(lumped.get(name, ()), reverse=True)]
+        below = sorted((spell("joint", joint), child) for joint, child in lumped.get(name, ()))
+        waiting += [child for _, child in reversed(below)]
     return result

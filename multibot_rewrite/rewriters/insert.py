@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from typing import NamedTuple
-from xml.sax.saxutils import escape, quoteattr
 
 from lxml import etree
 
 from multibot_rewrite.naming import NAMESPACE, Naming, affix
-from multibot_rewrite.rewriters.forms import Part
 from multibot_rewrite.rewriters.spelling import HOLE, Declared, resolve
 from multibot_rewrite.rosnames import expand, parse_remap
 from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
 
+_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 # Read from the plugin itself where it has no <ros>; a <ros> would hide them (gazebo_ros node.cpp).
 ROS_CHILDREN = ("namespace", "remapping", "argument", "parameter", "qos")
 
@@ -64,7 +63,7 @@ def _defaults(
         path = site.path.removeprefix(hidden)
         if _present(host, path):
             continue
-        kind = resolve(Part(0, default, site.kinds), "uses", declared)
+        kind = resolve(default, site.kinds, "uses", declared)
         there = affix(naming, kind, default, site.namespaced) if kind else None
         if there is not None:
             new = there.spell(default, HOLE)
@@ -80,7 +79,7 @@ def _present(host: etree._Element, path: str) -> bool:
 def _query(step: str) -> str:
     """The step as lxml's find takes it."""
     tag, attribute, value = split_step(step)
-    return f"{tag}[@{attribute}={quoteattr(value)}]" if attribute else tag
+    return f"{tag}[@{attribute}='{value}']" if attribute else tag
 
 
 def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -> Insertion:
@@ -93,10 +92,10 @@ def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -
         else:
             parent = child
     tag, key, value = split_step(steps[-1])
-    given = f" {key}={quoteattr(value)}" if key else ""
-    if attribute:
-        return Insertion(parent, wrap, f"<{tag}{given} {attribute}={quoteattr(new)}/>", kind, old, new)
-    return Insertion(parent, wrap, f"<{tag}{given}>{escape(new)}</{tag}>", kind, old, new)
+    given = f' {key}="{value}"' if key else ""
+    text = new.translate(_ESCAPES)
+    xml = f'<{tag}{given} {attribute}="{text}"/>' if attribute else f"<{tag}{given}>{text}</{tag}>"
+    return Insertion(parent, wrap, xml, kind, old, new)
 
 
 def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterator[Insertion]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, PREFIX, Affix, Naming, affix
-from multibot_rewrite.rewriters.forms import FORMS, Part
+from multibot_rewrite.rewriters.forms import FORMS
 
 HOLE = "\0"
 Declared = Mapping[str, Mapping[str, Claim]]
@@ -20,25 +20,25 @@ def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     if site.form == "prefix" and naming.affix != PREFIX:
         return ()
     result = []
-    for part in FORMS[site.form](claim.value, site.kinds):
-        kind = resolve(part, site.role, declared)
-        there = affix(naming, kind, part.text, site.namespaced) if kind else None
+    for at, text, kinds in FORMS[site.form](claim.value, site.kinds):
+        kind = resolve(text, kinds, site.role, declared)
+        there = affix(naming, kind, text, site.namespaced) if kind else None
         if there is not None:
-            result.append((kind, Affix(part.at + there.at, there.before, there.after)))
+            result.append((kind, there._replace(at=at + there.at) if at else there))
     return tuple(result)
 
 
-def resolve(part: Part, role: str, declared: Declared) -> str:
+def resolve(text: str, kinds: tuple[str, ...], role: str, declared: Declared) -> str:
     """Which of its kinds a name is; empty for a use of something that is not declared.
 
     A frame that names a link is spelled like the link, a leading slash aside.
     """
     if role == "declares":
-        return part.kinds[0]
-    for kind in part.kinds:
-        if kind in FRAME_KINDS and part.text.strip("/") in declared["link"]:
+        return kinds[0]
+    for kind in kinds:
+        if kind in FRAME_KINDS and text.strip("/") in declared["link"]:
             return "link"
-        if kind not in CLOSED_KINDS or part.text in declared[kind]:
+        if kind not in CLOSED_KINDS or text in declared[kind]:
             return kind
     return ""
 

@@ -20,14 +20,26 @@ if TYPE_CHECKING:
 class Node:
     """What is known about the elements at one place of the document.
 
-    ``select`` is set where the element itself decides which node serves it.
+    ``select`` is set where the element itself decides which node serves it. ``active`` are the
+    children worth a visit: those with more below them than values to keep.
     """
 
-    __slots__ = ("asked", "attributes", "children", "keeps", "rewriter", "select", "text", "values")
+    __slots__ = (
+        "active",
+        "asked",
+        "attributes",
+        "children",
+        "keeps",
+        "rewriter",
+        "select",
+        "text",
+        "values",
+    )
 
     def __init__(self, rewriter: Rewriter | None = None, sites: tuple[Site, ...] = ()) -> None:
         self.rewriter = rewriter
         self.children: dict[str, Node] = {}
+        self.active: dict[str, Node] = {}
         self.attributes: tuple[tuple[str, Site], ...] = ()
         self.text: Site | None = None
         self.keeps: dict[str, Site] = {}
@@ -41,7 +53,7 @@ class Node:
         steps, attribute = split_path(site.path)
         node = self
         for step in steps:
-            node = node._step(step)
+            node = node._step(step, site.role != "keep")
         if site.role == "keep":
             node.keeps[attribute] = site
         elif attribute:
@@ -49,9 +61,11 @@ class Node:
         else:
             node.text = site
 
-    def _step(self, step: str) -> Node:
+    def _step(self, step: str, active: bool) -> Node:
         tag, attribute, value = split_step(step)
         child = self.children.setdefault(tag, Node())
+        if active:
+            self.active[tag] = child
         if not attribute:
             return child
         child.asked, child.select = attribute, child._by_value
@@ -62,16 +76,22 @@ class Node:
 
 
 class Tree:
-    """The whole tree for one vocabulary: ``formats`` maps a document's root tag to its node."""
+    """The whole tree for one vocabulary.
+
+    ``formats`` maps a document's root tag to its node; ``tags`` are all tags worth a visit so far.
+    """
 
     def __init__(self, vocabulary: Vocabulary) -> None:
         self.vocabulary = vocabulary
         self.formats: dict[str, Node] = {}
+        self.tags: set[str] = set()
         self._chosen: dict[tuple[str, Rewriter], Node] = {}
         rewriters = vocabulary.rewriters("element")
         nodes = {name: Node(r, r.sites) for r in rewriters for name in r.names}
         for name, node in nodes.items():
             self._hang(name, node, nodes)
+        for node in nodes.values():
+            self._know(node)
 
     def _hang(self, name: str, node: Node, nodes: dict[str, Node]) -> None:
         rewriter = node.rewriter
@@ -84,9 +104,20 @@ class Tree:
         for parent in rewriter.at:
             if parent != "/" and parent not in nodes:
                 raise _wrong(rewriter, f"at: {parent}: there is no [element {parent}]")
-            children = self.formats if parent == "/" else nodes[parent].children
-            if children.setdefault(tag, node) is not node:
+            if parent == "/":
+                self.formats[tag] = node
+            elif nodes[parent].children.setdefault(tag, node) is not node:
                 raise _wrong(rewriter, f"{parent}/{tag} has a section or sites already")
+            else:
+                nodes[parent].active[tag] = node
+
+    def _know(self, node: Node) -> None:
+        waiting = [node]
+        while waiting:
+            for tag, child in waiting.pop().active.items():
+                if tag not in self.tags or child.rewriter is None:
+                    self.tags.add(tag)
+                    waiting += [child, *child.values.values()]
 
     def _selector(self, base: Node, type_: str) -> Callable[[_Element], Node]:
         keys = SELECTORS[type_]
@@ -105,9 +136,10 @@ class Tree:
         key = (base.rewriter.names[0], rewriter)
         if key not in self._chosen:
             node = Node(rewriter, base.rewriter.sites + rewriter.sites)
-            for tag, child in base.children.items():
-                node.children.setdefault(tag, child)
+            node.children = base.children | node.children
+            node.active = base.active | node.active
             self._chosen[key] = node
+            self._know(node)
         return self._chosen[key]
 
 

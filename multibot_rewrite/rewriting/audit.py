@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator
 
+from lxml import etree
+
 from multibot_rewrite.model import ERROR, WARNING, Claim, Finding
 from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, POSTFIX, PREFIX, Naming, affix, removal
 from multibot_rewrite.rewriters.forms import FORMS
 from multibot_rewrite.rewriters.spelling import resolve
 from multibot_rewrite.rewriters.tree import Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import XACRO, finding
+from multibot_rewrite.rewriting.document import Document, finding
 from multibot_rewrite.rewriting.inserted import markers
+
+_XACRO = etree.XPath("//*[contains(namespace-uri(), '/xacro')][1]")
 
 
 def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
@@ -33,15 +37,26 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
 def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
     """Elements and substitutions that only xacro understands."""
     document = inventory.document
+    source = document.source
     hint = "expand it first: give the file the name ….xacro, or run xacro"
-    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
-        tag = str(element.tag)
-        if XACRO in tag or "ros.org/xacro" in tag or tag.startswith("xacro:"):
-            yield finding(document, start, "MB105", ERROR, f"xacro element <{element.tag}>", hint)
-            return
-    at = next((at for at in (document.source.find(b"${"), document.source.find(b"$(arg")) if at > 0), -1)
-    if at > 0 and any("${" in claim.value or "$(arg" in claim.value for claim in inventory.claims):
-        yield finding(document, at, "MB105", ERROR, "xacro substitution left in the text", hint)
+    element = next(iter(_XACRO(document.root)), None) if _uses_xacro(document) else None
+    if element is not None:
+        start = document.starts[list(document.root.iter("*")).index(element)]
+        message = f"xacro element <{etree.QName(element).localname}>"
+        yield finding(document, start, "MB105", ERROR, message, hint)
+    elif b"${" in source or b"$(arg" in source:
+        for claim in inventory.claims:
+            if "${" in claim.value or "$(arg" in claim.value:
+                message = f"xacro substitution {claim.value!r}"
+                yield finding(document, claim.start, "MB105", ERROR, message, hint)
+                return
+
+
+def _uses_xacro(document: Document) -> bool:
+    """A cheap look before the search: is a prefix bound to xacro, and is it used?"""
+    spaces = document.root.nsmap.items()
+    prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
+    return any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
 
 
 def duplicates(inventory: Inventory) -> Iterator[Finding]:
@@ -70,7 +85,7 @@ def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             # Another model, or one nested in this, is no fault.
             if part.kinds == ("model",) or part.text in naming.shared_frames:
                 continue
-            if not resolve(part, site.role, declared):
+            if not resolve(part.text, part.kinds, site.role, declared):
                 yield _dangling(inventory, claim, part.text, part.kinds)
 
 
@@ -133,12 +148,15 @@ def leading_slashes(inventory: Inventory) -> Iterator[Finding]:
 
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
     """Plugins no section knows: what their parameters name can only be guessed."""
+    known = {}
     for host in inventory.hosts:
         rewriter = host.node.rewriter
         if rewriter is None or rewriter.type != "element" or rewriter.select != "plugin":
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
-        near = nearest(library_key(name), tree.vocabulary.names("plugin"))
+        if name not in known:
+            known[name] = nearest(library_key(name), tree.vocabulary.names("plugin"))
+        near = known[name]
         yield finding(
             inventory.document,
             host.start,

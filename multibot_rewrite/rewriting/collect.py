@@ -36,21 +36,24 @@ def collect(document: Document, tree: Tree) -> Inventory:
     walk = zip(document.root.iter("*"), document.starts, strict=True)
     root, _ = next(walk)
     node = _format(document, tree)
-    below: dict[etree._Element, dict[str, Node]] = {root: node.children}
+    nothing: dict[str, Node] = {}
+    below: dict[etree._Element, dict[str, Node]] = {root: node.active}
     _claim(claims, node, root, document.starts[0])
+    known = tree.tags
     for element, start in walk:
-        children = below.get(element.getparent())  # type: ignore[call-overload]
-        if children is None:
+        tag = element.tag
+        # Most elements hold numbers: one look decides that nothing anywhere asks for them.
+        if tag not in known:
             continue
-        found = children.get(element.tag)
+        found = below.get(element.getparent(), nothing).get(tag)  # type: ignore[arg-type]
         if found is None:
             continue
         if found.select is not None:
             found = found.select(element)
             if found.rewriter is not None:
                 hosts.append(Host(element, start, found))
-        if found.children:
-            below[element] = found.children
+        if found.active:
+            below[element] = found.active
         if found.attributes or found.text is not None:
             _claim(claims, found, element, start)
     return Inventory(document, claims, hosts, _declared(claims))

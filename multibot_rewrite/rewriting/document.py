@@ -8,6 +8,7 @@ back as the parsed value. What would make that unsafe (other encodings, DOCTYPE)
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import NamedTuple
 
 from lxml import etree
@@ -15,7 +16,10 @@ from lxml import etree
 from multibot_rewrite.model import Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
-XACRO = "http://www.ros.org/wiki/xacro"
+# Entities are never resolved, nothing is loaded: the input may come from anywhere.
+_PARSER = etree.XMLParser(
+    resolve_entities=False, no_network=True, load_dtd=False, collect_ids=False
+)
 _OPENING = re.compile(rb"<[A-Za-z_:\x80-\xff]")
 _SILENT = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
 _TAG = re.compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
@@ -43,10 +47,8 @@ class Document(NamedTuple):
 def read_document(source: bytes, file: str) -> Document:
     """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done."""
     _refuse_bytes(source, file)
-    # Entities are never resolved, nothing is loaded: the input may come from anywhere.
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
     try:
-        root = etree.fromstring(source, parser)
+        root = etree.fromstring(source, _PARSER)
     except etree.XMLSyntaxError as error:
         raise InputError(_syntax_message(error, file)) from None
     document = Document(source, file, root, _starts(source))
@@ -83,14 +85,14 @@ def _refuse_tree(document: Document) -> None:
 
 def _starts(source: bytes) -> list[int]:
     if b"<!--" in source or b"<![CDATA[" in source or b"<?" in source[1:]:
-        # Same length, so that every offset still holds.
+        # Blanks of the same length, so that every offset still holds.
         source = _SILENT.sub(lambda found: b" " * len(found[0]), source)
     return [found.start() for found in _OPENING.finditer(source)]
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
     """Where the value of an attribute stands, or None if it does not read back as ``value``."""
-    key = b" " + name.encode() + b'="'
+    key = _key(name)
     begin = source.find(key, start) + len(key)
     raw = value.encode()
     end = begin + len(raw)
@@ -104,6 +106,11 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
         return None
     begin, end = found.start(1) + 1, found.end(1) - 1
     return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
+
+
+@lru_cache(maxsize=64)
+def _key(name: str) -> bytes:
+    return b" " + name.encode() + b'="'
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:

@@ -28,7 +28,9 @@ def slot_values(root: etree._Element) -> Counter[str]:
     return values
 
 
-def find_mentions(inventory: Inventory, names: Collection[str], tree: Tree) -> list[Finding]:
+def find_mentions(
+    inventory: Inventory, values: Counter[str], names: Collection[str], tree: Tree
+) -> list[Finding]:
     """A warning for each unclaimed value that is one of ``names`` or holds one as a list item,
     path segment, scope or side of a remap rule. Values with a ``keep`` site are no mention."""
     if not names:
@@ -37,15 +39,15 @@ def find_mentions(inventory: Inventory, names: Collection[str], tree: Tree) -> l
     claimed = Counter(claim.value for claim in inventory.claims)
     suspects = {
         value
-        for value, count in slot_values(inventory.document.root).items()
+        for value, count in values.items()
         if count > claimed[value] and _mentioned(value, names)
     }
     if not suspects:
         return []
     return [
         _mention(inventory.document, *slot, names)
-        for slot in _unclaimed(inventory, tree)
-        if slot[3] in suspects
+        for slot in _unclaimed(inventory, suspects)
+        if not kept(slot[0], slot[2], tree)
     ]
 
 
@@ -58,18 +60,17 @@ def _mentioned(value: str, names: frozenset[str]) -> str:
 
 
 def _unclaimed(
-    inventory: Inventory, tree: Tree
+    inventory: Inventory, suspects: set[str]
 ) -> Iterator[tuple[etree._Element, int, str, str]]:
-    """(element, start, attribute or "", value) of every slot without a site, in order."""
+    """(element, start, attribute or "", value) of the suspect slots without a site, in order."""
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     document = inventory.document
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
-        slots = [*element.attrib.items(), ("", element.text or "")]
-        slots += [("", child.tail or "") for child in element]
+        slots = [*element.items(), ("", (element.text or "").strip())]
+        slots += [("", (child.tail or "").strip()) for child in element]
         for attribute, value in slots:
-            open_ = (start, attribute) not in claimed and value.strip()
-            if open_ and not kept(element, str(attribute), tree):
-                yield element, start, str(attribute), str(value).strip() if not attribute else str(value)
+            if value in suspects and (start, attribute) not in claimed:
+                yield element, start, attribute, value
 
 
 def kept(element: etree._Element, attribute: str, tree: Tree) -> Site | None:

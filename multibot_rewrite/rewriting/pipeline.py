@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ from multibot_rewrite.rewriting import audit
 from multibot_rewrite.rewriting.apply import cut, fill
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.rewriting.mentions import find_mentions
+from multibot_rewrite.rewriting.mentions import find_mentions, slot_values
 from multibot_rewrite.rewriting.plan import Plan, make_plan
 from multibot_rewrite.rewriting.strip import strip_edits
 from multibot_rewrite.rewriting.verify import verify
@@ -27,6 +28,7 @@ class Template(NamedTuple):
 
     inventory: Inventory
     plan: Plan
+    values: Counter[str]
     pieces: list[bytes]
     findings: list[Finding]
     naming: Naming
@@ -39,8 +41,10 @@ def prepare(source: bytes, file: str, naming: Naming, tree: Tree) -> Template:
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, naming, tree), *plan.findings]
     _stop_on_errors(findings)
-    findings += find_mentions(inventory, _renamed(inventory, plan), tree)
-    return Template(inventory, plan, cut(source, plan.edits), findings, naming, tree)
+    values = slot_values(inventory.document.root)
+    findings += find_mentions(inventory, values, _renamed(inventory, plan), tree)
+    pieces = cut(source, plan.edits)
+    return Template(inventory, plan, values, pieces, findings, naming, tree)
 
 
 def render(template: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
@@ -59,7 +63,8 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
     for number, robot in enumerate(robots):
         output = fill(template.pieces, robot)
         if number == 0:
-            verify(inventory, template.plan, output, robot, naming, template.tree)
+            _, plan, values, *_ = template
+            verify(inventory, plan, values, output, robot, naming, template.tree)
         yield output
 
 

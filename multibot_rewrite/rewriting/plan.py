@@ -41,7 +41,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     document, claims, hosts, declared = inventory
     collisions = respell_collisions(document.root, claims, respeller(naming))
     for claim, new in collisions:
-        slot = text_slot(document.source, claim.start, claim.value)
+        slot = claim_slot(document.source, claim)
         if slot is None:
             findings.append(_not_editable(inventory, claim))
         else:
@@ -69,13 +69,17 @@ def respeller(naming: Naming) -> Respell:
 
 
 def _spellings(inventory: Inventory, naming: Naming) -> list[Spelling]:
-    known: dict[tuple[int, str], Spelling] = {}
+    declared = inventory.declared
+    known: dict[tuple[object, str], Spelling] = {}
     result = []
     for claim in inventory.claims:
-        key = (id(claim.site), claim.value)
+        site, value = claim.site, claim.value
+        # A declared link or joint is spelled alike at every site; other values per site.
+        plain = site.plain
+        key = (plain if plain and value in declared[plain] else id(site), value)
         spelling = known.get(key)
         if spelling is None:
-            spelling = known[key] = spell(claim, inventory.declared, naming)
+            spelling = known[key] = spell(claim, declared, naming)
         result.append(spelling)
     return result
 
@@ -89,18 +93,22 @@ def _edits(
     for claim, spelling in zip(inventory.claims, spellings, strict=True):
         if not spelling:
             continue
-        _, _, start, attribute, value = claim
-        if attribute:
-            slot = attribute_slot(source, start, attribute, value)
-        else:
-            slot = text_slot(source, start, value)
+        slot = claim_slot(source, claim)
         for _, (at, before, after) in spelling:
-            place = value_place(source, slot, value, at) if slot else None
+            place = value_place(source, slot, claim.value, at) if slot else None
             if place is None:
                 findings.append(_not_editable(inventory, claim))
                 break
             edits.append(Edit(place, place, before.encode(), after.encode()))
     return edits, findings
+
+
+def claim_slot(source: bytes, claim: Claim) -> tuple[int, int] | None:
+    """Where the claimed value stands in the source; None if it does not read back."""
+    _, _, start, attribute, value = claim
+    if attribute:
+        return attribute_slot(source, start, attribute, value)
+    return text_slot(source, start, value)
 
 
 def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:

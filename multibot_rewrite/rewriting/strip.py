@@ -8,9 +8,8 @@ from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import FORMS
 from multibot_rewrite.rewriters.spelling import resolve
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import attribute_slot, text_slot
 from multibot_rewrite.rewriting.inserted import removals
-from multibot_rewrite.rewriting.plan import value_place
+from multibot_rewrite.rewriting.plan import claim_slot, value_place
 
 
 def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
@@ -18,15 +17,20 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     document = inventory.document
     edits = removals(document, robot)
     claims = outside(inventory.claims, edits)
+    known: dict[tuple[int, str], list[tuple[int, int]]] = {}
     for claim in claims:
-        edits += _claim_edits(inventory, claim, naming, robot)
+        key = (id(claim.site), claim.value)
+        if key not in known:
+            known[key] = _spans(inventory, claim, naming, robot)
+        if known[key]:
+            edits += _claim_edits(document.source, claim, known[key])
 
     def unspell(kind: str, name: str) -> str:
         span = removal(naming, robot, kind, name)
         return name[: span[0]] + name[span[1] :] if span else name
 
     for claim, old in respell_collisions(document.root, claims, unspell):
-        slot = text_slot(document.source, claim.start, claim.value)
+        slot = claim_slot(document.source, claim)
         if slot is not None:
             edits.append(Edit(*slot, old.encode(), None))
     return sorted(edits, key=lambda edit: edit.start)
@@ -40,22 +44,23 @@ def outside(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     return [c for c in claims if not any(start <= c.start < end for start, end in inside)]
 
 
-def _claim_edits(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> list[Edit]:
-    site, _, start, attribute, value = claim
+def _spans(
+    inventory: Inventory, claim: Claim, naming: Naming, robot: str
+) -> list[tuple[int, int]]:
+    """The parts of the claimed value that an affix put there."""
+    site = claim.site
     spans = []
-    for part in FORMS[site.form](value, site.kinds):
-        kind = resolve(part, site.role, inventory.declared)
-        span = removal(naming, robot, kind, part.text, site.namespaced) if kind else None
+    for at, text, kinds in FORMS[site.form](claim.value, site.kinds):
+        kind = resolve(text, kinds, site.role, inventory.declared)
+        span = removal(naming, robot, kind, text, site.namespaced) if kind else None
         if span is not None:
-            spans.append((part.at + span[0], part.at + span[1]))
-    if not spans:
-        return []
-    source = inventory.document.source
-    if attribute:
-        slot = attribute_slot(source, start, attribute, value)
-    else:
-        slot = text_slot(source, start, value)
+            spans.append((at + span[0], at + span[1]))
+    return spans
+
+
+def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:
+    slot = claim_slot(source, claim)
     if slot is None:
         return []
-    places = [(value_place(source, slot, value, a), value_place(source, slot, value, b)) for a, b in spans]
+    places = [[value_place(source, slot, claim.value, at) for at in span] for span in spans]
     return [Edit(a, b, b"", None) for a, b in places if a is not None and b is not None]

@@ -6,7 +6,7 @@ from collections import Counter
 
 from lxml import etree
 
-from multibot_rewrite.model import InputError, ProofError
+from multibot_rewrite.model import Claim, InputError, ProofError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.spelling import HOLE, respelled
 from multibot_rewrite.rewriters.tree import Tree
@@ -20,30 +20,43 @@ from multibot_rewrite.rewriting.strip import outside, strip_edits
 
 
 def verify(
-    inventory: Inventory, plan: Plan, output: bytes, robot: str, naming: Naming, tree: Tree
+    inventory: Inventory,
+    plan: Plan,
+    values: Counter[str],
+    output: bytes,
+    robot: str,
+    naming: Naming,
+    tree: Tree,
 ) -> None:
-    """Raise ProofError unless ``output`` is the input with its names respelled and nothing else."""
+    """Raise ProofError unless ``output`` is the input with its names respelled and nothing else.
+
+    ``values`` are the input's ``slot_values``.
+    """
     source, file = inventory.document.source, inventory.document.file
     try:
         result = collect(read_document(output, f"{file} for {robot}"), tree)
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
-    _same_graph(inventory, plan, result, robot)
-    _nothing_left(inventory, plan, result, robot)
+    expected = _expected(inventory, plan, robot)
+    inserted = removals(result.document, robot)
+    _same_graph(inventory, result, outside(result.claims, inserted), expected)
+    come = Counter(expected)
+    for item in plan.insertions:
+        come.update(slot_values(etree.fromstring(item.xml.replace(HOLE, robot))))
+    _nothing_left(inventory, values, slot_values(result.document.root), come)
     if b"".join(cut(output, invert(plan.edits, source, robot))) != source:
         raise ProofError(f"{file}: undoing the edits does not give the input back")
     if b"".join(cut(output, strip_edits(result, naming, robot))) != source:
         raise ProofError(f"{file}: stripping {robot} from the output does not give the input back")
 
 
-def _same_graph(inventory: Inventory, plan: Plan, result: Inventory, robot: str) -> None:
+def _same_graph(
+    inventory: Inventory, result: Inventory, found: list[Claim], expected: list[str]
+) -> None:
     """The same sites in the same order, each with the planned value, and as many symbols."""
     file = inventory.document.file
-    inserted = removals(result.document, robot)
-    found = outside(result.claims, inserted)
     if len(found) != len(inventory.claims):
         raise ProofError(f"{file}: {len(inventory.claims)} names went in, {len(found)} came out")
-    expected = _expected(inventory, plan, robot)
     for claim, new, value in zip(inventory.claims, found, expected, strict=True):
         if new.site is not claim.site or new.value != value:
             raise ProofError(f"{file}: {claim.value!r} became {new.value!r}, expected {value!r}")
@@ -65,17 +78,13 @@ def _expected(inventory: Inventory, plan: Plan, robot: str) -> list[str]:
     return values
 
 
-def _nothing_left(inventory: Inventory, plan: Plan, result: Inventory, robot: str) -> None:
-    """Each old name stands in the output as often as the plan leaves it, in claimed slots or not."""
-    gone: Counter[str] = Counter()
-    come: Counter[str] = Counter()
-    for claim, value in zip(inventory.claims, _expected(inventory, plan, robot), strict=True):
-        if value != claim.value:
-            gone[claim.value] += 1
-            come[value] += 1
-    for item in plan.insertions:
-        come.update(slot_values(etree.fromstring(item.xml.replace(HOLE, robot))))
-    before, after = slot_values(inventory.document.root), slot_values(result.document.root)
-    for name, count in gone.items():
-        if after[name] > before[name] - count + come[name]:
+def _nothing_left(
+    inventory: Inventory, before: Counter[str], after: Counter[str], come: Counter[str]
+) -> None:
+    """Each claimed value stands in the output as often as the plan says, claimed slots or not.
+
+    ``before`` and ``after`` count all slots, ``come`` the values the claims are to have.
+    """
+    for name, claimed in Counter(claim.value for claim in inventory.claims).items():
+        if after[name] > before[name] - claimed + come[name]:
             raise ProofError(f"{inventory.document.file}: the old name {name!r} is still there")

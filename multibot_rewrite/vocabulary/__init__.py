@@ -196,7 +196,8 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     kinds = tuple(word for word in rest if "=" not in word)
     _check_words(place, path, kinds, options)
     form, default = options.get("form", "whole"), options.get("default", "")
-    return Site(path, role, kinds, form, default, False, section, note.strip(), line)
+    plain = kinds[0] if form == "whole" and kinds in (("link",), ("joint",)) else ""
+    return Site(path, role, kinds, form, default, False, section, note.strip(), line, plain)
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
@@ -228,6 +229,9 @@ def split_step(step: str) -> tuple[str, str, str]:
 
 
 def _check_path(place: str, path: str) -> None:
+    if path.replace("/", "x").replace("_", "x").replace("@", "x", 1).isalnum() and path[-1] != "@":
+        if "//" not in path and path[0] != "/":
+            return
     steps, attribute = split_path(path)
     words = [word for step in steps for word in split_step(step) if word or "[" in step]
     tags = [split_step(step)[0] for step in steps]
