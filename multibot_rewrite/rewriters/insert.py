@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.naming import NAMESPACE, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
 from multibot_rewrite.rewriters.spelling import HOLE, Declared, resolve
 from multibot_rewrite.rosnames import expand, parse_remap
 from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
@@ -57,7 +57,7 @@ def _defaults(
     host: etree._Element, rewriter: Rewriter, declared: Declared, naming: Naming, hidden: str
 ) -> Iterator[Insertion]:
     for site in rewriter.sites:
-        default = site.default
+        default = _default(host, site.default, naming)
         if not default:
             continue
         path = site.path.removeprefix(hidden)
@@ -68,6 +68,16 @@ def _defaults(
         if there is not None:
             new = there.spell(default, HOLE)
             yield _insertion(host, path, kind, default, new)
+
+
+def _default(host: etree._Element, default: str, naming: Naming) -> str:
+    """The value in force where the site is absent: a literal, or made from another topic."""
+    sibling, derived, last = default.partition("/../")
+    if not derived:
+        return default
+    # Only a postfix stands in the segment that is replaced.
+    topic = host.findtext(sibling, "").strip() if naming.topics == POSTFIX else ""
+    return topic[: topic.rfind("/") + 1] + last if topic else ""
 
 
 def _present(host: etree._Element, path: str) -> bool:

@@ -172,9 +172,15 @@ def hardware_keys(element: _Element) -> list[str]:
     return [class_.strip()] if class_ else []
 
 
+def sensor_keys(element: _Element) -> list[str]:
+    """The type of a ``<sensor>``."""
+    return [element.get("type", "").strip()]
+
+
 SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
     "plugin": plugin_keys,
     "hardware": hardware_keys,
+    "sensor": sensor_keys,
 }
 
 

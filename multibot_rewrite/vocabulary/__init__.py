@@ -11,7 +11,8 @@ A file is a list of sections. The whole grammar:
 
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
 ``param[@name=mimic]``. After the kinds may stand ``form=NAME`` (where in the value the names are)
-and ``default=TEXT`` (the literal the consumer falls back to), then ``# a note``.
+and ``default=TEXT`` (the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
+with its last segment replaced), then ``# a note``.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from typing import NamedTuple
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
 
-TYPES = ("element", "plugin", "hardware", "block")
+TYPES = ("element", "plugin", "hardware", "sensor", "block")
 SETTINGS = ("at", "about", "source", "with", "select", "ros", "publishes", "subscribes", "serves", "insert")
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
