@@ -80,7 +80,7 @@ def rewrite_all(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics)
     _check_robots(robots)
     data, name = read_source(source, xacro_args or {})
-    template = pipeline.prepare(data, file or name, naming, _tree(tuple(vocabulary)))
+    template = pipeline.prepare(data, file or name, naming, builtin_tree(tuple(vocabulary)))
     texts = pipeline.render(template, robots, again)
     findings = tuple(template.findings)
     return (Rewrite(r, t, findings, template) for r, t in zip(robots, texts, strict=True))
@@ -98,7 +98,7 @@ def strip(
     data, name = read_source(source, {})
     check_robot_name(robot)
     chosen = naming or make_naming()
-    return pipeline.strip(data, file or name, robot, chosen, _tree(tuple(vocabulary)))
+    return pipeline.strip(data, file or name, robot, chosen, builtin_tree(tuple(vocabulary)))
 
 
 def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, str]:
@@ -129,11 +129,14 @@ def read_file(path: str) -> bytes:
 def _check_robots(robots: Sequence[str]) -> None:
     for robot in robots:
         check_robot_name(robot)
-    twice = sorted({robot for robot in robots if robots.count(robot) > 1})
-    if twice:
-        raise UsageError(f"robot name {twice[0]!r} is given twice; every robot needs its own")
+    seen: set[str] = set()
+    for robot in robots:
+        if robot in seen:
+            raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
+        seen.add(robot)
 
 
 @lru_cache(maxsize=8)
-def _tree(vocabulary: tuple[str, ...]) -> Tree:
+def builtin_tree(vocabulary: tuple[str, ...] = ()) -> Tree:
+    """The tree of the built-in vocabulary and the files named in ``vocabulary``; made once."""
     return Tree(load_vocabulary(vocabulary))

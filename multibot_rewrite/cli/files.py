@@ -12,48 +12,49 @@ from multibot_rewrite.model import UsageError
 def write_all(items: Iterable[tuple[str, bytes]]) -> None:
     """Write every (path, data) beside its target, then rename; on an error nothing is left behind.
 
-    An existing file keeps its mode bits. Raises UsageError with path, cause and remedy.
+    An existing file keeps its mode bits, a link stays a link. Raises UsageError with path, cause
+    and remedy.
     """
     staged: list[tuple[str, str]] = []
     try:
         for path, data in items:
-            target = os.path.realpath(path)
             try:
-                if not _write_special(target, data):
-                    staged.append((_stage(target, data), target))
+                staged += _stage(path, data)
             except OSError as error:
-                raise UsageError(f"{path}: cannot be written: {_reason(error, target)}") from None
+                raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
         while staged:
-            temporary, target = staged[-1]
-            os.replace(temporary, target)  # noqa: PTH105
+            os.replace(*staged[-1])  # noqa: PTH105
             staged.pop()
     finally:
         for temporary, _ in staged:
             os.unlink(temporary)  # noqa: PTH108
 
 
-def _write_special(target: str, data: bytes) -> bool:
-    """A device or pipe cannot be replaced, only written to; true if it was one."""
+def _stage(path: str, data: bytes) -> list[tuple[str, str]]:
+    """(temporary file, target), the data safely in the first; empty for a device or pipe, which is
+    written at once."""
     try:
-        mode = os.stat(target).st_mode  # noqa: PTH116
+        mode = os.lstat(path).st_mode
+        if stat.S_ISLNK(mode):
+            path = os.path.realpath(path)
+            mode = os.stat(path).st_mode  # noqa: PTH116
     except FileNotFoundError:
-        return False
-    if stat.S_ISDIR(mode):
-        raise IsADirectoryError(21, "it is a folder")
-    if stat.S_ISREG(mode):
-        return False
-    with open(target, "wb") as file:  # noqa: PTH123
-        file.write(data)
-    return True
+        mode = 0
+    if mode and not stat.S_ISREG(mode):
+        with open(path, "wb") as file:  # noqa: PTH123
+            file.write(data)
+        return []
+    folder, name = os.path.split(path)
+    temporary = os.path.join(folder, f".{name}.{os.getpid()}.tmp")  # noqa: PTH118
+    _write(temporary, data, stat.S_IMODE(mode))
+    return [(temporary, path)]
 
 
-def _stage(target: str, data: bytes) -> str:
-    folder, name = os.path.split(target)
-    temporary = f"{folder}/.{name}.{os.getpid()}.tmp"
+def _write(temporary: str, data: bytes, mode: int) -> None:
     handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     try:
-        if os.path.exists(target):  # noqa: PTH110
-            os.fchmod(handle, stat.S_IMODE(os.stat(target).st_mode))  # noqa: PTH116
+        if mode:
+            os.fchmod(handle, mode)
         view = memoryview(data)
         while view:
             view = view[os.write(handle, view) :]
@@ -63,11 +64,10 @@ def _stage(target: str, data: bytes) -> str:
         raise
     finally:
         os.close(handle)
-    return temporary
 
 
-def _reason(error: OSError, target: str) -> str:
-    folder = os.path.dirname(target)  # noqa: PTH120
+def _reason(error: OSError, path: str) -> str:
+    folder = os.path.dirname(path) or "."  # noqa: PTH120
     if not os.path.isdir(folder):  # noqa: PTH112
         return f"the folder {folder} does not exist, create it first"
     return f"{error.strerror or error}, choose another output"

@@ -14,6 +14,13 @@ Declared = Mapping[str, Mapping[str, Claim]]
 Spelling = tuple[tuple[str, Affix], ...]
 
 
+def spelling_key(claim: Claim, declared: Declared) -> tuple[object, str]:
+    """Claims of one key are spelled alike: a declared link or joint everywhere, others per site."""
+    site, value = claim.site, claim.value
+    plain = site.plain
+    return (plain if plain and value in declared[plain] else id(site)), value
+
+
 def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     """Kind and affix of every name in the claimed value; empty where it stays as it is."""
     site = claim.site

@@ -13,16 +13,15 @@ def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
     ``edits`` are in source order and do not overlap.
     """
     pieces = []
-    held = b""
+    held = []
     last = 0
     for start, end, before, after in edits:
-        if after is None:
-            held += source[last:start] + before
-        else:
-            pieces.append(held + source[last:start] + before)
-            held = after
+        held += (source[last:start], before)
+        if after is not None:
+            pieces.append(b"".join(held))
+            held = [after]
         last = end
-    pieces.append(held + source[last:])
+    pieces.append(b"".join(held) + source[last:])
     return pieces
 
 

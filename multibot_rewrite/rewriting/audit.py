@@ -196,17 +196,19 @@ def _ordered(naming: Naming, name: str) -> str:
     return there.spell(name, "r") if there else name
 
 
-def already_rewritten(inventory: Inventory, naming: Naming, robot: str) -> Finding | None:
-    """Refuse a document that carries the robot's affix on every name, or its marker."""
-    document = inventory.document
-    mark = next((mark for mark in markers(document) if mark.robot == robot), None)
-    declared = [(k, n) for k, names in inventory.declared.items() for n in names]
-    own = [(k, n) for k, n in declared if affix(naming, k, n) is not None]
-    spelled = own and all(removal(naming, robot, kind, name) for kind, name in own)
-    if mark is None and not spelled:
-        return None
-    message = f"the description is already rewritten for {robot}"
-    return finding(document, 0, "MB106", ERROR, message, "--again insists, --strip undoes")
+def already_rewritten(
+    inventory: Inventory, naming: Naming, robots: Iterable[str]
+) -> Iterator[Finding]:
+    """Refuse a document that carries a robot's affix on every name, or its marker."""
+    marked = {mark.robot for mark in markers(inventory.document)}
+    names = [(kind, name) for kind, found in inventory.declared.items() for name in found]
+    own = [(kind, name) for kind, name in names if affix(naming, kind, name) is not None]
+    for robot in robots:
+        spelled = own and all(removal(naming, robot, kind, name) for kind, name in own)
+        if spelled or robot in marked:
+            message = f"the description is already rewritten for {robot}"
+            hint = "--again insists, --strip undoes"
+            yield finding(inventory.document, 0, "MB106", ERROR, message, hint)
 
 
 def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> list[Finding]:

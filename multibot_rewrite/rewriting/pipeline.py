@@ -57,8 +57,7 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
     found = audit.collisions(inventory, naming, robots)
     found += audit.meeting(inventory, naming, overlap(naming, robots))
     if not again:
-        done = (audit.already_rewritten(inventory, naming, robot) for robot in robots)
-        found += [finding for finding in done if finding is not None]
+        found += audit.already_rewritten(inventory, naming, robots)
     _stop_on_errors(found)
     for number, robot in enumerate(robots):
         output = fill(template.pieces, robot)

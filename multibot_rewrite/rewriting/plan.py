@@ -12,7 +12,7 @@ from multibot_rewrite.model import ERROR, Claim, Edit, Finding
 from multibot_rewrite.naming import Naming, affix
 from multibot_rewrite.rewriters.contact import Respell, respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions
-from multibot_rewrite.rewriters.spelling import HOLE, Spelling, spell
+from multibot_rewrite.rewriters.spelling import HOLE, Spelling, spell, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import attribute_slot, finding, text_slot
 from multibot_rewrite.rewriting.inserted import hole_edits, insertion_edits
@@ -73,10 +73,7 @@ def _spellings(inventory: Inventory, naming: Naming) -> list[Spelling]:
     known: dict[tuple[object, str], Spelling] = {}
     result = []
     for claim in inventory.claims:
-        site, value = claim.site, claim.value
-        # A declared link or joint is spelled alike at every site; other values per site.
-        plain = site.plain
-        key = (plain if plain and value in declared[plain] else id(site), value)
+        key = spelling_key(claim, declared)
         spelling = known.get(key)
         if spelling is None:
             spelling = known[key] = spell(claim, declared, naming)

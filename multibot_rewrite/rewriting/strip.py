@@ -6,7 +6,7 @@ from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import FORMS
-from multibot_rewrite.rewriters.spelling import resolve
+from multibot_rewrite.rewriters.spelling import resolve, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.inserted import removals
 from multibot_rewrite.rewriting.plan import claim_slot, value_place
@@ -17,13 +17,14 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     document = inventory.document
     edits = removals(document, robot)
     claims = outside(inventory.claims, edits)
-    known: dict[tuple[int, str], list[tuple[int, int]]] = {}
+    known: dict[tuple[object, str], list[tuple[int, int]]] = {}
     for claim in claims:
-        key = (id(claim.site), claim.value)
-        if key not in known:
-            known[key] = _spans(inventory, claim, naming, robot)
-        if known[key]:
-            edits += _claim_edits(document.source, claim, known[key])
+        key = spelling_key(claim, inventory.declared)
+        spans = known.get(key)
+        if spans is None:
+            spans = known[key] = _spans(inventory, claim, naming, robot)
+        if spans:
+            edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
         span = removal(naming, robot, kind, name)
