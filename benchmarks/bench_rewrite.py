@@ -1,7 +1,7 @@
 """Measure the rewrite against its floor: ratios, all taken in pairs in one run.
 
-    python benchmarks/bench_rewrite.py            print the table
-    python benchmarks/bench_rewrite.py --write    and put it into docs/benchmark.md
+python benchmarks/bench_rewrite.py            print the table
+python benchmarks/bench_rewrite.py --write    and put it into docs/benchmark.md
 """
 
 from __future__ import annotations
@@ -195,7 +195,9 @@ def main() -> None:
     text = table(rows)
     print(text)
     if "--write" in sys.argv:
-        where = f"CPython {platform.python_version()}, lxml {etree.__version__}, {os.cpu_count()} cores"
+        where = (
+            f"CPython {platform.python_version()}, lxml {etree.__version__}, {os.cpu_count()} cores"
+        )
         how = "python benchmarks/bench_rewrite.py --write"
         PAGE.write_text(
             f"# Benchmark\n\nMade by `{how}` in one run: medians of pairwise ratios, lower is better."

@@ -109,7 +109,7 @@ def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, s
         return source.encode(), "<text>"
     path = os.fspath(source)
     if path.endswith(".xacro"):
-        from multibot_rewrite.xacro_source import expand  # noqa: PLC0415
+        from multibot_rewrite.xacro_source import expand
 
         return expand(path, xacro_args), path
     if xacro_args:
@@ -120,7 +120,7 @@ def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, s
 def read_file(path: str) -> bytes:
     """The bytes of a file; raises InputError with the reason."""
     try:
-        with open(path, "rb") as file:  # noqa: PTH123
+        with open(path, "rb") as file:
             return file.read()
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None

@@ -17,13 +17,13 @@ _HINTS = (
 
 def expand(path: str, arguments: Mapping[str, str]) -> bytes:
     """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason."""
-    if not os.path.isfile(path):  # noqa: PTH113
+    if not os.path.isfile(path):
         raise InputError(f"{path}: cannot be read: No such file or directory")
     import xacro
 
     try:
         document = xacro.process_file(path, mappings=dict(arguments))
-    except Exception as error:  # noqa: BLE001  (xacro runs the file's own Python expressions)
+    except Exception as error:  # xacro runs the file's own Python expressions
         raise InputError(_message(path, error)) from None
     text: str = document.toprettyxml(indent="  ")
     return text.encode()

@@ -23,11 +23,11 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
             except OSError as error:
                 raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
         while staged:
-            os.replace(*staged[-1])  # noqa: PTH105
+            os.replace(*staged[-1])
             staged.pop()
     finally:
         for temporary, _ in staged:
-            os.unlink(temporary)  # noqa: PTH108
+            os.unlink(temporary)
 
 
 def _stage(path: str, data: bytes) -> list[tuple[str, str]]:
@@ -37,15 +37,15 @@ def _stage(path: str, data: bytes) -> list[tuple[str, str]]:
         mode = os.lstat(path).st_mode
         if stat.S_ISLNK(mode):
             path = os.path.realpath(path)
-            mode = os.stat(path).st_mode  # noqa: PTH116
+            mode = os.stat(path).st_mode
     except FileNotFoundError:
         mode = 0
     if mode and not stat.S_ISREG(mode):
-        with open(path, "wb") as file:  # noqa: PTH123
+        with open(path, "wb") as file:
             file.write(data)
         return []
     folder, name = os.path.split(path)
-    temporary = os.path.join(folder, f".{name}.{os.getpid()}.tmp")  # noqa: PTH118
+    temporary = os.path.join(folder, f".{name}.{os.getpid()}.tmp")
     _write(temporary, data, stat.S_IMODE(mode))
     return [(temporary, path)]
 
@@ -60,14 +60,14 @@ def _write(temporary: str, data: bytes, mode: int) -> None:
             view = view[os.write(handle, view) :]
         os.fsync(handle)
     except BaseException:
-        os.unlink(temporary)  # noqa: PTH108
+        os.unlink(temporary)
         raise
     finally:
         os.close(handle)
 
 
 def _reason(error: OSError, path: str) -> str:
-    folder = os.path.dirname(path) or "."  # noqa: PTH120
-    if not os.path.isdir(folder):  # noqa: PTH112
+    folder = os.path.dirname(path) or "."
+    if not os.path.isdir(folder):
         return f"the folder {folder} does not exist, create it first"
     return f"{error.strerror or error}, choose another output"

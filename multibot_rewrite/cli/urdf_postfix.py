@@ -79,8 +79,18 @@ def _parser() -> argparse.ArgumentParser:
         metavar="KIND=SEP",
         help="defaults: " + " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items()),
     )
-    add("--shared-frames", default=",".join(SHARED_FRAMES), metavar="A,B", help="default: %(default)s")
-    add("--shared-topics", default=",".join(SHARED_TOPICS), metavar="A,B", help="default: %(default)s")
+    add(
+        "--shared-frames",
+        default=",".join(SHARED_FRAMES),
+        metavar="A,B",
+        help="default: %(default)s",
+    )
+    add(
+        "--shared-topics",
+        default=",".join(SHARED_TOPICS),
+        metavar="A,B",
+        help="default: %(default)s",
+    )
     add("--vocabulary", action="append", default=[], metavar="FILE", help="more vocabulary")
     add("--strip", action="store_true", help="undo a rewrite made with the same options")
     add("--again", action="store_true", help="rewrite although it was rewritten for this robot")
@@ -197,7 +207,9 @@ def _deliver(
     elif target:
         total = len(options.words)
         files = ((target.replace("{robot}", robot), data) for robot, data in results)
-        write_all([*more, *_watched(files, total)] if total < MANY else _watched((*more, *files), total))
+        write_all(
+            [*more, *_watched(files, total)] if total < MANY else _watched((*more, *files), total)
+        )
     else:
         write_all(more)
         for _, data in results:
@@ -252,7 +264,9 @@ def _summary(first: Rewrite, robots: list[str]) -> str:
         for kind, _ in spelling
     }
     counts = Counter(kind for kind, _ in names)
-    known = [f"{counts[kind]} {kind}{'s' * (counts[kind] > 1)}" for kind in SEPARATORS if counts[kind]]
+    known = [
+        f"{counts[kind]} {kind}{'s' * (counts[kind] > 1)}" for kind in SEPARATORS if counts[kind]
+    ]
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else f"{len(robots)} robots"
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"

@@ -86,9 +86,7 @@ def _lumped(root: etree._Element) -> Lumped:
     return lumped
 
 
-def _merged(
-    link: str, links: Links, lumped: Lumped, spell: Respell
-) -> list[tuple[str, int, str]]:
+def _merged(link: str, links: Links, lumped: Lumped, spell: Respell) -> list[tuple[str, int, str]]:
     """(link, index, own name) of all collisions ``link`` holds at the end.
 
     urdfdom sorts sibling joints by name, so the children come in the order of their new spelling.

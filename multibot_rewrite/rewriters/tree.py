@@ -195,7 +195,11 @@ def _flavour(found: list[Rewriter], element: _Element) -> Rewriter:
     tags = {child.tag for child in element}
 
     def known(rewriter: Rewriter) -> tuple[int, str]:
-        own = {split_step(split_path(site.path)[0][0])[0] for site in rewriter.sites if site.path[0] != "@"}
+        own = {
+            split_step(split_path(site.path)[0][0])[0]
+            for site in rewriter.sites
+            if site.path[0] != "@"
+        }
         return len(own & tags), rewriter.ros
 
     return max(found, key=known)

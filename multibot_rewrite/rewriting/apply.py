@@ -13,7 +13,7 @@ def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
     ``edits`` are in source order and do not overlap.
     """
     pieces = []
-    held = []
+    held: list[bytes] = []
     last = 0
     for start, end, before, after in edits:
         held += (source[last:start], before)

@@ -5,18 +5,22 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator
 
-from lxml import etree
-
 from multibot_rewrite.model import ERROR, WARNING, Claim, Finding
-from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, POSTFIX, PREFIX, Naming, affix, removal
+from multibot_rewrite.naming import (
+    CLOSED_KINDS,
+    FRAME_KINDS,
+    POSTFIX,
+    PREFIX,
+    Naming,
+    affix,
+    removal,
+)
 from multibot_rewrite.rewriters.forms import FORMS
 from multibot_rewrite.rewriters.spelling import resolve
 from multibot_rewrite.rewriters.tree import Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
 from multibot_rewrite.rewriting.inserted import markers
-
-_XACRO = etree.XPath("//*[contains(namespace-uri(), '/xacro')][1]")
 
 
 def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
@@ -39,10 +43,11 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
     document = inventory.document
     source = document.source
     hint = "expand it first: give the file the name ….xacro, or run xacro"
-    element = next(iter(_XACRO(document.root)), None) if _uses_xacro(document) else None
-    if element is not None:
-        start = document.starts[list(document.root.iter("*")).index(element)]
-        message = f"xacro element <{etree.QName(element).localname}>"
+    elements = document.root.iter("*") if _uses_xacro(document) else iter(())
+    tags = ((str(e.tag), start) for e, start in zip(elements, document.starts, strict=False))
+    tag, start = next(((tag, start) for tag, start in tags if "/xacro}" in tag), ("", 0))
+    if tag:
+        message = f"xacro element <{tag.rpartition('}')[2]}>"
         yield finding(document, start, "MB105", ERROR, message, hint)
     elif b"${" in source or b"$(arg" in source:
         for claim in inventory.claims:
@@ -89,13 +94,13 @@ def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                 yield _dangling(inventory, claim, part.text, part.kinds)
 
 
-def _dangling(
-    inventory: Inventory, claim: Claim, name: str, kinds: tuple[str, ...]
-) -> Finding:
+def _dangling(inventory: Inventory, claim: Claim, name: str, kinds: tuple[str, ...]) -> Finding:
     words = " or ".join(kinds)
     known = [known for kind in kinds for known in inventory.declared.get(kind, ())]
     near = nearest(name, known)
-    where = f"{claim.element.tag}@{claim.attribute}" if claim.attribute else f"<{claim.element.tag}>"
+    where = (
+        f"{claim.element.tag}@{claim.attribute}" if claim.attribute else f"<{claim.element.tag}>"
+    )
     return finding(
         inventory.document,
         claim.start,
@@ -121,7 +126,12 @@ def ambiguous(inventory: Inventory) -> Iterator[Finding]:
         if all(claim.value in inventory.declared[kind] for kind in claim.site.kinds):
             message = f"{claim.value!r} is both a link and a joint; it is taken for the link"
             yield finding(
-                inventory.document, claim.start, "MB203", WARNING, message, "SDF refuses such a pair"
+                inventory.document,
+                claim.start,
+                "MB203",
+                WARNING,
+                message,
+                "SDF refuses such a pair",
             )
 
 
@@ -131,7 +141,9 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
         return
     for claim in inventory.claims:
         if claim.site.form == "prefix":
-            message = f"{claim.value!r} is put in front of names in code, a postfix cannot reach them"
+            message = (
+                f"{claim.value!r} is put in front of names in code, a postfix cannot reach them"
+            )
             yield finding(
                 inventory.document, claim.start, "MB304", WARNING, message, "use --affix prefix"
             )
@@ -143,7 +155,9 @@ def leading_slashes(inventory: Inventory) -> Iterator[Finding]:
         kinds = claim.site.kinds
         if claim.site.form == "whole" and kinds[0] in FRAME_KINDS and claim.value[:1] == "/":
             message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
-            yield finding(inventory.document, claim.start, "MB301", WARNING, message, "drop the slash")
+            yield finding(
+                inventory.document, claim.start, "MB301", WARNING, message, "drop the slash"
+            )
 
 
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
@@ -233,7 +247,9 @@ def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
 def _collision(inventory: Inventory, kind: str, name: str, robot: str) -> Finding:
     claim = inventory.declared[kind][name]
     message = f"another {kind} becomes {name!r} for {robot}, which is there already"
-    return finding(inventory.document, claim.start, "MB302", ERROR, message, "choose another separator")
+    return finding(
+        inventory.document, claim.start, "MB302", ERROR, message, "choose another separator"
+    )
 
 
 def meeting(
@@ -266,7 +282,9 @@ def not_rewritten(inventory: Inventory, naming: Naming, robot: str) -> list[Find
             if renamed and removal(naming, robot, kind, name) is None:
                 message = f"{kind} {name!r} is not spelled for {robot}"
                 hint = "give --strip the robot and the options the file was made with"
-                found.append(finding(inventory.document, claim.start, "MB107", ERROR, message, hint))
+                found.append(
+                    finding(inventory.document, claim.start, "MB107", ERROR, message, hint)
+                )
     return found[:1]
 
 

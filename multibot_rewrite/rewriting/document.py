@@ -26,8 +26,8 @@ _TAG = re.compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
 _HINTS = (
     ("Excessive depth", "a robot description is never nested this deep"),
     ("XML or text declaration not at start", "delete what stands before <?xml ...?>"),
-    ("Namespace prefix", "declare it on the root element: xmlns:prefix=\"...\""),
-    ("Unsupported version", "write <?xml version=\"1.0\"?>"),
+    ("Namespace prefix", 'declare it on the root element: xmlns:prefix="..."'),
+    ("Unsupported version", 'write <?xml version="1.0"?>'),
     ("Document is empty", "the file holds no XML"),
     ("Start tag expected", "the file is not XML"),
     ("Premature end", "the file is cut short"),
@@ -80,7 +80,9 @@ def _refuse_tree(document: Document) -> None:
         raise InputError(f"{file}: DOCTYPE and entities are not accepted; expand them first")
     encoding = (info.encoding or "UTF-8").upper()
     if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
-        raise InputError(f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8")
+        raise InputError(
+            f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8"
+        )
 
 
 def _starts(source: bytes) -> list[int]:

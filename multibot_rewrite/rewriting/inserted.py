@@ -30,7 +30,7 @@ class Marker(NamedTuple):
 
     comment: etree._Element
     robot: str
-    count: int
+    elements: int
     expanded: bool
 
 
@@ -117,8 +117,8 @@ def removals(document: Document, robot: str) -> list[Edit]:
 def _removal(document: Document, marker: Marker, starts: dict[etree._Element, int]) -> Edit:
     source = document.source
     parent = marker.comment.getparent()
-    inserted = list(marker.comment.itersiblings("*"))[: marker.count]
-    if parent is None or len(inserted) != marker.count or not inserted:
+    inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
+    if parent is None or len(inserted) != marker.elements or not inserted:
         place = f"{document.file}:{marker.comment.sourceline}:1"
         raise InputError(f"{place}: the elements this marker counts were edited by hand")
     before = next(iter(marker.comment.itersiblings("*", preceding=True)), None)

@@ -66,7 +66,8 @@ def _unclaimed(
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     document = inventory.document
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
-        slots = [*element.items(), ("", (element.text or "").strip())]
+        slots = [(str(key), str(value)) for key, value in element.items()]
+        slots.append(("", (element.text or "").strip()))
         slots += [("", (child.tail or "").strip()) for child in element]
         for attribute, value in slots:
             if value in suspects and (start, attribute) not in claimed:

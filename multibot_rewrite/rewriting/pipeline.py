@@ -18,7 +18,6 @@ from multibot_rewrite.rewriting.plan import Plan, make_plan
 from multibot_rewrite.rewriting.strip import strip_edits
 from multibot_rewrite.rewriting.verify import verify
 
-
 # Kinds whose names are telling enough to be looked for where no site is.
 MENTIONED = ("link", "joint")
 

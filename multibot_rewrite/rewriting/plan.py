@@ -81,9 +81,7 @@ def _spellings(inventory: Inventory, naming: Naming) -> list[Spelling]:
     return result
 
 
-def _edits(
-    inventory: Inventory, spellings: list[Spelling]
-) -> tuple[list[Edit], list[Finding]]:
+def _edits(inventory: Inventory, spellings: list[Spelling]) -> tuple[list[Edit], list[Finding]]:
     source = inventory.document.source
     edits = []
     findings = []

@@ -45,9 +45,7 @@ def outside(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     return [c for c in claims if not any(start <= c.start < end for start, end in inside)]
 
 
-def _spans(
-    inventory: Inventory, claim: Claim, naming: Naming, robot: str
-) -> list[tuple[int, int]]:
+def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> list[tuple[int, int]]:
     """The parts of the claimed value that an affix put there."""
     site = claim.site
     spans = []

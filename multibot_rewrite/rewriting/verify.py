@@ -39,7 +39,8 @@ def verify(
         raise ProofError(f"the output does not parse: {error}") from None
     expected = _expected(inventory, plan, robot)
     inserted = removals(result.document, robot)
-    _same_graph(inventory, result, outside(result.claims, inserted), expected)
+    _same_names(inventory, outside(result.claims, inserted), expected)
+    _same_symbols(inventory, result, robot)
     come = Counter(expected)
     for item in plan.insertions:
         come.update(slot_values(etree.fromstring(item.xml.replace(HOLE, robot))))
@@ -50,18 +51,21 @@ def verify(
         raise ProofError(f"{file}: stripping {robot} from the output does not give the input back")
 
 
-def _same_graph(
-    inventory: Inventory, result: Inventory, found: list[Claim], expected: list[str]
-) -> None:
-    """The same sites in the same order, each with the planned value, and as many symbols."""
+def _same_names(inventory: Inventory, found: list[Claim], expected: list[str]) -> None:
+    """The same sites in the same order, each with the planned value."""
     file = inventory.document.file
     if len(found) != len(inventory.claims):
         raise ProofError(f"{file}: {len(inventory.claims)} names went in, {len(found)} came out")
     for claim, new, value in zip(inventory.claims, found, expected, strict=True):
         if new.site is not claim.site or new.value != value:
             raise ProofError(f"{file}: {claim.value!r} became {new.value!r}, expected {value!r}")
+
+
+def _same_symbols(inventory: Inventory, result: Inventory, robot: str) -> None:
+    """No two symbols became one: what was declared under so many names still is."""
     for kind, symbols in inventory.declared.items():
         if len(symbols) != len(result.declared[kind]):
+            file = inventory.document.file
             raise ProofError(f"{file}: two {kind}s have one name for {robot}")
 
 

@@ -27,11 +27,22 @@ from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
 
 TYPES = ("element", "plugin", "hardware", "sensor", "block")
-SETTINGS = ("at", "about", "source", "with", "select", "ros", "publishes", "subscribes", "serves", "insert")
+SETTINGS = (
+    "at",
+    "about",
+    "source",
+    "with",
+    "select",
+    "ros",
+    "publishes",
+    "subscribes",
+    "serves",
+    "insert",
+)
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
 FORMS = ("whole", "list", "scoped", "prefix", "remap", "argument", "collision")
-HERE = os.path.dirname(__file__)  # noqa: PTH120  (pathlib costs the command 3 ms of start)
+HERE = os.path.dirname(__file__)
 
 
 class Rewriter(NamedTuple):
@@ -46,6 +57,7 @@ class Rewriter(NamedTuple):
     names: tuple[str, ...]
     sites: tuple[Site, ...]
     at: tuple[str, ...]
+    blocks: tuple[str, ...]
     select: str
     ros: str
     publishes: tuple[str, ...]
@@ -106,7 +118,9 @@ class Vocabulary:
 
     def rewriters(self, *types: str) -> list[Rewriter]:
         """All rewriters of these types, parsed and checked, in file order."""
-        unique = {raw[:2]: raw for key, raws in self._raw.items() if key[0] in types for raw in raws}
+        unique = {
+            raw[:2]: raw for key, raws in self._raw.items() if key[0] in types for raw in raws
+        }
         return [self._parse(*raw) for raw in unique.values()]
 
     def _parse(self, file: str, line: int, chunk: str) -> Rewriter:
@@ -160,6 +174,7 @@ def _assemble(
         header[1:],
         own,
         tuple(settings.get("at", "").split()),
+        tuple(settings.get("with", "").split()),
         settings.get("select", ""),
         settings.get("ros", ""),
         tuple(settings.get("publishes", "").split()),
@@ -180,7 +195,9 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     value = " ".join(words[1:])
     allowed = {"ros": ("1", "2"), "insert": ("yes", "no")}.get(key)
     if not value or (allowed and value not in allowed):
-        raise VocabularyError(f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}")
+        raise VocabularyError(
+            f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
+        )
     settings[key] = f"{settings[key]} {value}" if key in settings else value
 
 
@@ -224,15 +241,16 @@ def split_path(path: str) -> tuple[list[str], str]:
 
 def split_step(step: str) -> tuple[str, str, str]:
     """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
-    tag, bracket, ask = step.partition("[@")
+    tag, _, ask = step.partition("[@")
     attribute, _, value = ask.rstrip("]").partition("=")
     return tag, attribute, value
 
 
 def _check_path(place: str, path: str) -> None:
-    if path.replace("/", "x").replace("_", "x").replace("@", "x", 1).isalnum() and path[-1] != "@":
-        if "//" not in path and path[0] != "/":
-            return
+    # Nearly every path is of this kind, and this is the start-up of the command.
+    simple = path.replace("/", "x").replace("_", "x").replace("@", "x", 1).isalnum()
+    if simple and path[-1] not in "@/" and path[0] != "/" and "//" not in path:
+        return
     steps, attribute = split_path(path)
     words = [word for step in steps for word in split_step(step) if word or "[" in step]
     tags = [split_step(step)[0] for step in steps]
@@ -248,7 +266,7 @@ def load_vocabulary(extra: tuple[str, ...] = ()) -> Vocabulary:
     Raises VocabularyError, naming file and line, when a section that is used has a mistake;
     ``check_vocabulary`` reads every section.
     """
-    builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))  # noqa: PTH208
+    builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
     texts = {name: _text(f"{HERE}/{name}") for name in builtin}
     texts |= {sys.intern(path): _text(path) for path in extra}
     return Vocabulary(texts)
@@ -256,7 +274,7 @@ def load_vocabulary(extra: tuple[str, ...] = ()) -> Vocabulary:
 
 def _text(path: str) -> str:
     try:
-        with open(path, encoding="utf-8") as file:  # noqa: PTH123
+        with open(path, encoding="utf-8") as file:
             return file.read()
     except (OSError, UnicodeDecodeError) as error:
         raise VocabularyError(f"{path}: cannot be read: {error}") from None

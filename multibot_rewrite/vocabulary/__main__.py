@@ -1,0 +1,66 @@
+"""Print the reference page of the vocabulary: ``python -m multibot_rewrite.vocabulary``."""
+
+from __future__ import annotations
+
+import sys
+from itertools import groupby
+
+from multibot_rewrite.vocabulary import Rewriter, check_vocabulary, load_vocabulary
+
+HEAD = """\
+# Vocabulary
+
+Everything the rewriters know, generated from `multibot_rewrite/vocabulary/*.vocab` by
+`python -m multibot_rewrite.vocabulary > docs/vocabulary.md`.
+
+`declares` and `uses` name kinds, tried in order until one resolves; `keep` values are never renamed.
+A default is inserted where the element is absent and the default would be the same for every robot.
+Topics under *only a remap moves* get a remap rule unless the file has one.
+"""
+
+
+def page() -> str:
+    """The whole page as Markdown."""
+    sections = check_vocabulary(load_vocabulary())
+    by_file = groupby(sorted(sections, key=lambda r: (r.file, r.line)), lambda r: r.file)
+    parts = [HEAD]
+    for file, rewriters in by_file:
+        parts.append(f"\n## {file}\n")
+        parts += [_section(rewriter) for rewriter in rewriters]
+    return "".join(parts)
+
+
+def _section(rewriter: Rewriter) -> str:
+    lines = [f"\n### {rewriter.name}\n"]
+    lines += [f"\n{text}\n" for text in (rewriter.about, _facts(rewriter)) if text]
+    own = [
+        site for site in rewriter.sites if site.section == f"{rewriter.type} {rewriter.names[0]}"
+    ]
+    if own:
+        lines.append("\n| where | what | default | note |\n|---|---|---|---|\n")
+        lines += [
+            f"| `{site.path}` | {site.role} {' '.join(site.kinds)}{_form(site.form)} "
+            f"| {site.default} | {site.note} |\n"
+            for site in own
+        ]
+    return "".join(lines)
+
+
+def _form(form: str) -> str:
+    return "" if form == "whole" else f" ({form})"
+
+
+def _facts(rewriter: Rewriter) -> str:
+    facts = {
+        "also called": " ".join(rewriter.names[1:]),
+        "in": " ".join(rewriter.at),
+        "with": " ".join(f"[block {name}]" for name in rewriter.blocks),
+        "only a remap moves": " ".join(rewriter.topics),
+        "source": rewriter.source,
+        "never inserted into": "" if rewriter.inserts else "it throws on unknown children",
+    }
+    return "; ".join(f"{what}: {text}" for what, text in facts.items() if text)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page())

@@ -1,0 +1,59 @@
+"""The pages say what the program does: generated ones are current, shown commands run."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.rewriting.pipeline import prepare
+from multibot_rewrite.vocabulary.__main__ import page
+
+ROOT = Path(__file__).parent.parent
+README = (ROOT / "README.md").read_text()
+COMMANDS = re.findall(r"^    (urdf-postfix fixtures.*)$", README, re.MULTILINE)
+
+
+def test_the_vocabulary_page_is_current() -> None:
+    assert (ROOT / "docs" / "vocabulary.md").read_text() == page()
+
+
+def test_the_readme_shows_commands() -> None:
+    assert len(COMMANDS) >= 3
+
+
+@pytest.mark.parametrize("line", COMMANDS)
+def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
+    words = shlex.split(line.replace("out/", f"{tmp_path}/"))
+    command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix", *words[1:]]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
+
+
+def test_the_readme_diff_is_what_the_command_prints() -> None:
+    shown = re.search(r"```diff\n(.*?)```", README, re.DOTALL)
+    assert shown is not None
+    command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix"]
+    arguments = ["fixtures/robots/rover.urdf", "robot1", "--diff"]
+    printed = subprocess.run(
+        command + arguments, cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    missing = [line for line in shown[1].splitlines() if line[:1] in "+-" and line not in printed]
+    assert missing == []
+
+
+def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    exec(compile(code, "README.md", "exec"), {})
+
+
+def test_every_finding_code_is_documented() -> None:
+    page_text = (ROOT / "docs" / "findings.md").read_text()
+    source = "".join(p.read_text() for p in (ROOT / "multibot_rewrite").rglob("*.py"))
+    assert set(re.findall(r'"(MB\d{3})"', source)) == set(re.findall(r"MB\d{3}", page_text))
+    assert prepare.__doc__
