@@ -26,6 +26,8 @@ Form = Callable[[str, tuple[str, ...]], tuple[Part, ...]]
 def whole(value: str, kinds: tuple[str, ...]) -> tuple[Part, ...]:
     """The value is one name, white space around it aside."""
     name = value.strip()
+    if name == value:
+        return (Part(0, name, kinds),) if name else ()
     return (Part(value.index(name), name, kinds),) if name else ()
 
 

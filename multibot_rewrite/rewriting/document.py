@@ -8,7 +8,6 @@ back as the parsed value. What would make that unsafe (other encodings, DOCTYPE)
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from typing import NamedTuple
 
 from lxml import etree
@@ -92,15 +91,21 @@ def _starts(source: bytes) -> list[int]:
     return [found.start() for found in _OPENING.finditer(source)]
 
 
-def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
-    """Where the value of an attribute stands, or None if it does not read back as ``value``."""
-    key = _key(name)
-    begin = source.find(key, start) + len(key)
-    raw = value.encode()
-    end = begin + len(raw)
+def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[int, int] | None:
+    """Where a value of the element at ``start`` stands: of an attribute, or its text if that is
+    empty. None if what stands there does not read back as ``value``."""
+    if not attribute:
+        return text_slot(source, start, value)
     # The common spelling, inside this tag; anything else takes the exact way.
-    if begin > len(key) and source.startswith(raw + b'"', begin) and source.find(b">", start) > end:
-        return begin, end
+    written = f' {attribute}="{value}"'.encode()
+    begin = source.find(written, start)
+    if begin < 0 or source.find(b">", start, begin) >= 0:
+        return attribute_slot(source, start, attribute, value)
+    return begin + len(attribute) + 3, begin + len(written) - 1
+
+
+def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
+    """Where the value of an attribute stands, however it is quoted, spaced and escaped."""
     tag = _TAG.match(source, start)
     pattern = rb"\s" + re.escape(name.encode()) + rb"\s*=\s*(\"[^\"]*\"|'[^']*')"
     found = re.compile(pattern).search(source, start, tag.end() if tag else start)
@@ -108,11 +113,6 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
         return None
     begin, end = found.start(1) + 1, found.end(1) - 1
     return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
-
-
-@lru_cache(maxsize=64)
-def _key(name: str) -> bytes:
-    return b" " + name.encode() + b'="'
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:

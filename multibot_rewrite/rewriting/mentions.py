@@ -11,7 +11,7 @@ from lxml import etree
 from multibot_rewrite.model import WARNING, Finding, Site
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import Document, attribute_slot, finding, text_slot
+from multibot_rewrite.rewriting.document import Document, finding, value_slot
 
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("//text()[normalize-space()]", smart_strings=False)
@@ -19,29 +19,25 @@ _BETWEEN = re.compile(r":=|::|[\s,;/]+")
 _NUMBERS = re.compile(r"[-+0-9.eE\s]*$")
 
 
-def slot_values(root: etree._Element) -> Counter[str]:
-    """How often each value stands in an attribute or text of the document."""
+def slot_values(root: etree._Element) -> list[str]:
+    """The value of every attribute and of every text that is more than white space."""
     texts: list[str] = _TEXTS(root)  # type: ignore[assignment]
     attributes: list[str] = _ATTRIBUTES(root)  # type: ignore[assignment]
-    values = Counter(attributes)
-    values.update([text.strip() for text in texts])
-    return values
+    return attributes + [text.strip() for text in texts]
 
 
 def find_mentions(
-    inventory: Inventory, values: Counter[str], names: Collection[str], tree: Tree
+    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
 ) -> list[Finding]:
     """A warning for each unclaimed value that is one of ``names`` or holds one as a list item,
     path segment, scope or side of a remap rule. Values with a ``keep`` site are no mention."""
     if not names:
         return []
     names = frozenset(names)
-    claimed = Counter(claim.value for claim in inventory.claims)
-    suspects = {
-        value
-        for value, count in values.items()
-        if count > claimed[value] and _mentioned(value, names)
-    }
+    telling = [value for value in set(values) if _mentioned(value, names)]
+    count = Counter(filter(frozenset(telling).__contains__, values))
+    claimed = Counter([claim.value for claim in inventory.claims])
+    suspects = {value for value in telling if count[value] > claimed[value]}
     if not suspects:
         return []
     return [
@@ -99,11 +95,7 @@ def _mention(
     value: str,
     names: frozenset[str],
 ) -> Finding:
-    slot = (
-        attribute_slot(document.source, start, attribute, value)
-        if attribute
-        else text_slot(document.source, start, value)
-    )
+    slot = value_slot(document.source, start, attribute, value)
     name = _mentioned(value, names)
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"

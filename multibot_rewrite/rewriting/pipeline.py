@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
@@ -27,7 +26,7 @@ class Template(NamedTuple):
 
     inventory: Inventory
     plan: Plan
-    values: Counter[str]
+    values: list[str]
     pieces: list[bytes]
     findings: list[Finding]
     naming: Naming

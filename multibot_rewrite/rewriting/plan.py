@@ -14,7 +14,7 @@ from multibot_rewrite.rewriters.contact import Respell, respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions
 from multibot_rewrite.rewriters.spelling import HOLE, Spelling, spell, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import attribute_slot, finding, text_slot
+from multibot_rewrite.rewriting.document import finding, value_slot
 from multibot_rewrite.rewriting.inserted import hole_edits, insertion_edits
 
 _START = itemgetter(0)
@@ -41,7 +41,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     document, claims, hosts, declared = inventory
     collisions = respell_collisions(document.root, claims, respeller(naming))
     for claim, new in collisions:
-        slot = claim_slot(document.source, claim)
+        slot = value_slot(document.source, *claim[2:])
         if slot is None:
             findings.append(_not_editable(inventory, claim))
         else:
@@ -88,7 +88,7 @@ def _edits(inventory: Inventory, spellings: list[Spelling]) -> tuple[list[Edit],
     for claim, spelling in zip(inventory.claims, spellings, strict=True):
         if not spelling:
             continue
-        slot = claim_slot(source, claim)
+        slot = value_slot(source, *claim[2:])
         for _, (at, before, after) in spelling:
             place = value_place(source, slot, claim.value, at) if slot else None
             if place is None:
@@ -98,21 +98,14 @@ def _edits(inventory: Inventory, spellings: list[Spelling]) -> tuple[list[Edit],
     return edits, findings
 
 
-def claim_slot(source: bytes, claim: Claim) -> tuple[int, int] | None:
-    """Where the claimed value stands in the source; None if it does not read back."""
-    _, _, start, attribute, value = claim
-    if attribute:
-        return attribute_slot(source, start, attribute, value)
-    return text_slot(source, start, value)
-
-
 def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
     """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
     begin, end = slot
-    if at == 0:
-        return begin
-    if at == len(value):
-        return end
+    # As many bytes as characters: nothing is escaped, each stands for itself.
+    if end - begin == len(value):
+        return begin + at
+    if at in (0, len(value)):
+        return end if at else begin
     head, whole = value[:at].encode(), value.encode()
     if len(whole) != end - begin:
         head, whole = head.replace(b"\n", b"\r\n"), whole.replace(b"\n", b"\r\n")

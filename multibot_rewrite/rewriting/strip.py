@@ -8,8 +8,9 @@ from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import FORMS
 from multibot_rewrite.rewriters.spelling import resolve, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.rewriting.document import value_slot
 from multibot_rewrite.rewriting.inserted import removals
-from multibot_rewrite.rewriting.plan import claim_slot, value_place
+from multibot_rewrite.rewriting.plan import value_place
 
 
 def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
@@ -31,7 +32,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
         return name[: span[0]] + name[span[1] :] if span else name
 
     for claim, old in respell_collisions(document.root, claims, unspell):
-        slot = claim_slot(document.source, claim)
+        slot = value_slot(document.source, *claim[2:])
         if slot is not None:
             edits.append(Edit(*slot, old.encode(), None))
     return sorted(edits, key=lambda edit: edit.start)
@@ -58,7 +59,7 @@ def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> li
 
 
 def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:
-    slot = claim_slot(source, claim)
+    slot = value_slot(source, *claim[2:])
     if slot is None:
         return []
     places = [[value_place(source, slot, claim.value, at) for at in span] for span in spans]

@@ -22,7 +22,7 @@ from multibot_rewrite.rewriting.strip import outside, strip_edits
 def verify(
     inventory: Inventory,
     plan: Plan,
-    values: Counter[str],
+    values: list[str],
     output: bytes,
     robot: str,
     naming: Naming,
@@ -83,12 +83,14 @@ def _expected(inventory: Inventory, plan: Plan, robot: str) -> list[str]:
 
 
 def _nothing_left(
-    inventory: Inventory, before: Counter[str], after: Counter[str], come: Counter[str]
+    inventory: Inventory, before: list[str], after: list[str], come: Counter[str]
 ) -> None:
     """Each claimed value stands in the output as often as the plan says, claimed slots or not.
 
-    ``before`` and ``after`` count all slots, ``come`` the values the claims are to have.
+    ``before`` and ``after`` are the values of all slots, ``come`` counts those the claims are to have.
     """
-    for name, claimed in Counter(claim.value for claim in inventory.claims).items():
-        if after[name] > before[name] - claimed + come[name]:
+    claimed = Counter([claim.value for claim in inventory.claims])
+    was = Counter(filter(claimed.__contains__, before))
+    for name, count in Counter(filter(claimed.__contains__, after)).items():
+        if count > was[name] - claimed[name] + come[name]:
             raise ProofError(f"{inventory.document.file}: the old name {name!r} is still there")
