@@ -1,0 +1,35 @@
+"""Shared set-up: repeatable property tests, and loud skips where test data is not there."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, settings
+from robots import CORPUS, WHEELS, corpus_files, wheel_files
+
+settings.register_profile(
+    "repeatable",
+    derandomize=True,
+    deadline=None,
+    suppress_health_check=[HealthCheck.too_slow],
+)
+settings.load_profile("repeatable")
+
+
+@pytest.fixture(scope="session")
+def corpus() -> dict[str, Path]:
+    """The real files beside the repository, by their relative path."""
+    files = corpus_files()
+    if not files:
+        pytest.skip(f"no corpus of real robot files: looked for {CORPUS / 'urdf'}/**/*.urdf")
+    return files
+
+
+@pytest.fixture(scope="session")
+def wheels() -> dict[str, Path]:
+    """The files of the installed description wheels, by distribution and path."""
+    files = wheel_files()
+    if not files:
+        pytest.skip(f"no description wheel installed: pip install {' '.join(WHEELS)}")
+    return files

@@ -1,0 +1,158 @@
+"""Every real file is rewritten and proved, or refused for a reason that is on record and true."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from lxml import etree
+from robots import (
+    FIXTURES,
+    ROBOT,
+    WHEELS,
+    changed_slots,
+    graph_problems,
+    is_insertion,
+    wheel_files,
+)
+
+from multibot_rewrite import MultibotError, ProofError, RewriteRefused, rewrite, rewrite_all, strip
+from multibot_rewrite.naming import make_naming
+
+REFUSALS = FIXTURES / "corpus_refusals.json"
+LEAST_CORPUS, LEAST_WHEELS, LEAST_WHEEL_FILES = 1000, 3, 60
+FLEET = tuple(f"r{number}" for number in range(1, 11))
+DEEP = (
+    {"layout": "L1"},
+    {"layout": "L2", "affix": "prefix"},
+    {"layout": "L3"},
+    {"layout": "L4", "affix": "prefix"},
+    {"layout": "L4", "topics": "namespace"},
+    {"layout": "L4", "topics": "prefix"},
+    {"layout": "L2", "topics": "postfix"},
+    {"separators": {"link": "_", "joint": "/"}},
+)
+# Rewritten as a whole from the tree, not by insertion.
+RECOMPUTED = ("collision",)
+
+
+class Outcome(NamedTuple):
+    """What became of one file: refused with ``reason``, or ``problem`` (empty: proved)."""
+
+    reason: str
+    problem: str
+
+
+def outcome(data: bytes, options: Mapping[str, object]) -> Outcome:
+    """Rewrite one file and look at the result with other eyes."""
+    try:
+        result = rewrite(data, ROBOT, **options)
+    except ProofError as error:
+        return Outcome("", str(error))
+    except MultibotError as error:
+        return Outcome(reason(error), "")
+    except Exception as error:
+        return Outcome("", f"{type(error).__name__}: {error}")
+    return Outcome("", "; ".join(problems(data, result.data, options)))
+
+
+def reason(error: MultibotError) -> str:
+    """Code or class of an error and its message, without file, line and hint."""
+    if not isinstance(error, RewriteRefused):
+        text = str(error).partition(";")[0]
+        return f"{type(error).__name__} {re.sub(r'^[^ ]*: |, line .*', '', text)}"
+    first = next(finding for finding in error.findings if finding.level == "error")
+    return f"{first.code} {first.message}"
+
+
+def problems(data: bytes, output: bytes, options: Mapping[str, object]) -> Iterator[str]:
+    """Whatever is wrong with a rewritten file."""
+    yield from graph_problems(data, output, options)
+    for slot, new in changed_slots(data, output):
+        if slot.tag not in RECOMPUTED and not is_insertion(slot.value, new):
+            yield f"{slot} became {new!r}"
+    naming = make_naming(**options)  # type: ignore[arg-type]
+    if strip(output, ROBOT, naming=naming) != data:
+        yield "strip does not give the input back"
+
+
+def survey(files: Mapping[str, Path], options: Mapping[str, object]) -> dict[str, str]:
+    """The refused files with the reason; fails where a result is wrong."""
+    outcomes = {name: outcome(path.read_bytes(), options) for name, path in files.items()}
+    wrong = [f"{name}: {found.problem}" for name, found in outcomes.items() if found.problem]
+    assert not wrong, f"{len(wrong)} of {len(files)} files:\n" + "\n".join(wrong[:20])
+    return {name: found.reason for name, found in outcomes.items() if found.reason}
+
+
+def on_record(part: str, files: Mapping[str, Path]) -> dict[str, str]:
+    """The committed refusals of the files that are here."""
+    table: dict[str, dict[str, str]] = json.loads(REFUSALS.read_text())
+    return {name: why for name, why in table[part].items() if name in files}
+
+
+def test_corpus(corpus: dict[str, Path]) -> None:
+    assert len(corpus) >= LEAST_CORPUS
+    assert survey(corpus, {}) == on_record("corpus", corpus)
+
+
+def test_no_record_of_a_file_that_is_not_there(corpus: dict[str, Path]) -> None:
+    assert json.loads(REFUSALS.read_text())["corpus"].keys() <= corpus.keys()
+
+
+def test_every_refusal_is_true(corpus: dict[str, Path]) -> None:
+    for name, why in on_record("corpus", corpus).items():
+        assert is_true(why, corpus[name].read_bytes()), f"{name}: {why}"
+
+
+def test_every_refusal_of_a_wheel_file_is_true(wheels: dict[str, Path]) -> None:
+    for name, why in on_record("wheels", wheels).items():
+        assert is_true(why, wheels[name].read_bytes()), f"{name}: {why}"
+
+
+def is_true(why: str, data: bytes) -> bool:
+    """The reason, seen by other means than the package's; False for a reason not known here."""
+    if found := re.fullmatch(r"MB105 xacro element <(\w+)>", why):
+        wanted = f"//*[contains(namespace-uri(), 'xacro') and local-name() = '{found[1]}']"
+        return bool(etree.fromstring(data).xpath(wanted))
+    if found := re.search(r"Namespace prefix (\w+) .* is not defined", why):
+        prefix = found[1].encode()
+        return prefix + b":" in data and b"xmlns:" + prefix not in data
+    return False
+
+
+@pytest.mark.parametrize("options", [{}, *DEEP[:2]], ids=str)
+def test_wheels(wheels: dict[str, Path], options: Mapping[str, object]) -> None:
+    assert survey(wheels, options) == on_record("wheels", wheels)
+
+
+def test_enough_wheels(wheels: dict[str, Path]) -> None:
+    here = {name.partition("/")[0] for name in wheels}
+    assert len(here) >= LEAST_WHEELS, f"only {sorted(here)}: pip install {' '.join(WHEELS)}"
+    assert len(wheels) >= LEAST_WHEEL_FILES
+    assert wheels == wheel_files()
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("options", DEEP, ids=str)
+def test_corpus_with_options(corpus: dict[str, Path], options: Mapping[str, object]) -> None:
+    assert survey(corpus, options) == on_record("corpus", corpus)
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("options", DEEP, ids=str)
+def test_wheels_with_options(wheels: dict[str, Path], options: Mapping[str, object]) -> None:
+    assert survey(wheels, options) == on_record("wheels", wheels)
+
+
+@pytest.mark.deep
+def test_a_fleet_of_every_file(corpus: dict[str, Path]) -> None:
+    refused = on_record("corpus", corpus)
+    for name, path in corpus.items():
+        if name not in refused:
+            data = path.read_bytes()
+            *_, last = rewrite_all(data, FLEET)
+            assert last.data == rewrite(data, FLEET[-1]).data, name
