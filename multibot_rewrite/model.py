@@ -41,7 +41,8 @@ class Site(NamedTuple):
     ``kinds`` are tried in order until one resolves. ``form`` says where inside the value the names
     are (see ``rewriters.forms``). ``default`` is the literal the consumer falls back to.
     ``namespaced`` is true where a ROS namespace reaches the value. ``plain`` is the kind where the
-    whole value is the name of a link or joint and of nothing else.
+    whole value is the name of a link or joint and of nothing else. ``when`` is ``sibling=text``
+    where only that sibling's text makes the value a name.
     """
 
     path: str
@@ -54,6 +55,7 @@ class Site(NamedTuple):
     note: str
     line: int
     plain: str = ""
+    when: str = ""
 
 
 class Claim(NamedTuple):

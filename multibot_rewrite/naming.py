@@ -33,6 +33,12 @@ SEPARATORS = {
     "service": "/",
     "namespace": "/",
 }
+# What a ROS 2 name can hold: a node name is one token, a topic a path of tokens.
+ROS_SEPARATORS = {
+    "node": ("_", "__"),
+    **dict.fromkeys(("stem", "topic", "subtopic", "service"), ("/", "_", "__")),
+    "namespace": ("/",),
+}
 FRAME_KINDS = frozenset({"link", "frame"})
 # A stem is a word topics are made of (camera_name); a subtopic stands below a stem or namespace.
 TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
@@ -134,8 +140,9 @@ def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
 def _separators(given: Mapping[str, str]) -> dict[str, str]:
     for kind, separator in given.items():
         _one_of("separator kind", kind, tuple(SEPARATORS))
-        if not separator or not set(separator) <= set("/_-.") or separator.startswith("//"):
-            raise UsageError(f"separator {kind}={separator!r}: use one of / _ - .")
+        allowed = ROS_SEPARATORS.get(kind, ("/", "_", "__", "-", "."))
+        if separator not in allowed:
+            raise UsageError(f"separator {kind}={separator!r}: use one of {' '.join(allowed)}")
     result = {**SEPARATORS, **given}
     # A frame names a link more often than not: they only differ where both were asked for.
     if "link" in given and "frame" not in given:
@@ -157,7 +164,7 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
     ``namespaced`` tells whether a ROS namespace reaches the value.
     """
     separator = naming.separators.get(kind)
-    if separator is None:
+    if separator is None or is_keyword(text):
         return None
     if kind in TOPIC_KINDS:
         below = kind == "subtopic" or (namespaced and naming.topics == NAMESPACE)
@@ -169,6 +176,11 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
     if not text or (kind in FRAME_KINDS and text.strip("/") in naming.shared_frames):
         return None
     return _name_affix(naming.affix, separator, text)
+
+
+def is_keyword(text: str) -> bool:
+    """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
+    return text.startswith("__") and text.endswith("__")
 
 
 def _name_affix(side: str, separator: str, text: str) -> Affix:

@@ -3,33 +3,72 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping
+from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriting.document import MAX_BYTES
 
+# What xacro says -> what to do about it; a {} is filled with the last word of the former.
 _HINTS = (
-    ("Undefined substitution argument", "give it as NAME:=VALUE"),
-    ("ament_index_python", "$(find ...) needs a sourced ROS 2, or ament_index_python"),
+    ("Undefined substitution argument", "give it as {}:=VALUE"),
+    ("No module named 'ament_index_python'", "$(find PACKAGE) needs a sourced ROS 2"),
+    ("No such file", "check the path"),
     ("package", "source the workspace that holds it"),
-    ("No such file", "check the include path"),
+    ("unknown macro name", "check its name and the <xacro:include> it comes from"),
+    ("Undefined parameters", "give the macro all its parameters"),
+    ("is not defined", "define it with <xacro:property> or <xacro:arg>"),
+    ("environment variable", "set it, or use $(optenv NAME DEFAULT)"),
+    ("recursion", "a macro or an include leads back to itself, or elements are nested too deep"),
+    ("codec can't decode", "save it as UTF-8"),
+    ("amplification", "entities are not accepted, write out what they stand for"),
+    ("unbound prefix", 'declare it: xmlns:xacro="http://www.ros.org/wiki/xacro"'),
+    ("not well-formed XML", "mend the XML and try again"),
 )
 
 
 def expand(path: str, arguments: Mapping[str, str]) -> bytes:
     """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason."""
-    if not os.path.isfile(path):
-        raise InputError(f"{path}: cannot be read: No such file or directory")
+    _check_file(path)
     import xacro
 
     try:
         document = xacro.process_file(path, mappings=dict(arguments))
+        text: str = document.toprettyxml(indent="  ")
     except Exception as error:  # xacro runs the file's own Python expressions
-        raise InputError(_message(path, error)) from None
-    text: str = document.toprettyxml(indent="  ")
+        inner = (xacro.filestack or [path])[-1]
+        raise InputError(_message(path, inner, error)) from None
     return text.encode()
 
 
-def _message(path: str, error: Exception) -> str:
-    reason = " ".join(str(error).split()) or type(error).__name__
+def _check_file(path: str) -> None:
+    try:
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    if size > MAX_BYTES:
+        limit = f"{MAX_BYTES // 2**20} MB"
+        raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
+
+
+def _message(path: str, inner: str, error: Exception) -> str:
+    """``inner`` is the file that failed: ``path`` or one it includes."""
+    reason = " ".join(_reason(error).split())
     hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
-    return f"{path}: xacro failed: {reason}; {hint}"
+    hint = hint.replace("{}", reason.split()[-1])
+    place = f":{error.lineno}:{error.offset + 1}" if isinstance(error, ExpatError) else ""
+    included = "" if inner == path else f" (included from {path})"
+    return f"{inner}{place}: xacro failed{included}: {reason}; {hint}"
+
+
+def _reason(error: Exception) -> str:
+    if isinstance(error, ExpatError):
+        return f"not well-formed XML: {errors.messages[error.code]}"
+    # xacro often says the same thing twice: in its own words and in those of the cause.
+    cause = getattr(error, "exc", None)
+    if cause is not None and getattr(error, "args", (None,))[0] is not None:
+        return _reason(cause)
+    text = re.sub(r"\[Errno \d+\] ", "", str(error))
+    return text or type(error).__name__

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 
 from multibot_rewrite.model import UsageError
 
@@ -15,39 +16,49 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
     An existing file keeps its mode bits, a link stays a link. Raises UsageError with path, cause
     and remedy.
     """
-    staged: list[tuple[str, str]] = []
+    staged: dict[str, str] = {}
     try:
         for path, data in items:
-            try:
-                staged += _stage(path, data)
-            except OSError as error:
-                raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
-        while staged:
-            os.replace(*staged[-1])
-            staged.pop()
+            with _explained(path):
+                _stage(path, data, staged)
+        for target, temporary in list(staged.items()):
+            with _explained(target):
+                os.replace(temporary, target)
+            del staged[target]
     finally:
-        for temporary, _ in staged:
-            os.unlink(temporary)
+        for temporary in staged.values():
+            with suppress(FileNotFoundError):
+                os.unlink(temporary)
 
 
-def _stage(path: str, data: bytes) -> list[tuple[str, str]]:
-    """(temporary file, target), the data safely in the first; empty for a device or pipe, which is
-    written at once."""
-    try:
-        mode = os.lstat(path).st_mode
-        if stat.S_ISLNK(mode):
-            path = os.path.realpath(path)
-            mode = os.stat(path).st_mode
-    except FileNotFoundError:
-        mode = 0
+def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
+    """Put the data safely beside its target and note that in ``staged`` (target -> temporary file);
+    a device or pipe is written at once."""
+    target, mode = _target(path)
     if mode and not stat.S_ISREG(mode):
         with open(path, "wb") as file:
             file.write(data)
-        return []
-    folder, name = os.path.split(path)
-    temporary = os.path.join(folder, f".{name}.{os.getpid()}.tmp")
+        return
+    if target in staged:
+        raise UsageError(f"{path}: two results would go to this one file, give each its own")
+    name = f".urdf-postfix.{os.getpid()}.{len(staged)}.tmp"
+    # Noted before it exists: an interrupt in between leaves nothing.
+    staged[target] = temporary = os.path.join(os.path.dirname(target), name)
     _write(temporary, data, stat.S_IMODE(mode))
-    return [(temporary, path)]
+
+
+def _target(path: str) -> tuple[str, int]:
+    """The file behind ``path``, links followed, and its mode; 0 where there is none yet."""
+    try:
+        mode = os.lstat(path).st_mode
+    except FileNotFoundError:
+        return path, 0
+    if not stat.S_ISLNK(mode):
+        return path, mode
+    try:
+        return os.path.realpath(path), os.stat(path).st_mode
+    except FileNotFoundError:
+        return os.path.realpath(path), 0
 
 
 def _write(temporary: str, data: bytes, mode: int) -> None:
@@ -59,15 +70,24 @@ def _write(temporary: str, data: bytes, mode: int) -> None:
         while view:
             view = view[os.write(handle, view) :]
         os.fsync(handle)
-    except BaseException:
-        os.unlink(temporary)
-        raise
     finally:
         os.close(handle)
 
 
+@contextmanager
+def _explained(path: str) -> Iterator[None]:
+    try:
+        yield
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
+
+
 def _reason(error: OSError, path: str) -> str:
     folder = os.path.dirname(path) or "."
-    if not os.path.isdir(folder):
+    if not os.path.exists(folder):
         return f"the folder {folder} does not exist, create it first"
+    if not os.path.isdir(folder):
+        return f"{folder} is a file, not a folder; choose another output"
+    if os.path.isdir(path):
+        return "it is a folder, name a file in it"
     return f"{error.strerror or error}, choose another output"

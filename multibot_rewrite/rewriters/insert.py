@@ -111,11 +111,10 @@ def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -
 def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterator[Insertion]:
     """A rule for each topic that only a remap can move, unless the file has one."""
     home = _ros_home(host)
-    rules = (
-        []
-        if home is None
-        else [parse_remap((e.text or "").strip()) for e in home.findall("remapping")]
+    texts = (
+        [] if home is None else [e.text or "" for e in home.iterchildren("remapping", "argument")]
     )
+    rules = [parse_remap(text.strip()) for text in texts]
     namespace = "" if home is None else (home.findtext("namespace") or "").strip()
     node = host.get("name", "")
     taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}

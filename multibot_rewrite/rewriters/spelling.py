@@ -6,12 +6,19 @@ from collections.abc import Mapping
 
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, PREFIX, Affix, Naming, affix
-from multibot_rewrite.rewriters.forms import FORMS
+from multibot_rewrite.rewriters.forms import FORMS, Part
 
 HOLE = "\0"
 Declared = Mapping[str, Mapping[str, Claim]]
 # Kind and affix of each renamed name in one value, in order; ``at`` counts from the value's start.
 Spelling = tuple[tuple[str, Affix], ...]
+
+
+def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
+    """The names in a claimed value; none where it stands in the scope of another model."""
+    parts = FORMS[claim.site.form](claim.value, claim.site.kinds)
+    elsewhere = len(parts) > 1 and claim.site.form == "scoped"
+    return () if elsewhere and parts[0].text not in declared["model"] else parts
 
 
 def spelling_key(claim: Claim, declared: Declared) -> tuple[object, str]:
@@ -27,7 +34,7 @@ def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     if site.form == "prefix" and naming.affix != PREFIX:
         return ()
     result = []
-    for at, text, kinds in FORMS[site.form](claim.value, site.kinds):
+    for at, text, kinds in names_in(claim, declared):
         kind = resolve(text, kinds, site.role, declared)
         there = affix(naming, kind, text, site.namespaced) if kind else None
         if there is not None:

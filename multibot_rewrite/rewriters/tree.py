@@ -54,9 +54,11 @@ class Node:
         node = self
         for step in steps:
             node = node._step(step, site.role != "keep")
-        if site.role == "keep":
+        if site.role == "keep" or site.when:
             node.keeps[attribute] = site
-        elif attribute:
+        if site.role == "keep":
+            return
+        if attribute:
             node.attributes = (*node.attributes, (attribute, site))
         else:
             node.text = site

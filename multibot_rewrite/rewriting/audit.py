@@ -11,16 +11,18 @@ from multibot_rewrite.naming import (
     FRAME_KINDS,
     POSTFIX,
     PREFIX,
+    TF_TOPICS,
     Naming,
     affix,
+    is_keyword,
     removal,
 )
-from multibot_rewrite.rewriters.forms import FORMS
-from multibot_rewrite.rewriters.spelling import resolve
+from multibot_rewrite.rewriters.spelling import names_in, resolve
 from multibot_rewrite.rewriters.tree import Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
 from multibot_rewrite.rewriting.inserted import markers
+from multibot_rewrite.rosnames import parse_remap
 
 
 def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
@@ -31,7 +33,8 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
         *dangling(inventory, naming),
         *ambiguous(inventory),
         *prefix_only(inventory, naming),
-        *leading_slashes(inventory),
+        *leading_slashes(inventory, naming),
+        *moved_tf(inventory, naming),
         *unknown_plugins(inventory, tree),
         *reordered(inventory, naming),
     ]
@@ -86,9 +89,8 @@ def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             continue
         if any(claim.value in declared[kind] for kind in site.kinds):
             continue
-        for part in FORMS[site.form](claim.value, site.kinds):
-            # Another model, or one nested in this, is no fault.
-            if part.kinds == ("model",) or part.text in naming.shared_frames:
+        for part in names_in(claim, declared):
+            if part.text in naming.shared_frames or is_keyword(part.text):
                 continue
             if not resolve(part.text, part.kinds, site.role, declared):
                 yield _dangling(inventory, claim, part.text, part.kinds)
@@ -149,15 +151,27 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             )
 
 
-def leading_slashes(inventory: Inventory) -> Iterator[Finding]:
+def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
     """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
     for claim in inventory.claims:
         kinds = claim.site.kinds
-        if claim.site.form == "whole" and kinds[0] in FRAME_KINDS and claim.value[:1] == "/":
+        if claim.site.form != "whole" or kinds[0] not in FRAME_KINDS:
+            continue
+        if claim.value[:1] == "/" and claim.value[1:] not in naming.shared_frames:
             message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
             yield finding(
                 inventory.document, claim.start, "MB301", WARNING, message, "drop the slash"
             )
+
+
+def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """A rule of the file that takes a plugin off the one /tf which the layout wants."""
+    for claim in inventory.claims if not naming.layout.tf_per_robot else ():
+        rule = parse_remap(claim.value) if claim.site.form == "remap" else None
+        if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
+            message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
+            hint = "drop the rule, or use --layout both"
+            yield finding(inventory.document, claim.start, "MB305", WARNING, message, hint)
 
 
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:

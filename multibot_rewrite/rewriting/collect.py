@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.model import Claim, InputError
+from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import CLOSED_KINDS
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.document import Document
@@ -73,8 +73,16 @@ def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int)
         value = element.get(attribute)
         if value is not None:
             claims.append(Claim(site, element, start, attribute, value))
-    if node.text is not None and element.text:
+    if node.text is not None and element.text and _applies(node.text, element):
         claims.append(Claim(node.text, element, start, "", element.text.strip()))
+
+
+def _applies(site: Site, element: etree._Element) -> bool:
+    if not site.when:
+        return True
+    sibling, _, text = site.when.partition("=")
+    parent = element.getparent()
+    return parent is not None and parent.findtext(sibling, "").strip() == text
 
 
 def _declared(claims: list[Claim]) -> dict[str, dict[str, Claim]]:

@@ -104,12 +104,14 @@ def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> in
     # As many bytes as characters: nothing is escaped, each stands for itself.
     if end - begin == len(value):
         return begin + at
-    if at in (0, len(value)):
-        return end if at else begin
-    head, whole = value[:at].encode(), value.encode()
-    if len(whole) != end - begin:
-        head, whole = head.replace(b"\n", b"\r\n"), whole.replace(b"\n", b"\r\n")
-    return begin + len(head) if source[begin:end] == whole else None
+    raw = source[begin:end]
+    head, tail = value[:at].encode(), value[at:].encode()
+    if raw.endswith(tail) and b";" not in tail:
+        return end - len(tail)
+    for written in (head, head.replace(b"\n", b"\r\n")):
+        if raw.startswith(written):
+            return begin + len(written)
+    return None
 
 
 def _not_editable(inventory: Inventory, claim: Claim) -> Finding:

@@ -5,8 +5,7 @@ from __future__ import annotations
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
-from multibot_rewrite.rewriters.forms import FORMS
-from multibot_rewrite.rewriters.spelling import resolve, spelling_key
+from multibot_rewrite.rewriters.spelling import names_in, resolve, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import value_slot
 from multibot_rewrite.rewriting.inserted import removals
@@ -50,7 +49,7 @@ def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> li
     """The parts of the claimed value that an affix put there."""
     site = claim.site
     spans = []
-    for at, text, kinds in FORMS[site.form](claim.value, site.kinds):
+    for at, text, kinds in names_in(claim, inventory.declared):
         kind = resolve(text, kinds, site.role, inventory.declared)
         span = removal(naming, robot, kind, text, site.namespaced) if kind else None
         if span is not None:

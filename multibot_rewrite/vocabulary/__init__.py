@@ -12,7 +12,8 @@ A file is a list of sections. The whole grammar:
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
 ``param[@name=mimic]``. After the kinds may stand ``form=NAME`` (where in the value the names are)
 and ``default=TEXT`` (the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
-with its last segment replaced), then ``# a note``.
+with its last segment replaced) and ``when=SIBLING=TEXT`` (else it is no name of ours), then
+``# a note``.
 """
 
 from __future__ import annotations
@@ -41,6 +42,7 @@ SETTINGS = (
 )
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
+OPTIONS = ("form", "default", "when")
 FORMS = ("whole", "list", "scoped", "prefix", "remap", "argument", "collision")
 HERE = os.path.dirname(__file__)
 
@@ -215,14 +217,15 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     _check_words(place, path, kinds, options)
     form, default = options.get("form", "whole"), options.get("default", "")
     plain = kinds[0] if form == "whole" and kinds in (("link",), ("joint",)) else ""
-    return Site(path, role, kinds, form, default, False, section, note.strip(), line, plain)
+    when = options.get("when", "")
+    return Site(path, role, kinds, form, default, False, section, note.strip(), line, plain, when)
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
     kinds = list(kinds)
     if not kinds:
         raise VocabularyError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")
-    checks = ((kinds, KINDS, "kind"), (options, ("form", "default"), "option"))
+    checks = ((kinds, KINDS, "kind"), (options, OPTIONS, "option"))
     for words, allowed, what in (*checks, ([options.get("form", "whole")], FORMS, "form")):
         for word in words:
             if word not in allowed:
