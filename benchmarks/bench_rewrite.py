@@ -143,8 +143,8 @@ def fleet(source: bytes) -> list[Row]:
 
 
 def growth() -> Row:
-    """Cost per byte of a 2,000-link robot against a 100-link one."""
-    small, large = robot(100), robot(2000)
+    """Cost per byte of a 1,000-link robot against a 50-link one."""
+    small, large = robot(50), robot(1000)
     ratio = paired(lambda: proved(large), lambda: proved(small), 5) / (len(large) / len(small))
     return Row(f"cost per byte at {len(large) / 1e6:.1f} MB", "at 0.1 MB", ratio, "1 is linear")
 
@@ -189,8 +189,8 @@ def table(rows: list[Row]) -> str:
 
 def main() -> None:
     """Run everything, print the table, write it where asked."""
-    medium = robot(85)
-    rows = [*in_process(medium, f"{len(medium) / 1000:.0f} kB"), *in_process(robot(2000), "2.4 MB")]
+    medium = robot(50)
+    rows = [*in_process(medium, f"{len(medium) / 1000:.0f} kB"), *in_process(robot(1000), "2 MB")]
     rows += [*fleet(medium), growth(), *command(medium)]
     text = table(rows)
     print(text)

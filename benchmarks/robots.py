@@ -9,12 +9,24 @@ LINK = """
       <mass value="0.5"/>
       <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.03"/>
     </inertial>
+    <!-- the shell, and a box for what stands on it -->
     <visual>
+      <origin xyz="0.012 -0.003 0.1405" rpy="0 0 1.5707963"/>
       <geometry><mesh filename="package://rover_description/meshes/part_{n}.stl"/></geometry>
       <material name="grey"/>
     </visual>
+    <visual>
+      <origin xyz="0.012 0.144 0.0725" rpy="3.1415926 0 0"/>
+      <geometry><box size="0.25 0.125 0.0625"/></geometry>
+      <material name="orange"><color rgba="1.0 0.5 0.0 1.0"/></material>
+    </visual>
     <collision>
+      <origin xyz="0.012 -0.003 0.1405" rpy="0 0 1.5707963"/>
       <geometry><cylinder radius="0.05" length="0.2"/></geometry>
+    </collision>
+    <collision>
+      <origin xyz="0.012 0.144 0.0725" rpy="3.1415926 0 0"/>
+      <geometry><box size="0.25 0.125 0.0625"/></geometry>
     </collision>
   </link>
   <gazebo reference="link_{n}"><mu1>0.9</mu1></gazebo>
@@ -44,7 +56,8 @@ PLUGIN = """  <gazebo reference="link_{n}">
 
 
 def robot(links: int) -> bytes:
-    """A URDF with that many links, about 1.2 kB each."""
+    """A URDF with that many links, about 2 kB each; as many names per kB (4.5) as the median of a
+    thousand public files."""
     parts = ['<?xml version="1.0"?>\n<!-- made for measuring -->\n<robot name="rover">']
     for n in range(links):
         parts.append(LINK.format(n=n))

@@ -10,7 +10,7 @@ from xml.parsers.expat import ExpatError, errors
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriting.document import MAX_BYTES
 
-# What xacro says -> what to do about it; a {} is filled with the last word of the former.
+# What xacro says -> what to do about it; {} stands for the argument that is missing.
 _HINTS = (
     ("Undefined substitution argument", "give it as {}:=VALUE"),
     ("No module named 'ament_index_python'", "$(find PACKAGE) needs a sourced ROS 2"),
@@ -57,18 +57,19 @@ def _message(path: str, inner: str, error: Exception) -> str:
     """``inner`` is the file that failed: ``path`` or one it includes."""
     reason = " ".join(_reason(error).split())
     hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
-    hint = hint.replace("{}", reason.split()[-1])
+    argument = reason.partition(" argument ")[2].partition(" ")[0]
     place = f":{error.lineno}:{error.offset + 1}" if isinstance(error, ExpatError) else ""
     included = "" if inner == path else f" (included from {path})"
-    return f"{inner}{place}: xacro failed{included}: {reason}; {hint}"
+    return f"{inner}{place}: xacro failed{included}: {reason}; {hint.replace('{}', argument)}"
 
 
 def _reason(error: Exception) -> str:
     if isinstance(error, ExpatError):
         return f"not well-formed XML: {errors.messages[error.code]}"
-    # xacro often says the same thing twice: in its own words and in those of the cause.
-    cause = getattr(error, "exc", None)
-    if cause is not None and getattr(error, "args", (None,))[0] is not None:
-        return _reason(cause)
-    text = re.sub(r"\[Errno \d+\] ", "", str(error))
+    text = str(error).partition(" [Errno")[0]
+    text = re.sub(r"^\[Errno \d+\] ", "", text)
+    # xacro may say it twice: in its own words and in those of the cause.
+    cause = str(getattr(error, "exc", None) or "")
+    if cause and text.endswith(f"{cause} {cause}"):
+        text = cause
     return text or type(error).__name__

@@ -31,7 +31,9 @@ def robot(links: Sequence[Link], more: str = "") -> str:
     text = '<robot name="r">'
     for link in links:
         named = [f' name="{name}"' if name else "" for name in link.collisions]
-        text += f'<link name="{link.name}">' + "".join(f"<collision{n}/>" for n in named) + "</link>"
+        text += (
+            f'<link name="{link.name}">' + "".join(f"<collision{n}/>" for n in named) + "</link>"
+        )
         if link.parent:
             text += f'<joint name="{link.joint or link.name + "_joint"}" type="fixed">'
             text += f'<parent link="{link.parent}"/><child link="{link.name}"/></joint>'
@@ -45,7 +47,9 @@ def contact(collision: str) -> str:
     )
 
 
-def names(links: Sequence[Link], more: str = "", respell: Respell = lambda _, name: name) -> list[str]:
+def names(
+    links: Sequence[Link], more: str = "", respell: Respell = lambda _, name: name
+) -> list[str]:
     """The made-up names, in document order of the collisions."""
     return list(collision_map(etree.fromstring(robot(links, more)), respell).values())
 
@@ -88,9 +92,7 @@ CASES = [
         "r1_base_fixed_joint_lump__base_col_collision",
         id="named-like-the-link",
     ),
-    pytest.param(
-        [BASE], "base_collision", "base_r1_collision", "r1_base_collision", id="alone"
-    ),
+    pytest.param([BASE], "base_collision", "base_r1_collision", "r1_base_collision", id="alone"),
     pytest.param(
         [Link("base", ["", ""])],
         "base_collision_1",
@@ -152,7 +154,9 @@ def test_a_joint_that_is_kept_lumps_nothing(tag: str, value: str) -> None:
 
 @pytest.mark.parametrize("value", ["false", "0", "no", ""])
 def test_a_joint_that_is_not_kept_lumps(value: str) -> None:
-    block = f'<gazebo reference="lidar_joint"><preserveFixedJoint>{value}</preserveFixedJoint></gazebo>'
+    block = (
+        f'<gazebo reference="lidar_joint"><preserveFixedJoint>{value}</preserveFixedJoint></gazebo>'
+    )
     assert names([BASE, Link("lidar", parent="base")], block)[-1].startswith("base_fixed")
 
 

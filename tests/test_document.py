@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import time
+from pathlib import Path
 
 import pytest
 
@@ -85,6 +86,22 @@ def test_bad_input_is_one_line_with_a_remedy(source: bytes, words: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "doctype",
+    [
+        pytest.param('<!DOCTYPE robot SYSTEM "{}">', id="system"),
+        pytest.param('<!DOCTYPE robot PUBLIC "-//X" "{}">', id="public"),
+        pytest.param('<!DOCTYPE robot [<!ENTITY % e SYSTEM "{}"> %e;]>', id="parameter-entity"),
+    ],
+)
+def test_a_doctype_loads_no_file(tmp_path: Path, doctype: str) -> None:
+    """What the file holds would show in the message, if only as an error in it."""
+    other = tmp_path / "other.dtd"
+    other.write_text("this is no DTD")
+    with pytest.raises(InputError, match="DOCTYPE and entities are not accepted"):
+        read_document(doctype.format(other).encode() + ROBOT, "my.urdf")
+
+
+@pytest.mark.parametrize(
     ("source", "line", "column"),
     [
         pytest.param(b"<robot>\0</robot>", 1, 8, id="first-line"),
@@ -106,7 +123,7 @@ def test_the_size_in_the_message_is_over_the_limit() -> None:
 
 
 def test_another_root_is_refused() -> None:
-    with pytest.raises(InputError, match="the root element is <html>, expected .*<robot>"):
+    with pytest.raises(InputError, match=r"the root element is <html>, expected .*<robot>"):
         rewrite(b"<html/>", "r1")
 
 
@@ -177,7 +194,7 @@ def marked(text: str) -> tuple[bytes, tuple[int, int]]:
         pytest.param('<a\n\tn\n=\n"«x»"\n/>', id="line-breaks"),
         pytest.param('<a m="1"\r\n   n="«x»"\r\n/>', id="second-line"),
         pytest.param("<a n='«x\"y»'/>", id="quote-in-single"),
-        pytest.param("<a n=\"«x'y»\"/>", id="single-in-quotes"),
+        pytest.param('<a n="«x\'y»"/>', id="single-in-quotes"),
         pytest.param('<a m=">" n="«x»"/>', id="greater-before"),
         pytest.param('<a n="«x>y»" m=">"/>', id="greater-inside"),
         pytest.param('<a n="«x&amp;y»"/>', id="ampersand"),
@@ -190,8 +207,8 @@ def marked(text: str) -> tuple[bytes, tuple[int, int]]:
         pytest.param('<a n="«»"/>', id="empty"),
         pytest.param('<a ä="1" n="«腕»"/>', id="not-ascii"),
         pytest.param('<a nn="x" n_="x" n="«x»"/>', id="longer-names"),
-        pytest.param("<a m='n=\"x\"' n=\"«x»\"/>", id="at-the-start-of-a-value"),
-        pytest.param("<a m=' n=\"x\"' n=\"«x»\"/>", id="in-a-value"),
+        pytest.param('<a m=\'n="x"\' n="«x»"/>', id="at-the-start-of-a-value"),
+        pytest.param('<a m=\' n="x"\' n="«x»"/>', id="in-a-value"),
         pytest.param("<a m=\" n='x'\" n='«x»'/>", id="in-a-value-single"),
         pytest.param("<a m=\" n='y'\" n='«x»'/>", id="another-in-a-value"),
         pytest.param("<a m=' n=\"x\">' n='«x»'/>", id="in-a-value-with-greater"),
@@ -256,7 +273,7 @@ def test_a_text_that_does_not_read_back_is_not_edited(text: str) -> None:
         pytest.param("name='a\"b'", "name='a\"b/r1'", id="quote"),
         pytest.param('name="a\nb"', 'name="a\nb/r1"', id="line-break"),
         pytest.param("m='>' name='a'", "m='>' name='a/r1'", id="greater"),
-        pytest.param("m=' name=\"a\"' name=\"a\"", "m=' name=\"a\"' name=\"a/r1\"", id="in-a-value"),
+        pytest.param('m=\' name="a"\' name="a"', 'm=\' name="a"\' name="a/r1"', id="in-a-value"),
         pytest.param("\n  name = 'a'\n  ", "\n  name = 'a/r1'\n  ", id="over-lines"),
     ],
 )

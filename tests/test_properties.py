@@ -14,6 +14,7 @@ from robots import (
     PARAMETERS,
     ROBOT,
     SEPARATORS,
+    Names,
     Options,
     Robot,
     bare,
@@ -23,6 +24,7 @@ from robots import (
     new_names,
     random_robots,
     robot_names,
+    slots,
     spelled,
 )
 
@@ -41,8 +43,9 @@ options = st.fixed_dictionaries(
         "layout": st.sampled_from(LAYOUTS),
         "affix": st.sampled_from(("postfix", "prefix")),
         "topics": st.sampled_from(("postfix", "prefix", "namespace")),
-        "separators": st.dictionaries(
-            st.sampled_from(("link", "joint", "topic")), st.sampled_from(SEPARATORS), max_size=2
+        "separators": st.fixed_dictionaries(
+            {},
+            optional={kind: st.sampled_from(marks.split()) for kind, marks in SEPARATORS.items()},
         ),
         "shared_frames": st.sampled_from(((), ("world",), ("odom", "base_link", "x"))),
     },
@@ -61,13 +64,21 @@ def attempt(robot: Robot, words: Options, name: str = ROBOT) -> Rewrite | None:
 
 def true_reasons(robot: Robot, words: Options, name: str) -> set[str]:
     """The codes with which this robot may be refused."""
-    table = new_names(etree.fromstring(robot.text), words, name)
+    root = etree.fromstring(robot.text)
+    table = new_names(root, words, name)
     reasons = {"MB104"} if robot.style.escapes or b"&" in robot.text else set()
-    if any(list(kind.values()) != list(dict.fromkeys(kind.values())) for kind in table):
+    if any(len(set(kind.values())) < len(kind) for kind in table) or dangling_meets(root, table):
         reasons.add("MB302")
     if all(rewritten(old, new, name) for kind in table for old, new in kind.items()):
         reasons.add("MB106")
     return reasons
+
+
+def dangling_meets(root: etree._Element, table: Names) -> bool:
+    """Would something that is named but not declared be declared after the rewrite?"""
+    declared = table.link.keys() | table.joint.keys()
+    come = {*table.link.values(), *table.joint.values()} - declared
+    return any(slot.value in come for slot in slots(root))
 
 
 def rewritten(old: str, new: str, robot: str) -> bool:

@@ -143,7 +143,7 @@ def _check_use(options: argparse.Namespace, robots: list[str]) -> None:
         raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
     _check_together(options)
     if _xacro_args(options) and not options.input.endswith(".xacro"):
-        raise UsageError(f"NAME:=VALUE is for xacro, but {options.input} is not named *.xacro")
+        raise UsageError(f"NAME:=VALUE is for xacro, {_name(options)} is not named *.xacro")
     if len(robots) > 1 and (options.strip or options.in_place):
         raise UsageError("--strip and --in-place take one robot at a time")
     _check_path("--output", options.output, "{robot}")

@@ -33,6 +33,10 @@ def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     site = claim.site
     if site.form == "prefix" and naming.affix != PREFIX:
         return ()
+    plain = site.plain
+    if plain and claim.value in declared[plain]:
+        there = affix(naming, plain, claim.value)
+        return ((plain, there),) if there else ()
     result = []
     for at, text, kinds in names_in(claim, declared):
         kind = resolve(text, kinds, site.role, declared)
