@@ -106,7 +106,7 @@ def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, s
     if isinstance(source, bytes):
         return source, "<bytes>"
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return source.encode(), "<text>"
+        return _encoded(source), "<text>"
     path = os.fspath(source)
     if path.endswith(".xacro"):
         from multibot_rewrite.xacro_source import expand
@@ -117,13 +117,21 @@ def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, s
     return read_file(path), path
 
 
+def _encoded(text: str) -> bytes:
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        raise InputError(f"<text>: character {error.start + 1} is half of one: {error}") from None
+
+
 def read_file(path: str) -> bytes:
     """The bytes of a file; raises InputError with the reason."""
     try:
         with open(path, "rb") as file:
             return file.read()
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", "") or error
+        raise InputError(f"{path}: cannot be read: {reason}") from None
 
 
 def _check_robots(robots: Sequence[str]) -> None:

@@ -238,12 +238,13 @@ def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]
     """
     names = set(robots)
     pairs = set()
+    sides = {naming.affix, POSTFIX if naming.topics == POSTFIX else PREFIX}
     for separator in set(naming.separators.values()):
         for robot in names:
-            pieces = robot.split(separator)
-            for cut in range(1, len(pieces)):
-                part = pieces[cut:] if naming.affix == POSTFIX else pieces[:cut]
-                other = separator.join(part)
-                if other in names:
-                    pairs.add((robot, other, separator))
+            for at in range(1, len(robot)):
+                if not robot.startswith(separator, at):
+                    continue
+                tail, front = robot[at + len(separator) :], robot[:at]
+                met = {POSTFIX: tail, PREFIX: front}
+                pairs |= {(robot, met[side], separator) for side in sides if met[side] in names}
     return sorted(pairs)

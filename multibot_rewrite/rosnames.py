@@ -35,14 +35,14 @@ class RemapRule(NamedTuple):
 def parse_remap(text: str) -> RemapRule | None:
     """Split ``[node:][rostopic://]from:=[rostopic://]to``; None where it is not a remap rule."""
     left, found, right = text.partition(":=")
-    if not found or not left.strip() or not right.strip():
-        return None
     node, at = _node_part(left)
     scheme = next((s for s in SCHEMES if left.startswith(s, at)), "")
     source_at = at + len(scheme)
-    target_at = len(left) + 2
-    target_at += next((len(s) for s in SCHEMES if right.startswith(s)), 0)
-    return RemapRule(node, left[source_at:], text[target_at:], 0, source_at, target_at, scheme)
+    target_at = len(left) + 2 + next((len(s) for s in SCHEMES if right.startswith(s)), 0)
+    source, target = left[source_at:], text[target_at:]
+    if not found or not source.strip() or not target.strip() or ":" in source or ":=" in target:
+        return None
+    return RemapRule(node, source, target, 0, source_at, target_at, scheme)
 
 
 def _node_part(left: str) -> tuple[str, int]:
@@ -91,10 +91,10 @@ def _token_problem(name: str) -> str:
 
 def propose_token(name: str) -> str:
     """A valid token as near to ``name`` as can be."""
-    kept = "".join(c if c in _TOKEN else "_" for c in name)[:MAX_TOKEN]
+    kept = "".join(c if c in _TOKEN else "_" for c in name)
     while "__" in kept:
         kept = kept.replace("__", "_")
     kept = kept.strip("_")
     if not kept:
         return "robot1"
-    return kept if kept[0] in _LETTERS else f"robot_{kept}"
+    return (kept if kept[0] in _LETTERS else f"robot_{kept}")[:MAX_TOKEN]

@@ -21,7 +21,7 @@ _HINTS = (
     ("is not defined", "define it with <xacro:property> or <xacro:arg>"),
     ("environment variable", "set it, or use $(optenv NAME DEFAULT)"),
     ("recursion", "a macro or an include leads back to itself, or elements are nested too deep"),
-    ("codec can't decode", "save it as UTF-8"),
+    ("not UTF-8", "save it as UTF-8"),
     ("amplification", "entities are not accepted, write out what they stand for"),
     ("unbound prefix", 'declare it: xmlns:xacro="http://www.ros.org/wiki/xacro"'),
     ("not well-formed XML", "mend the XML and try again"),
@@ -66,6 +66,8 @@ def _message(path: str, inner: str, error: Exception) -> str:
 def _reason(error: Exception) -> str:
     if isinstance(error, ExpatError):
         return f"not well-formed XML: {errors.messages[error.code]}"
+    if isinstance(error, UnicodeDecodeError):
+        return "the text is not UTF-8"
     text = str(error).partition(" [Errno")[0]
     text = re.sub(r"^\[Errno \d+\] ", "", text)
     # xacro may say it twice: in its own words and in those of the cause.

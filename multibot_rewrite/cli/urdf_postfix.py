@@ -282,9 +282,7 @@ def _deliver(
         _print(_diff(before, data, _name(options), robot) if options.diff else data)
 
 
-def _watched(
-    files: Iterable[tuple[str, bytes]], total: int
-) -> Iterable[tuple[str, bytes]] | Iterator[tuple[str, bytes]]:
+def _watched(files: Iterable[tuple[str, bytes]], total: int) -> Iterable[tuple[str, bytes]]:
     """The same files, with a progress bar where there are many and somebody is looking."""
     if total < MANY or not sys.stderr.isatty():
         return files

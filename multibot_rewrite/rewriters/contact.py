@@ -74,7 +74,7 @@ def _lumped(root: etree._Element) -> Lumped:
         block.get("reference")
         for block in root.iterchildren("gazebo")
         for tag in ("preserveFixedJoint", "disableFixedJointLumping")
-        if (block.findtext(tag) or "").strip() in ("true", "1")
+        if (block.findtext(tag) or "").strip().lower() in ("true", "yes", "1")
     }
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):

@@ -87,7 +87,7 @@ class Tree:
         self.vocabulary = vocabulary
         self.formats: dict[str, Node] = {}
         self.tags: set[str] = set()
-        self._chosen: dict[tuple[str, Rewriter], Node] = {}
+        self._chosen: dict[tuple[str, str, int], Node] = {}
         rewriters = vocabulary.rewriters("element")
         nodes = {name: Node(r, r.sites) for r in rewriters for name in r.names}
         for name, node in nodes.items():
@@ -135,7 +135,7 @@ class Tree:
 
     def _node(self, base: Node, rewriter: Rewriter) -> Node:
         assert base.rewriter is not None
-        key = (base.rewriter.names[0], rewriter)
+        key = (base.rewriter.names[0], rewriter.file, rewriter.line)
         if key not in self._chosen:
             node = Node(rewriter, base.rewriter.sites + rewriter.sites)
             node.children = base.children | node.children

@@ -214,7 +214,7 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                 "MB405",
                 WARNING,
                 f"the joints below link {link!r} change their order: {', '.join(new)}",
-                "urdfdom sorts them by name; use --affix prefix or --separator joint=/",
+                "urdfdom sorts them by name, a prefix would not: --affix prefix",
             )
 
 

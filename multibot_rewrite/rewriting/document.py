@@ -15,15 +15,18 @@ from lxml import etree
 from multibot_rewrite.model import Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
-# Entities are never resolved, nothing is loaded: the input may come from anywhere.
-_PARSER = etree.XMLParser(
-    resolve_entities=False, no_network=True, load_dtd=False, collect_ids=False
-)
+# Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
+# stays on: without it lxml makes libxml2 load external DTDs.)
+_PARSER = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
 _OPENING = re.compile(rb"<[A-Za-z_:\x80-\xff]")
 _SILENT = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
 _TAG = re.compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_ATTRIBUTE = re.compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _HINTS = (
     ("Excessive depth", "a robot description is never nested this deep"),
+    ("declaration allowed only at the start", "delete what stands before <?xml ...?>"),
+    ("Invalid bytes in character encoding", "the text is not UTF-8; convert it: iconv -t UTF-8"),
+    ("not proper UTF-8", "convert it: iconv -f LATIN1 -t UTF-8"),
     ("XML or text declaration not at start", "delete what stands before <?xml ...?>"),
     ("Namespace prefix", 'declare it on the root element: xmlns:prefix="..."'),
     ("Unsupported version", 'write <?xml version="1.0"?>'),
@@ -61,15 +64,18 @@ def _refuse_bytes(source: bytes, file: str) -> None:
     if len(source) > MAX_BYTES:
         size = len(source) / 2**20
         limit = MAX_BYTES // 2**20
-        raise InputError(f"{file}: {size:.0f} MB is over the limit of {limit} MB; is this a mesh?")
-    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<")):
-        raise InputError(f"{file}: the text is UTF-16; convert it: iconv -f UTF-16 -t UTF-8")
+        raise InputError(f"{file}: {size:.1f} MB is over the limit of {limit} MB; is this a mesh?")
+    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<", b"\0\0")):
+        width = 32 if b"\0\0" in source[:8] else 16
+        name = f"UTF-{width}"
+        raise InputError(f"{file}: the text is {name}; convert it: iconv -f {name} -t UTF-8")
 
 
 def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
-    message = " ".join(str(error.msg).split())
+    message = " ".join(str(error.msg).split()).partition(", line ")[0]
     hint = next((hint for start, hint in _HINTS if start in message), "mend the XML and try again")
-    return f"{file}:{error.lineno or 1}:{error.offset or 1}: not well-formed XML: {message}; {hint}"
+    line, column = error.position
+    return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
 
 
 def _refuse_tree(document: Document) -> None:
@@ -85,7 +91,8 @@ def _refuse_tree(document: Document) -> None:
 
 
 def _starts(source: bytes) -> list[int]:
-    if b"<!--" in source or b"<![CDATA[" in source or b"<?" in source[1:]:
+    after_declaration = 5 if source.startswith(b"<?xml ") else 0
+    if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
         # Blanks of the same length, so that every offset still holds.
         source = _SILENT.sub(lambda found: b" " * len(found[0]), source)
     return [found.start() for found in _OPENING.finditer(source)]
@@ -96,23 +103,24 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
     empty. None if what stands there does not read back as ``value``."""
     if not attribute:
         return text_slot(source, start, value)
-    # The common spelling, inside this tag; anything else takes the exact way.
+    # The common spelling, inside this tag and not inside another value; else the exact way.
     written = f' {attribute}="{value}"'.encode()
     begin = source.find(written, start)
     if begin < 0 or source.find(b">", start, begin) >= 0:
+        return attribute_slot(source, start, attribute, value)
+    if source.find(b"'", start, begin) >= 0 or source.count(b'"', start, begin) % 2:
         return attribute_slot(source, start, attribute, value)
     return begin + len(attribute) + 3, begin + len(written) - 1
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
     """Where the value of an attribute stands, however it is quoted, spaced and escaped."""
-    tag = _TAG.match(source, start)
-    pattern = rb"\s" + re.escape(name.encode()) + rb"\s*=\s*(\"[^\"]*\"|'[^']*')"
-    found = re.compile(pattern).search(source, start, tag.end() if tag else start)
-    if found is None:
-        return None
-    begin, end = found.start(1) + 1, found.end(1) - 1
-    return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
+    key = name.encode()
+    for found in _ATTRIBUTE.finditer(source, start, tag_end(source, start)):
+        if found[1] == key:
+            begin, end = found.start(2) + 1, found.end(2) - 1
+            return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
+    return None
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:

@@ -1,0 +1,221 @@
+"""One section of a vocabulary file: its rows read, checked and made a ``Rewriter``.
+
+The grammar is in the docstring of the package.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.model import Site, VocabularyError
+from multibot_rewrite.naming import SEPARATORS
+
+TYPES = ("element", "plugin", "hardware", "sensor", "block")
+SETTINGS = (
+    "at",
+    "about",
+    "source",
+    "with",
+    "select",
+    "ros",
+    "publishes",
+    "subscribes",
+    "serves",
+    "insert",
+)
+ROLES = ("declares", "uses", "keep")
+KINDS = (*SEPARATORS, "collision")
+OPTIONS = ("form", "default", "when")
+FORMS = ("whole", "list", "scoped", "prefix", "remap", "argument", "collision")
+_NAME = r"[A-Za-z_][\w.:-]*"
+_STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
+_PATH = re.compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
+
+
+class Rewriter(NamedTuple):
+    """One section: what is known about an element, a plugin, a hardware class or a shared block.
+
+    ``publishes``, ``subscribes`` and ``serves`` are topics and services that no element controls:
+    only a remap rule moves them.
+    ``inserts`` is false where the consumer throws on children it does not know.
+    """
+
+    type: str
+    names: tuple[str, ...]
+    sites: tuple[Site, ...]
+    at: tuple[str, ...]
+    blocks: tuple[str, ...]
+    select: str
+    ros: str
+    publishes: tuple[str, ...]
+    subscribes: tuple[str, ...]
+    serves: tuple[str, ...]
+    inserts: bool
+    about: str
+    source: str
+    file: str
+    line: int
+
+    @property
+    def name(self) -> str:
+        """The name reports and case files use: ``plugin gazebo_ros_diff_drive``."""
+        flavour = f" (ROS {self.ros})" if self.ros else ""
+        return f"{self.type} {self.names[0]}{flavour}"
+
+    @property
+    def topics(self) -> tuple[str, ...]:
+        """All names that only a remap rule moves."""
+        return self.publishes + self.subscribes + self.serves
+
+
+def read_header(place: str, row: str) -> tuple[str, ...]:
+    """Type and names of a section from its first row (its ``[`` taken off)."""
+    head, bracket, rest = row.partition("]")
+    words = head.split()
+    if not bracket or rest.strip() or len(words) < 2 or words[0] not in TYPES:
+        raise VocabularyError(
+            f"{place}: section [{row.strip()} must be [TYPE NAME...], TYPE one of {', '.join(TYPES)}"
+        )
+    if len(set(words)) < len(words):
+        raise VocabularyError(f"{place}: section [{head}] has a name twice")
+    return tuple(words)
+
+
+def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str], dict[str, Site]]:
+    """Settings and sites of a section whose header stands at ``line``."""
+    section = " ".join(read_header(f"{file}:{line}", rows[0])[:2])
+    settings: dict[str, str] = {}
+    sites: dict[str, Site] = {}
+    for number, row in enumerate(rows[1:], line + 1):
+        words = row.split()
+        if not words or row.startswith("#"):
+            continue
+        if words[0].endswith(":"):
+            _setting(settings, f"{file}:{number}", words)
+            continue
+        site = _site(f"{file}:{number}", section, number, row)
+        if site.path in sites:
+            before = sites[site.path].line
+            raise VocabularyError(
+                f"{file}:{number}: {site.path} is there already, at line {before}"
+            )
+        sites[site.path] = site
+    return settings, sites
+
+
+def assemble(
+    file: str,
+    line: int,
+    header: tuple[str, ...],
+    settings: dict[str, str],
+    sites: Sequence[Site],
+) -> Rewriter:
+    """A rewriter from the parts of its section; ``sites`` include those of its blocks."""
+    if header[0] == "element" and "at" not in settings:
+        raise VocabularyError(
+            f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
+        )
+    namespaced = any("namespace" in site.kinds for site in sites)
+
+    def words(key: str) -> tuple[str, ...]:
+        return tuple(settings.get(key, "").split())
+
+    return Rewriter(
+        header[0],
+        header[1:],
+        tuple(site._replace(namespaced=namespaced) for site in sites),
+        words("at"),
+        words("with"),
+        settings.get("select", ""),
+        settings.get("ros", ""),
+        words("publishes"),
+        words("subscribes"),
+        words("serves"),
+        settings.get("insert", "yes") == "yes",
+        settings.get("about", ""),
+        settings.get("source", ""),
+        file,
+        line,
+    )
+
+
+def merge(first: Rewriter, second: Rewriter) -> Rewriter:
+    """What two sections say of one thing: a user's file may add to what is known."""
+    paths = {site.path: site for site in first.sites}
+    for site in second.sites:
+        if site.path in paths and site.section == paths[site.path].section:
+            raise VocabularyError(
+                f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
+            )
+    return first._replace(
+        sites=first.sites + tuple(site for site in second.sites if site.path not in paths),
+        at=first.at + tuple(name for name in second.at if name not in first.at),
+        publishes=first.publishes + second.publishes,
+        subscribes=first.subscribes + second.subscribes,
+        serves=first.serves + second.serves,
+        inserts=first.inserts and second.inserts,
+    )
+
+
+def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
+    key = words[0][:-1]
+    if key not in SETTINGS:
+        raise VocabularyError(f"{place}: unknown setting {key!r}, use one of {', '.join(SETTINGS)}")
+    value = " ".join([settings[key], *words[1:]] if key in settings else words[1:])
+    allowed = {"ros": ("1", "2"), "insert": ("yes", "no")}.get(key)
+    if not value or (allowed and value not in allowed):
+        raise VocabularyError(
+            f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
+        )
+    settings[key] = value
+
+
+def _site(place: str, section: str, line: int, row: str) -> Site:
+    spec, _, note = row.partition(" # ")
+    path, *words = spec.split()
+    if not _PATH.fullmatch(path):
+        raise VocabularyError(f"{place}: bad path {path!r}: write a/b, a@x, @x or a[@x=y]/b")
+    if not words or words[0] not in ROLES:
+        raise VocabularyError(f"{place}: {path} needs one of {', '.join(ROLES)} after it")
+    role, *rest = words
+    if role == "keep":
+        if not rest:
+            raise VocabularyError(f"{place}: {path} keep: say why it must stay")
+        return Site(path, role, (), "whole", "", False, section, " ".join(rest), line)
+    options = dict(word.split("=", 1) for word in rest if "=" in word)
+    kinds = tuple(word for word in rest if "=" not in word)
+    _check_words(place, path, kinds, options)
+    form, default = options.get("form", "whole"), options.get("default", "")
+    plain = kinds[0] if form == "whole" and kinds in (("link",), ("joint",)) else ""
+    when = options.get("when", "")
+    return Site(path, role, kinds, form, default, False, section, note.strip(), line, plain, when)
+
+
+def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
+    kinds = list(kinds)
+    if not kinds:
+        raise VocabularyError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")
+    checks = ((kinds, KINDS, "kind"), (options, OPTIONS, "option"))
+    for words, allowed, what in (*checks, ([options.get("form", "whole")], FORMS, "form")):
+        for word in words:
+            if word not in allowed:
+                raise VocabularyError(
+                    f"{place}: unknown {what} {word!r}, use one of {', '.join(allowed)}"
+                )
+
+
+def split_path(path: str) -> tuple[list[str], str]:
+    """The child steps of a path, and the attribute at its end or an empty string."""
+    bracket = path.rfind("]") + 1
+    steps, _, attribute = path[bracket:].partition("@")
+    whole = path[:bracket] + steps
+    return (whole.split("/") if whole else []), attribute
+
+
+def split_step(step: str) -> tuple[str, str, str]:
+    """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
+    tag, _, ask = step.partition("[@")
+    attribute, _, value = ask.rstrip("]").partition("=")
+    return tag, attribute, value
