@@ -54,7 +54,7 @@ def _run(name: str, source: bytes) -> Rewrite:
 def policy(case: Case) -> Naming:
     """The naming policy that the case's options ask for."""
     words = {key: value for key, value in case.options.items() if key not in NO_POLICY}
-    return make_naming(**words)  # type: ignore[arg-type]
+    return make_naming(**words)
 
 
 def places(findings: tuple[Finding, ...]) -> list[str]:
@@ -228,7 +228,7 @@ SAME = HEAD + b"expect: same\n----\n<robot/>\n"
         pytest.param(b"colour: red\n" + SAME, "'colour: red' is unknown", id="header"),
         pytest.param(b"about: it\n" + SAME, "there twice", id="header-twice"),
         pytest.param(SAME.partition(b"\n")[2], "header about is missing", id="no-about"),
-        pytest.param(HEAD + b"expect: same\n", "needs headers, input", id="no-input"),
+        pytest.param(HEAD + b"expect: same\n----\n", "same needs", id="no-input"),
         pytest.param(SAME.replace(b"same", b"changed"), "input, output", id="no-output"),
         pytest.param(SAME + b"----\n<robot/>\n", "same needs", id="same-with-output"),
         pytest.param(HEAD + b"expect: refused\n----\n<robot/>\n", "refused CODE", id="no-code"),

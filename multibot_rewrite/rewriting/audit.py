@@ -206,8 +206,11 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
         if parent is not None:
             siblings[parent.get("link", "")].append(name)
     for link, names in siblings.items():
-        new = sorted(names, key=lambda name: _ordered(naming, name))
-        if new != sorted(names):
+        old = sorted(names)
+        # The order may hang on the robot's name: a first and a last one show it.
+        orders = [sorted(names, key=lambda name: _ordered(naming, name, r)) for r in "\0~"]
+        new = next((order for order in orders if order != old), None)
+        if new is not None:
             yield finding(
                 inventory.document,
                 inventory.declared["joint"][new[0]].start,
@@ -218,25 +221,44 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             )
 
 
-def _ordered(naming: Naming, name: str) -> str:
+def _ordered(naming: Naming, name: str, robot: str) -> str:
     there = affix(naming, "joint", name)
-    # Letters, digits and underscores all sort before this stand-in would matter: same for all.
-    return there.spell(name, "r") if there else name
+    return there.spell(name, robot) if there else name
 
 
 def already_rewritten(
-    inventory: Inventory, naming: Naming, robots: Iterable[str]
+    inventory: Inventory, naming: Naming, robots: Iterable[str], again: bool
 ) -> Iterator[Finding]:
-    """Refuse a document that carries a robot's affix on every name, or its marker."""
+    """Refuse a document that carries a robot's affix on every name, or text inserted for it.
+
+    ``again`` insists, but not where inserted text of two rewrites could not be told apart.
+    """
     marked = {mark.robot for mark in markers(inventory.document)}
-    names = [(kind, name) for kind, found in inventory.declared.items() for name in found]
-    own = [(kind, name) for kind, name in names if affix(naming, kind, name) is not None]
     for robot in robots:
-        spelled = own and all(removal(naming, robot, kind, name) for kind, name in own)
-        if spelled or robot in marked:
+        if robot in marked or (not again and _spelled_for(inventory, naming, robot)):
             message = f"the description is already rewritten for {robot}"
-            hint = "--again insists, --strip undoes"
+            hint = "--strip takes it back first" if again else "--again insists, --strip undoes"
             yield finding(inventory.document, 0, "MB106", ERROR, message, hint)
+
+
+def _spelled_for(inventory: Inventory, naming: Naming, robot: str) -> bool:
+    """Does every name that a rewrite would spell carry the robot's affix?"""
+    some = False
+    for kind, name, namespaced in _renamed(inventory, naming):
+        if removal(naming, robot, kind, name, namespaced) is None:
+            return False
+        some = True
+    return some
+
+
+def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, bool]]:
+    """Kind, name and namespaced of everything the naming spells for a robot."""
+    for claim in inventory.claims:
+        site = claim.site
+        for part in names_in(claim, inventory.declared):
+            kind = resolve(part.text, part.kinds, site.role, inventory.declared)
+            if kind and affix(naming, kind, part.text, site.namespaced) is not None:
+                yield kind, part.text, site.namespaced
 
 
 def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> list[Finding]:
@@ -270,20 +292,19 @@ def meeting(
     inventory: Inventory, naming: Naming, pairs: Collection[tuple[str, str, str]]
 ) -> list[Finding]:
     """Names of two different robots that come out alike; ``pairs`` are from ``naming.overlap``."""
+    names = set(_renamed(inventory, naming)) if pairs else set()
     found = []
     for robot, other, _ in pairs:
-        for kind, names in inventory.declared.items():
-            theirs = {_spelled(naming, kind, name, other) for name in names}
-            both = sorted({_spelled(naming, kind, n, robot) for n in names} & theirs - set(names))
-            if both:
-                message = f"{kind} {both[0]!r} comes out for {robot} and for {other}"
-                hint = "rename a robot or choose another separator"
-                found.append(finding(inventory.document, 0, "MB303", ERROR, message, hint))
+        ours = {(name[0], _spelled(naming, robot, *name)) for name in names}
+        for kind, both in sorted(ours & {(n[0], _spelled(naming, other, *n)) for n in names}):
+            message = f"{kind} {both!r} comes out for {robot} and for {other}"
+            hint = "rename a robot or choose another separator"
+            found.append(finding(inventory.document, 0, "MB303", ERROR, message, hint))
     return found
 
 
-def _spelled(naming: Naming, kind: str, name: str, robot: str) -> str:
-    there = affix(naming, kind, name)
+def _spelled(naming: Naming, robot: str, kind: str, name: str, namespaced: bool) -> str:
+    there = affix(naming, kind, name, namespaced)
     return there.spell(name, robot) if there else name
 
 

@@ -54,8 +54,7 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
     inventory, naming = template.inventory, template.naming
     found = audit.collisions(inventory, naming, robots)
     found += audit.meeting(inventory, naming, overlap(naming, robots))
-    if not again:
-        found += audit.already_rewritten(inventory, naming, robots)
+    found += audit.already_rewritten(inventory, naming, robots, again)
     _stop_on_errors(found)
     for number, robot in enumerate(robots):
         output = fill(template.pieces, robot)

@@ -18,6 +18,7 @@ from multibot_rewrite.rewriting.document import finding, value_slot
 from multibot_rewrite.rewriting.inserted import hole_edits, insertion_edits
 
 _START = itemgetter(0)
+LAST = "~"
 
 
 class Plan(NamedTuple):
@@ -39,7 +40,8 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     spellings = _spellings(inventory, naming)
     edits, findings = _edits(inventory, spellings)
     document, claims, hosts, declared = inventory
-    collisions = respell_collisions(document.root, claims, respeller(naming))
+    collisions = respell_collisions(document.root, claims, respeller(naming, HOLE))
+    findings += _unstable(inventory, naming, collisions)
     for claim, new in collisions:
         slot = value_slot(document.source, *claim[2:])
         if slot is None:
@@ -58,12 +60,33 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     return Plan(edits, spellings, collisions, added, findings)
 
 
-def respeller(naming: Naming) -> Respell:
-    """The new spelling of a link or joint, with ``HOLE`` for the robot."""
+def _unstable(
+    inventory: Inventory, naming: Naming, collisions: list[tuple[Claim, str]]
+) -> list[Finding]:
+    """Contacts whose collision is numbered by how the robot's name sorts: no plan holds for all."""
+    document, claims, _, _ = inventory
+    # HOLE sorts before every letter, this after.
+    last = respell_collisions(document.root, claims, respeller(naming, LAST)) if collisions else []
+    return [
+        finding(
+            document,
+            claim.start,
+            "MB306",
+            ERROR,
+            f"the number in {claim.value!r} would depend on how the robot's name sorts",
+            "use --affix prefix, or keep the fixed joints apart with preserveFixedJoint",
+        )
+        for (claim, text), (_, other) in zip(collisions, last, strict=False)
+        if text != other.replace(LAST, HOLE)
+    ]
+
+
+def respeller(naming: Naming, robot: str) -> Respell:
+    """The new spelling of a link or joint for ``robot``."""
 
     def respell(kind: str, name: str) -> str:
         there = affix(naming, kind, name)
-        return there.spell(name, HOLE) if there else name
+        return there.spell(name, robot) if there else name
 
     return respell
 
