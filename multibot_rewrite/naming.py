@@ -241,7 +241,7 @@ def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]
     sides = {naming.affix, POSTFIX if naming.topics == POSTFIX else PREFIX}
     for separator in set(naming.separators.values()):
         for robot in names:
-            for at in range(1, len(robot)):
+            for at in range(len(robot)):
                 if not robot.startswith(separator, at):
                     continue
                 tail, front = robot[at + len(separator) :], robot[:at]

@@ -185,30 +185,15 @@ def test_siblings_come_in_the_order_of_their_joints() -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("name", "number"),
-    [
-        pytest.param("r1", 2, id="order-changes"),
-        pytest.param("a1", 1, id="order-stays"),
-        pytest.param("_r", 1, id="underscore"),
-    ],
-)
-def test_siblings_are_numbered_by_their_new_names(name: str, number: int) -> None:
-    """``j_b_r1`` sorts before ``j_r1``, but ``j_a1`` before ``j_b_a1``."""
+def test_a_number_that_hangs_on_the_robots_name_is_refused() -> None:
+    """``j_b_r1`` sorts before ``j_r1``, but ``j_a1`` before ``j_b_a1``: one plan cannot hold both."""
     links = [BASE, Link("a", parent="base", joint="j"), Link("b", parent="base", joint="j_b")]
     source = robot(links, contact("base_fixed_joint_lump__a_collision_1"))
-    text = rewrite(source, name, separators=UNDERSCORE).text
-    assert f"base_{name}_fixed_joint_lump__a_{name}_collision_{number}</collision>" in text
-
-
-def test_every_robot_of_a_fleet_gets_its_own_numbers() -> None:
-    from multibot_rewrite import rewrite_all
-
-    links = [BASE, Link("a", parent="base", joint="j"), Link("b", parent="base", joint="j_b")]
-    source = robot(links, contact("base_fixed_joint_lump__a_collision_1"))
-    for fleet in (["a1", "r1"], ["r1", "a1"]):
-        single = [rewrite(source, name).data for name in fleet]
-        assert [item.data for item in rewrite_all(source, fleet)] == single
+    with pytest.raises(RewriteRefused) as caught:
+        rewrite(source, "r1")
+    assert "MB306" in {finding.code for finding in caught.value.findings}
+    prefixed = rewrite(source, "r1", affix="prefix").text
+    assert "r1/base_fixed_joint_lump__r1/a_collision_1</collision>" in prefixed
 
 
 def test_a_joint_circle_ends() -> None:

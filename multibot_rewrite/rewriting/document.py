@@ -62,10 +62,9 @@ def _refuse_bytes(source: bytes, file: str) -> None:
     if not source.strip():
         raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
     if len(source) > MAX_BYTES:
-        size = len(source) / 2**20
-        limit = MAX_BYTES // 2**20
-        raise InputError(f"{file}: {size:.1f} MB is over the limit of {limit} MB; is this a mesh?")
-    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<", b"\0\0")):
+        sizes = f"{len(source):,} bytes, over the limit of {MAX_BYTES:,}"
+        raise InputError(f"{file}: {sizes}; is this a mesh?")
+    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<", b"\0\0\xfe\xff", b"\0\0\0<")):
         width = 32 if b"\0\0" in source[:8] else 16
         name = f"UTF-{width}"
         raise InputError(f"{file}: the text is {name}; convert it: iconv -f {name} -t UTF-8")

@@ -114,8 +114,9 @@ class Vocabulary:
     def _block(self, place: str, name: str) -> Rewriter:
         found = self.find("block", name)
         if not found:
-            circle = "stands in a circle" if ("block", name) in self._raw else "does not exist"
-            raise VocabularyError(f"{place}: with: {name}: [block {name}] {circle}")
+            known = ("block", name) in self._raw
+            wrong = f"[block {name}] stands in a circle" if known else f"there is no [block {name}]"
+            raise VocabularyError(f"{place}: with: {name}: {wrong}")
         return found[0]
 
 
