@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterator
 
 from multibot_rewrite.model import ERROR, WARNING, Claim, Finding
 from multibot_rewrite.naming import (
@@ -15,13 +15,11 @@ from multibot_rewrite.naming import (
     Naming,
     affix,
     is_keyword,
-    removal,
 )
 from multibot_rewrite.rewriters.spelling import names_in, resolve
 from multibot_rewrite.rewriters.tree import Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
-from multibot_rewrite.rewriting.inserted import markers
 from multibot_rewrite.rosnames import parse_remap
 
 
@@ -224,107 +222,3 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
 def _ordered(naming: Naming, name: str, robot: str) -> str:
     there = affix(naming, "joint", name)
     return there.spell(name, robot) if there else name
-
-
-def already_rewritten(
-    inventory: Inventory, naming: Naming, robots: Iterable[str], again: bool
-) -> Iterator[Finding]:
-    """Refuse a document that carries a robot's affix on every name, or text inserted for it.
-
-    ``again`` insists, but not where inserted text of two rewrites could not be told apart.
-    """
-    marked = {mark.robot for mark in markers(inventory.document)}
-    for robot in robots:
-        if robot in marked or (not again and _spelled_for(inventory, naming, robot)):
-            message = f"the description is already rewritten for {robot}"
-            hint = "--strip takes it back first" if again else "--again insists, --strip undoes"
-            yield finding(inventory.document, 0, "MB106", ERROR, message, hint)
-
-
-def _spelled_for(inventory: Inventory, naming: Naming, robot: str) -> bool:
-    """Does every name that a rewrite would spell carry the robot's affix?"""
-    some = False
-    for kind, name, namespaced in _renamed(inventory, naming):
-        if removal(naming, robot, kind, name, namespaced) is None:
-            return False
-        some = True
-    return some
-
-
-def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, bool]]:
-    """Kind, name and namespaced of everything the naming spells for a robot."""
-    for claim in inventory.claims:
-        site = claim.site
-        for part in names_in(claim, inventory.declared):
-            kind = resolve(part.text, part.kinds, site.role, inventory.declared)
-            if kind and affix(naming, kind, part.text, site.namespaced) is not None:
-                yield kind, part.text, site.namespaced
-
-
-def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> list[Finding]:
-    """Names that stay as they are and are what another name becomes for some robot."""
-    found = []
-    for kind, names in inventory.declared.items():
-        kept = [name for name in names if affix(naming, kind, name) is None]
-        for robot in robots if kept else ():
-            found += [
-                _collision(inventory, kind, name, robot)
-                for name in kept
-                if _stem(naming, robot, kind, name) in names
-            ]
-    return found
-
-
-def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
-    span = removal(naming, robot, kind, name)
-    return name[: span[0]] + name[span[1] :] if span else ""
-
-
-def _collision(inventory: Inventory, kind: str, name: str, robot: str) -> Finding:
-    claim = inventory.declared[kind][name]
-    message = f"another {kind} becomes {name!r} for {robot}, which is there already"
-    return finding(
-        inventory.document, claim.start, "MB302", ERROR, message, "choose another separator"
-    )
-
-
-def meeting(
-    inventory: Inventory, naming: Naming, pairs: Collection[tuple[str, str, str]]
-) -> list[Finding]:
-    """Names of two different robots that come out alike; ``pairs`` are from ``naming.overlap``."""
-    names = set(_renamed(inventory, naming)) if pairs else set()
-    found = []
-    for robot, other, _ in pairs:
-        ours = {(name[0], _spelled(naming, robot, *name)) for name in names}
-        for kind, both in sorted(ours & {(n[0], _spelled(naming, other, *n)) for n in names}):
-            message = f"{kind} {both!r} comes out for {robot} and for {other}"
-            hint = "rename a robot or choose another separator"
-            found.append(finding(inventory.document, 0, "MB303", ERROR, message, hint))
-    return found
-
-
-def _spelled(naming: Naming, robot: str, kind: str, name: str, namespaced: bool) -> str:
-    there = affix(naming, kind, name, namespaced)
-    return there.spell(name, robot) if there else name
-
-
-def not_rewritten(inventory: Inventory, naming: Naming, robot: str) -> list[Finding]:
-    """Links and joints without the affix that ``--strip`` is to take off."""
-    found = []
-    for kind, names in inventory.declared.items():
-        for name, claim in names.items():
-            renamed = affix(naming, kind, name) is not None
-            if renamed and removal(naming, robot, kind, name) is None:
-                message = f"{kind} {name!r} is not spelled for {robot}"
-                hint = "give --strip the robot and the options the file was made with"
-                found.append(
-                    finding(inventory.document, claim.start, "MB107", ERROR, message, hint)
-                )
-    return found[:1]
-
-
-def other_options(inventory: Inventory, robot: str) -> Finding:
-    """The stripped text does not lead back to the file."""
-    message = f"the file is not what a rewrite for {robot} with these options makes"
-    hint = "give --strip the options the file was made with"
-    return finding(inventory.document, 0, "MB108", ERROR, message, hint)

@@ -9,6 +9,7 @@ from multibot_rewrite.model import ERROR, Finding, RewriteRefused
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import audit
+from multibot_rewrite.rewriting import robots as checks
 from multibot_rewrite.rewriting.apply import cut, fill
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
@@ -52,9 +53,9 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
     meet is checked for all of them before the first is returned.
     """
     inventory, naming = template.inventory, template.naming
-    found = audit.collisions(inventory, naming, robots)
-    found += audit.meeting(inventory, naming, overlap(naming, robots))
-    found += audit.already_rewritten(inventory, naming, robots, again)
+    found = checks.collisions(inventory, naming, robots)
+    found += checks.meeting(inventory, naming, overlap(naming, robots))
+    found += checks.already_rewritten(inventory, naming, robots, again)
     _stop_on_errors(found)
     for number, robot in enumerate(robots):
         output = fill(template.pieces, robot)
@@ -67,12 +68,12 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
 def strip(source: bytes, file: str, robot: str, naming: Naming, tree: Tree) -> bytes:
     """Undo a rewrite for ``robot``; the result is proved by rewriting it again."""
     inventory = collect(read_document(source, file), tree)
-    found = audit.not_rewritten(inventory, naming, robot)
+    found = checks.not_rewritten(inventory, naming, robot)
     _stop_on_errors(found)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
     again = prepare(stripped, file, naming, tree)
     if fill(again.pieces, robot) != source:
-        _stop_on_errors([audit.other_options(inventory, robot)])
+        _stop_on_errors([checks.other_options(inventory, robot)])
     return stripped
 
 
