@@ -164,7 +164,7 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
     ``namespaced`` tells whether a ROS namespace reaches the value.
     """
     separator = naming.separators.get(kind)
-    if separator is None or is_keyword(text):
+    if separator is None:
         return None
     if kind in TOPIC_KINDS:
         below = kind == "subtopic" or (namespaced and naming.topics == NAMESPACE)
@@ -180,7 +180,7 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
 
 def is_keyword(text: str) -> bool:
     """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
-    return text.startswith("__") and text.endswith("__")
+    return len(text) >= 4 and text.startswith("__") and text.endswith("__")
 
 
 def _name_affix(side: str, separator: str, text: str) -> Affix:
@@ -217,11 +217,10 @@ def removal(
     if separator is None or robot not in text:
         return None
     lead = 1 if text.startswith("/") else 0
-    for start, inserted in (
-        (len(text) - len(separator + robot), separator + robot),
-        (lead, robot + separator),
-        (lead, robot),
-    ):
+    places = [(lead, robot + separator), (lead, robot)]
+    if (naming.topics if kind in TOPIC_KINDS else naming.affix) == POSTFIX:
+        places.insert(0, (len(text) - len(separator + robot), separator + robot))
+    for start, inserted in places:
         if start >= 0 and text.startswith(inserted, start):
             stem = text[:start] + text[start + len(inserted) :]
             there = affix(naming, kind, stem, namespaced)

@@ -76,8 +76,7 @@ def true_reasons(robot: Robot, words: Options, name: str) -> set[str]:
 
 def dangling_meets(root: etree._Element, table: Names) -> bool:
     """Would something that is named but not declared be declared after the rewrite?"""
-    declared = table.link.keys() | table.joint.keys()
-    come = {*table.link.values(), *table.joint.values()} - declared
+    come = {new for kind in table for new in kind.values() if new not in kind}
     return any(slot.value in come for slot in slots(root))
 
 

@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from multibot_rewrite.model import Claim
-from multibot_rewrite.naming import CLOSED_KINDS, FRAME_KINDS, PREFIX, Affix, Naming, affix
+from multibot_rewrite.naming import (
+    CLOSED_KINDS,
+    FRAME_KINDS,
+    PREFIX,
+    Affix,
+    Naming,
+    affix,
+    is_keyword,
+)
 from multibot_rewrite.rewriters.forms import FORMS, Part
 
 HOLE = "\0"
@@ -49,16 +57,17 @@ def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
 def resolve(text: str, kinds: tuple[str, ...], role: str, declared: Declared) -> str:
     """Which of its kinds a name is; empty for a use of something that is not declared.
 
-    A frame that names a link is spelled like the link, a leading slash aside.
+    A frame that names a link is spelled like the link, one leading slash aside.
     """
     if role == "declares":
         return kinds[0]
     for kind in kinds:
-        if kind in FRAME_KINDS and text.strip("/") in declared["link"]:
-            return "link"
-        if kind not in CLOSED_KINDS or text in declared[kind]:
+        if kind in CLOSED_KINDS and text in declared[kind]:
             return kind
-    return ""
+    links = declared["link"]
+    if not FRAME_KINDS.isdisjoint(kinds) and (text in links or text.removeprefix("/") in links):
+        return "link"
+    return "" if is_keyword(text) else next((k for k in kinds if k not in CLOSED_KINDS), "")
 
 
 def respelled(value: str, spelling: Spelling, robot: str) -> str:

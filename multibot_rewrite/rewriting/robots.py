@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.model import ERROR, Finding
-from multibot_rewrite.naming import Naming, affix, removal
+from multibot_rewrite.model import ERROR, Claim, Finding
+from multibot_rewrite.naming import CLOSED_KINDS, Naming, affix, removal
 from multibot_rewrite.rewriters.spelling import names_in, resolve
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import finding
@@ -49,16 +49,28 @@ def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, b
 
 def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> list[Finding]:
     """Names that stay as they are and are what another name becomes for some robot."""
-    found = []
-    for kind, names in inventory.declared.items():
-        kept = [name for name in names if affix(naming, kind, name) is None]
-        for robot in robots if kept else ():
-            found += [
-                _collision(inventory, kind, name, robot)
-                for name in kept
-                if _stem(naming, robot, kind, name) in names
-            ]
-    return found
+    kept = list(_kept(inventory, naming))
+    return [
+        _collision(inventory, kind, claim, name, robot)
+        for robot in (robots if kept else ())
+        for kind, name, claim in kept
+        if _stem(naming, robot, kind, name) in inventory.declared[kind]
+    ]
+
+
+def _kept(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, Claim]]:
+    """Declared names no policy spells, and names that are used and declared nowhere."""
+    declared = inventory.declared
+    for kind, names in declared.items():
+        for name, claim in names.items():
+            if affix(naming, kind, name) is None:
+                yield kind, name, claim
+    for claim in inventory.claims:
+        if claim.site.role != "uses" or claim.site.kinds[-1] not in CLOSED_KINDS:
+            continue
+        for part in names_in(claim, declared):
+            if not resolve(part.text, part.kinds, claim.site.role, declared):
+                yield from ((kind, part.text, claim) for kind in part.kinds)
 
 
 def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
@@ -66,12 +78,10 @@ def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
     return name[: span[0]] + name[span[1] :] if span else ""
 
 
-def _collision(inventory: Inventory, kind: str, name: str, robot: str) -> Finding:
-    claim = inventory.declared[kind][name]
+def _collision(inventory: Inventory, kind: str, claim: Claim, name: str, robot: str) -> Finding:
     message = f"another {kind} becomes {name!r} for {robot}, which is there already"
-    return finding(
-        inventory.document, claim.start, "MB302", ERROR, message, "choose another separator"
-    )
+    hint = "choose another separator"
+    return finding(inventory.document, claim.start, "MB302", ERROR, message, hint)
 
 
 def meeting(
