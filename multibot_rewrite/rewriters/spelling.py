@@ -64,8 +64,8 @@ def resolve(text: str, kinds: tuple[str, ...], role: str, declared: Declared) ->
     for kind in kinds:
         if kind in CLOSED_KINDS and text in declared[kind]:
             return kind
-    links = declared["link"]
-    if not FRAME_KINDS.isdisjoint(kinds) and (text in links or text.removeprefix("/") in links):
+    bare = text[1:] if text.startswith("/") and not text.startswith("//") else text
+    if not FRAME_KINDS.isdisjoint(kinds) and bare in declared["link"]:
         return "link"
     return "" if is_keyword(text) else next((k for k in kinds if k not in CLOSED_KINDS), "")
 
