@@ -51,11 +51,19 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
         message = f"xacro element <{tag.rpartition('}')[2]}>"
         yield finding(document, start, "MB105", ERROR, message, hint)
     elif b"${" in source or b"$(arg" in source:
-        for claim in inventory.claims:
-            if "${" in claim.value or "$(arg" in claim.value:
-                message = f"xacro substitution {claim.value!r}"
-                yield finding(document, claim.start, "MB105", ERROR, message, hint)
-                return
+        value, start = next(_substitutions(document), ("", 0))
+        if value:
+            message = f"xacro substitution {value!r}"
+            yield finding(document, start, "MB105", ERROR, message, hint)
+
+
+def _substitutions(document: Document) -> Iterator[tuple[str, int]]:
+    """Values that hold one, claimed or not, and their elements; comments do not count."""
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        values = (*element.values(), element.text or "", *(c.tail or "" for c in element))
+        for value in values:
+            if "${" in value or "$(arg" in value:
+                yield " ".join(str(value).split()), start
 
 
 def _uses_xacro(document: Document) -> bool:

@@ -9,7 +9,7 @@ from lxml import etree
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import CLOSED_KINDS
 from multibot_rewrite.rewriters.tree import Node, Tree
-from multibot_rewrite.rewriting.document import Document
+from multibot_rewrite.rewriting.document import Document, locate
 
 
 class Host(NamedTuple):
@@ -64,7 +64,11 @@ def _format(document: Document, tree: Tree) -> Node:
     node = tree.formats.get(tag)
     if node is None:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats))
-        raise InputError(f"{document.file}:1:1: the root element is <{tag}>, expected {known}")
+        line, column = locate(document.source, document.starts[0])
+        raise InputError(
+            f"{document.file}:{line}:{column}: the root element is <{tag}>, expected {known}; "
+            "give a URDF or xacro file"
+        )
     return node
 
 

@@ -23,6 +23,7 @@ _SILENT = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
 _TAG = re.compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
 _ATTRIBUTE = re.compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _HINTS = (
+    ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),
     ("declaration allowed only at the start", "delete what stands before <?xml ...?>"),
     ("Invalid bytes in character encoding", "the text is not UTF-8; convert it: iconv -t UTF-8"),
@@ -72,6 +73,7 @@ def _refuse_bytes(source: bytes, file: str) -> None:
 
 def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
     message = " ".join(str(error.msg).split()).partition(", line ")[0]
+    message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
     hint = next((hint for start, hint in _HINTS if start in message), "mend the XML and try again")
     line, column = error.position
     return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"

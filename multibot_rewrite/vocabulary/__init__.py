@@ -124,20 +124,27 @@ class Vocabulary:
 def load_vocabulary(extra: tuple[str, ...] = ()) -> Vocabulary:
     """The built-in vocabulary and the files named in ``extra``.
 
-    Raises VocabularyError, naming file and line, when a section that is used has a mistake;
-    ``check_vocabulary`` reads every section.
+    Raises VocabularyError, naming file and line, for a mistake: at once where there are
+    ``extra`` files, else in a section that is used.
     """
     builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
     texts = {name: _text(f"{HERE}/{name}") for name in builtin}
-    return Vocabulary(texts | {path: _text(path) for path in extra})
+    vocabulary = Vocabulary(texts | {path: _text(path) for path in extra})
+    if extra:
+        check_vocabulary(vocabulary)
+    return vocabulary
 
 
 def _text(path: str) -> str:
     try:
         with open(path, encoding="utf-8-sig") as file:
             return file.read()
-    except (OSError, UnicodeDecodeError) as error:
-        raise VocabularyError(f"{path}: cannot be read: {error}") from None
+    except OSError as error:
+        raise VocabularyError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise VocabularyError(
+            f"{path}: cannot be read: it is not UTF-8; save it as UTF-8"
+        ) from None
 
 
 def check_vocabulary(vocabulary: Vocabulary) -> list[Rewriter]:
