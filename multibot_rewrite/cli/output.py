@@ -1,0 +1,116 @@
+"""What ``urdf-postfix`` prints and writes: results, diffs, findings, the summary."""
+
+from __future__ import annotations
+
+import argparse
+import io
+import os
+import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from itertools import chain
+
+from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.usage import input_name, target_path
+from multibot_rewrite.library import Rewrite
+from multibot_rewrite.model import Finding, UsageError
+from multibot_rewrite.naming import SEPARATORS
+
+MANY = 20
+
+
+def deliver(
+    options: argparse.Namespace,
+    results: Iterable[tuple[str, bytes]],
+    more: list[tuple[str, bytes]],
+    before: bytes,
+    total: int,
+) -> None:
+    """Print or write the results as they are made, and ``more`` files with them."""
+    target = options.input if options.in_place else options.output
+    if target:
+        files = ((target_path(target, robot), data) for robot, data in results)
+        write_all(_watched(chain(more, files), total))
+        return
+    write_all(more)
+    for robot, data in results:
+        _print(_diff(before, data, input_name(options), robot) if options.diff else data)
+
+
+def _watched(files: Iterable[tuple[str, bytes]], total: int) -> Iterable[tuple[str, bytes]]:
+    """The same files, with a progress bar where there are many and somebody is looking."""
+    if total < MANY or not sys.stderr.isatty():
+        return files
+    from rich.console import Console
+    from rich.progress import track
+
+    return track(files, "writing", total, console=Console(stderr=True), transient=True)
+
+
+def _diff(old: bytes, new: bytes, name: str, robot: str) -> bytes:
+    from difflib import diff_bytes, unified_diff
+
+    # Unlike splitlines, this ends lines at line feeds only, as patch does.
+    before, after = io.BytesIO(old).readlines(), io.BytesIO(new).readlines()
+    there = os.fsencode(name)
+    lines = diff_bytes(unified_diff, before, after, there, there + f" for {robot}".encode())
+    cut_short = b"\n\\ No newline at end of file\n"
+    return b"".join(line if line.endswith(b"\n") else line + cut_short for line in lines)
+
+
+def _print(data: bytes) -> None:
+    """Write to standard output, now: what fails must be told before the report."""
+    if sys.stdout is None:
+        raise UsageError("standard output is closed; name a file with -o")
+    try:
+        sys.stdout.buffer.write(data)
+        sys.stdout.buffer.flush()
+    except OSError as error:
+        # Python would complain again when it closes standard output.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        if isinstance(error, BrokenPipeError):
+            raise
+        raise UsageError(f"standard output: cannot be written: {error.strerror}") from None
+
+
+def changes_json(first: Rewrite, robots: list[str]) -> bytes:
+    """Every change for every robot, as ``--changes`` writes it."""
+    import json
+
+    rewrites = [first._replace(robot=robot) for robot in robots]
+    table = {
+        "file": first.template.inventory.document.file,
+        "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
+    }
+    return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
+
+
+def summary(first: Rewrite, robots: list[str]) -> str:
+    """One line: how many names of each kind were spelled."""
+    inventory, plan = first.template.inventory, first.template.plan
+    names = {
+        (kind, claim.value)
+        for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
+        for kind, _ in spelling
+    }
+    counts = Counter(kind for kind, _ in names)
+    known = [
+        f"{counts[kind]} {kind}{'s' * (counts[kind] > 1)}" for kind in SEPARATORS if counts[kind]
+    ]
+    inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
+    who = robots[0] if len(robots) == 1 else f"{len(robots)} robots"
+    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"
+
+
+def print_findings(findings: Sequence[Finding]) -> None:
+    """One line each to standard error, in colour on a terminal."""
+    colorful = sys.stderr.isatty() and "NO_COLOR" not in os.environ
+    paint = {"warning": "\033[33m", "error": "\033[31m"} if colorful else {}
+    for finding in findings:
+        color = paint.get(finding.level, "")
+        sys.stderr.write(f"{color}{finding}{color and chr(27) + '[0m'}\n")
+
+
+def say(text: str) -> None:
+    """A line to standard error."""
+    sys.stderr.write(f"urdf-postfix: {text}\n")

@@ -1,0 +1,164 @@
+"""The options of ``urdf-postfix``: how they are written, and which do not go together."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+from typing import NoReturn
+
+from multibot_rewrite import __version__
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.naming import LAYOUTS, SEPARATORS, SHARED_FRAMES, SHARED_TOPICS
+
+UNUSABLE = 2
+USAGE = "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]"
+EXAMPLES = """\
+examples:
+  urdf-postfix rover.urdf robot1                        to standard output
+  urdf-postfix rover.urdf robot1 -o robot1.urdf
+  urdf-postfix rover.urdf.xacro robot1 robot2 -o 'out/{robot}.urdf' use_sim:=true
+  urdf-postfix rover.urdf robot1 --affix prefix --layout frames-per-robot --separator link=_
+  urdf-postfix robot1.urdf robot1 --strip               the inverse
+  cat rover.urdf | urdf-postfix - robot1 --diff
+exit codes: 0 done; 1 findings that stop the job (any, with --strict); 2 wrong use or unreadable input
+"""
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line instead of listing every option."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(UNUSABLE, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line; what it cannot read ends the process with one line."""
+    result = _Parser(
+        prog="urdf-postfix",
+        usage=USAGE,
+        description="Rewrite a robot description for one robot or many, and prove nothing was missed.",
+        epilog=EXAMPLES,
+        formatter_class=_formatter,
+        allow_abbrev=False,
+    )
+    add = result.add_argument
+    add("input", metavar="INPUT", help="URDF, xacro (named *.xacro), or - for standard input")
+    add("words", nargs="*", metavar="ROBOT", help="robot names, and NAME:=VALUE for xacro")
+    add("-o", "--output", metavar="PATH", help="output file; {robot} stands for the robot's name")
+    add("--in-place", action="store_true", help="write the result over the input file")
+    layouts = "; ".join(f"{layout.name} ({layout.short}): {layout.about}" for layout in LAYOUTS)
+    add("--layout", default="postfix", help=f"where tf lives. {layouts} (default: postfix)")
+    add("--affix", default="postfix", help="postfix (default) or prefix")
+    add("--topics", help="postfix, prefix or namespace (default: what the layout implies)")
+    add(
+        "--separator",
+        action="append",
+        default=[],
+        metavar="KIND=SEP",
+        help="defaults: " + " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items()),
+    )
+    add(
+        "--shared-frames",
+        default=",".join(SHARED_FRAMES),
+        metavar="A,B",
+        help="default: %(default)s",
+    )
+    add(
+        "--shared-topics",
+        default=",".join(SHARED_TOPICS),
+        metavar="A,B",
+        help="default: %(default)s",
+    )
+    add("--vocabulary", action="append", default=[], metavar="FILE", help="more vocabulary")
+    add("--strip", action="store_true", help="undo a rewrite made with the same options")
+    add("--again", action="store_true", help="rewrite although it was rewritten for this robot")
+    add("--diff", action="store_true", help="print a unified diff instead of the result")
+    add("--changes", metavar="FILE", help="write every change as JSON")
+    add("--strict", action="store_true", help="warnings stop the job")
+    add("--quiet", action="store_true", help="no report, only findings")
+    add("--version", action="version", version=f"%(prog)s {__version__}")
+    return result
+
+
+def _formatter(prog: str) -> argparse.HelpFormatter:
+    # A given width spares argparse the import of shutil at every start.
+    return argparse.RawDescriptionHelpFormatter(prog, width=96)
+
+
+def check_use(options: argparse.Namespace, robots: list[str]) -> None:
+    """Raise UsageError for what cannot be meant."""
+    if not robots:
+        raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
+    _check_together(options)
+    if xacro_args(options) and not options.input.endswith(".xacro"):
+        raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is not named *.xacro")
+    if len(robots) > 1 and (options.strip or options.in_place):
+        raise UsageError("--strip and --in-place take one robot at a time")
+    _check_path("--output", options.output, "{robot}")
+    _check_path("--changes", options.changes, "")
+    if len(robots) > 1 and not options.diff and "{robot}" not in (options.output or ""):
+        raise UsageError("several robots need one file each: -o 'out/{robot}.urdf'")
+    _check_targets(
+        options, [target_path(options.output, robot) for robot in robots if options.output]
+    )
+
+
+def _check_together(options: argparse.Namespace) -> None:
+    """Options of which one would silently do nothing beside the other."""
+    if options.output is not None and options.in_place:
+        raise UsageError("--output and --in-place exclude each other")
+    if options.diff and (options.output is not None or options.in_place):
+        raise UsageError("--diff prints to standard output: leave out --output and --in-place")
+    if options.strip and options.changes is not None:
+        raise UsageError("--changes lists what a rewrite changes, it cannot go with --strip")
+    if options.in_place and (options.input == "-" or options.input.endswith(".xacro")):
+        raise UsageError("--in-place needs a URDF file, not standard input or xacro")
+
+
+def _check_path(option: str, path: str | None, known: str) -> None:
+    if path == "":
+        raise UsageError(f"{option} is empty, give the name of a file")
+    unknown = [word for word in re.findall(r"\{.*?\}", path or "") if word != known]
+    if unknown:
+        hint = f"only {known} is filled in" if known else "one file serves all robots"
+        raise UsageError(f"{option} {path}: unknown placeholder {unknown[0]}, {hint}")
+
+
+def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
+    """No result may land on the input, nor the list of changes on a result."""
+    changes = [options.changes] if options.changes else []
+    for path in [*targets, *changes]:
+        if os.path.isfile(path) and _same_file(path, options.input):
+            raise UsageError(f"{path} is the input file; choose another name, or --in-place")
+    if changes and os.path.realpath(changes[0]) in {os.path.realpath(path) for path in targets}:
+        raise UsageError(f"{changes[0]}: the result and --changes need a file each")
+
+
+def _same_file(path: str, other: str) -> bool:
+    return os.path.isfile(other) and os.path.samefile(path, other)
+
+
+def target_path(output: str, robot: str) -> str:
+    """The output file of one robot."""
+    return output.replace("{robot}", robot)
+
+
+def input_name(options: argparse.Namespace) -> str:
+    """The input as messages call it."""
+    return "<stdin>" if options.input == "-" else str(options.input)
+
+
+def separators(options: argparse.Namespace) -> dict[str, str]:
+    """``--separator`` as kind -> mark."""
+    pairs = [pair.partition("=") for given in options.separator for pair in given.split(",")]
+    wrong = next((kind for kind, equals, _ in pairs if not equals), None)
+    if wrong is not None:
+        raise UsageError(f"--separator {wrong}: write KIND=SEP, for example link=_")
+    return {kind: mark for kind, _, mark in pairs}
+
+
+def xacro_args(options: argparse.Namespace) -> dict[str, str]:
+    """The words that are xacro arguments, as name -> value."""
+    pairs = [word.partition(":=") for word in options.words if ":=" in word]
+    return {name: value for name, _, value in pairs}
