@@ -21,7 +21,14 @@ from lxml import etree
 REPO = Path(__file__).parents[1]
 FIXTURES = REPO / "fixtures"
 CORPUS = REPO.parent / "shared" / "corpus"
-WHEELS = ("airo-models", "dexmate-urdf", "hello-robot-stretch-urdf", "icub-models")
+WHEELS = (
+    "airo-models",
+    "dexmate-urdf",
+    "hello-robot-stretch-urdf",
+    "hex-util-urdf",
+    "icub-models",
+    "robot-properties-fingers",
+)
 OPTIONAL_WHEELS = ("example-robot-data",)
 ROBOT = "robot1"
 BARE_LAYOUTS = ("L1", "tf-per-robot")

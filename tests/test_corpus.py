@@ -24,7 +24,7 @@ from multibot_rewrite import MultibotError, ProofError, RewriteRefused, rewrite,
 from multibot_rewrite.naming import make_naming
 
 REFUSALS = FIXTURES / "corpus_refusals.json"
-LEAST_CORPUS, LEAST_WHEELS, LEAST_WHEEL_FILES = 1000, 3, 60
+LEAST_CORPUS, LEAST_WHEELS, LEAST_WHEEL_FILES = 1000, 3, 100
 FLEET = tuple(f"r{number}" for number in range(1, 11))
 DEEP = (
     {"layout": "L1"},
