@@ -142,7 +142,11 @@ def test_enough_wheels(wheels: dict[str, Path]) -> None:
 @pytest.mark.deep
 @pytest.mark.parametrize("options", DEEP, ids=str)
 def test_corpus_with_options(corpus: dict[str, Path], options: Mapping[str, object]) -> None:
-    assert survey(corpus, options) == on_record("corpus", corpus)
+    refused = survey(corpus, options)
+    done = [name for name, why in refused.items() if why.startswith("MB106")]
+    # Some files were expanded with the namespace robot1: for L1 nothing is left to do.
+    assert all(ROBOT.encode() in corpus[name].read_bytes() for name in done)
+    assert {k: v for k, v in refused.items() if k not in done} == on_record("corpus", corpus)
 
 
 @pytest.mark.deep
