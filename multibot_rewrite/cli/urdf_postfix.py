@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import io
 import signal
 import sys
@@ -29,6 +30,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # Closed by the caller: nobody wants to hear anything.
     sys.stderr = sys.stderr or io.StringIO()
     if arguments is None:
+        # A short process of its own: nothing it makes needs the collector of cycles.
+        gc.disable()
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return _run(parser().parse_intermixed_args(arguments))
