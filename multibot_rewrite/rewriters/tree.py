@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
 
+# The section for plugins nobody knows that have a <ros> block: gazebo_ros::Node reads that.
+ANY_WITH_ROS = "any_with_ros"
+
+
 class Node:
     """What is known about the elements at one place of the document.
 
@@ -156,7 +160,8 @@ def plugin_keys(element: _Element) -> list[str]:
     """
     library = element.get("filename", "").strip().rpartition("/")[2]
     class_ = element.get("name", "").strip()
-    return [library_key(library), class_.replace("ignition::gazebo::", "gz::sim::")]
+    known = [library_key(library), class_.replace("ignition::gazebo::", "gz::sim::")]
+    return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
 
 
 def library_key(library: str) -> str:

@@ -17,10 +17,11 @@ from multibot_rewrite.naming import (
     is_keyword,
 )
 from multibot_rewrite.rewriters.spelling import names_in, resolve
-from multibot_rewrite.rewriters.tree import Tree, library_key
+from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
 from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.vocabulary import Rewriter
 
 
 def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
@@ -180,12 +181,16 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             yield finding(inventory.document, claim.start, "MB305", WARNING, message, hint)
 
 
+def _is_unknown(rewriter: Rewriter) -> bool:
+    return rewriter.select == "plugin" or rewriter.names[0] == ANY_WITH_ROS
+
+
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
     """Plugins no section knows: what their parameters name can only be guessed."""
     known = {}
     for host in inventory.hosts:
         rewriter = host.node.rewriter
-        if rewriter is None or rewriter.type != "element" or rewriter.select != "plugin":
+        if rewriter is None or not _is_unknown(rewriter):
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
         if name not in known:
@@ -196,7 +201,7 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
             host.start,
             "MB902",
             WARNING,
-            f"plugin {name!r} is not in the vocabulary: its parameters stay as they are",
+            f"plugin {name!r} is not in the vocabulary: its own parameters stay as they are",
             f"the nearest known one is {near!r}" if near else "",
         )
 
