@@ -32,7 +32,7 @@ class Rewrite(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The output as str, without its encoding declaration getting in the way."""
+        """The output as str."""
         return self.data.decode()
 
     @property
@@ -93,11 +93,16 @@ def strip(
     naming: Naming | None = None,
     vocabulary: Sequence[str] = (),
     file: str = "",
+    **policy: object,
 ) -> bytes:
-    """Undo ``rewrite`` from the rewritten text alone; the options must be those it was made with."""
+    """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
+
+    ``policy`` are the ``layout``, ``affix``, ``topics``, ``separators``, ``shared_frames`` and
+    ``shared_topics`` it was made with, or ``naming`` is all of them. Raises as ``rewrite`` does.
+    """
     data, name = read_source(source, {})
     check_robot_name(robot)
-    chosen = naming or make_naming()
+    chosen = naming or make_naming(**policy)  # type: ignore[arg-type]
     return pipeline.strip(data, file or name, robot, chosen, builtin_tree(tuple(vocabulary)))
 
 
@@ -111,7 +116,7 @@ def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, s
     if path.endswith(".xacro"):
         from multibot_rewrite.xacro_source import expand
 
-        return expand(path, xacro_args), path
+        return expand(path, xacro_args), f"{path} (expanded)"
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is not named ….xacro")
     return read_file(path), path

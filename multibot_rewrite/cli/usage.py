@@ -146,7 +146,10 @@ def target_path(output: str, robot: str) -> str:
 
 def input_name(options: argparse.Namespace) -> str:
     """The input as messages call it."""
-    return "<stdin>" if options.input == "-" else str(options.input)
+    if options.input == "-":
+        return "<stdin>"
+    expanded = " (expanded)" if options.input.endswith(".xacro") else ""
+    return f"{options.input}{expanded}"
 
 
 def separators(options: argparse.Namespace) -> dict[str, str]:
