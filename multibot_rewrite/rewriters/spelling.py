@@ -29,11 +29,9 @@ def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
     return () if elsewhere and parts[0].text not in declared["model"] else parts
 
 
-def spelling_key(claim: Claim, declared: Declared) -> tuple[object, str]:
-    """Claims of one key are spelled alike: a declared link or joint everywhere, others per site."""
-    site, value = claim.site, claim.value
-    plain = site.plain
-    return (plain if plain and value in declared[plain] else id(site)), value
+def spelling_key(claim: Claim) -> tuple[object, str]:
+    """Claims of one key are spelled alike: a link or joint at every site, others at each site."""
+    return claim.site.plain or id(claim.site), claim.value
 
 
 def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:

@@ -109,7 +109,8 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
     begin = source.find(written, start)
     if begin < 0 or source.find(b">", start, begin) >= 0:
         return attribute_slot(source, start, attribute, value)
-    if source.find(b"'", start, begin) >= 0 or source.count(b'"', start, begin) % 2:
+    earlier = source.find(b"=", start, begin) >= 0
+    if earlier and (b"'" in source[start:begin] or source.count(b'"', start, begin) % 2):
         return attribute_slot(source, start, attribute, value)
     return begin + len(attribute) + 3, begin + len(written) - 1
 

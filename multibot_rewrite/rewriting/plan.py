@@ -96,7 +96,7 @@ def _spellings(inventory: Inventory, naming: Naming) -> list[Spelling]:
     known: dict[tuple[object, str], Spelling] = {}
     result = []
     for claim in inventory.claims:
-        key = spelling_key(claim, declared)
+        key = spelling_key(claim)
         spelling = known.get(key)
         if spelling is None:
             spelling = known[key] = spell(claim, declared, naming)
@@ -111,9 +111,10 @@ def _edits(inventory: Inventory, spellings: list[Spelling]) -> tuple[list[Edit],
     for claim, spelling in zip(inventory.claims, spellings, strict=True):
         if not spelling:
             continue
-        slot = value_slot(source, *claim[2:])
+        _, _, start, attribute, value = claim
+        slot = value_slot(source, start, attribute, value)
         for _, (at, before, after) in spelling:
-            place = value_place(source, slot, claim.value, at) if slot else None
+            place = value_place(source, slot, value, at) if slot else None
             if place is None:
                 findings.append(_not_editable(inventory, claim))
                 break

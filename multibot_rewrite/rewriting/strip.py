@@ -19,7 +19,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     claims = outside(inventory.claims, edits)
     known: dict[tuple[object, str], list[tuple[int, int]]] = {}
     for claim in claims:
-        key = spelling_key(claim, inventory.declared)
+        key = spelling_key(claim)
         spans = known.get(key)
         if spans is None:
             spans = known[key] = _spans(inventory, claim, naming, robot)
@@ -58,7 +58,7 @@ def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> li
 
 
 def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:
-    slot = value_slot(source, *claim[2:])
+    slot = value_slot(source, claim.start, claim.attribute, claim.value)
     if slot is None:
         return []
     places = [[value_place(source, slot, claim.value, at) for at in span] for span in spans]
