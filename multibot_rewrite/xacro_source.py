@@ -65,7 +65,7 @@ def _message(path: str, inner: str, error: Exception) -> str:
 
 def _reason(error: Exception) -> str:
     if isinstance(error, ExpatError):
-        return f"not well-formed XML: {errors.messages[error.code]}"
+        return f"not well-formed XML: {errors.messages.get(error.code, error)}"
     if isinstance(error, UnicodeDecodeError):
         return "the text is not UTF-8"
     text = str(error).partition(" [Errno")[0]
