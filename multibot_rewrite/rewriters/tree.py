@@ -17,6 +17,11 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
 
+# Prefixes of the vocabulary; a document may bind others to the same namespaces.
+NAMESPACES = {
+    "gz": "http://gazebosim.org/schema",
+    "ignition": "http://ignitionrobotics.org/schema",
+}
 # The section for plugins nobody knows that have a <ros> block: gazebo_ros::Node reads that.
 ANY_WITH_ROS = "any_with_ros"
 
@@ -55,6 +60,9 @@ class Node:
 
     def _add(self, site: Site) -> None:
         steps, attribute = split_path(site.path)
+        prefix, colon, local = attribute.partition(":")
+        if colon and prefix in NAMESPACES:
+            attribute = f"{{{NAMESPACES[prefix]}}}{local}"
         node = self
         for step in steps:
             node = node._step(step, site.role != "keep")

@@ -116,10 +116,14 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
-    """Where the value of an attribute stands, however it is quoted, spaced and escaped."""
-    key = name.encode()
+    """Where the value of an attribute stands, however it is quoted, spaced and escaped.
+
+    A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
+    """
+    uri, _, local = name.encode().rpartition(b"}")
     for found in _ATTRIBUTE.finditer(source, start, tag_end(source, start)):
-        if found[1] == key:
+        prefix, _, written = found[1].rpartition(b":")
+        if (written == local and prefix) if uri else found[1] == local:
             begin, end = found.start(2) + 1, found.end(2) - 1
             return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
     return None
