@@ -39,8 +39,8 @@ NOTE = """
 - **One robot.** Parsing costs 0.55 of the floor, start-tag offsets 0.3, walking the tree beside the
   vocabulary 0.6: with lxml's tree and one Python object a name, plan and apply would have 0.2 left for
   hundreds of names. They take about 1.2. A loop that merges the steps measured no faster.
-- **The command.** Importing lxml and our modules is 1.3 of importing lxml; the rewrite and its proof are
-  the rest.
+- **The command.** Importing lxml and our modules is 1.3 of importing lxml; the rewrite and its proof
+  are the rest.
 - **A further robot at 2 MB** is one `bytes.join` of some 20,000 pieces; at 75 kB it is below its goal.
 
 The proof reads, walks and strips the output anew, so it costs more than the rewrite. It is not
