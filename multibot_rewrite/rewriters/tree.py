@@ -71,7 +71,9 @@ class Node:
         if site.role == "keep":
             return
         if attribute:
-            node.attributes = (*node.attributes, (attribute, site))
+            # A plugin's own section has the last word over what holds for every plugin.
+            others = (pair for pair in node.attributes if pair[0] != attribute)
+            node.attributes = (*others, (attribute, site))
         else:
             node.text = site
 
