@@ -25,6 +25,31 @@ exit codes: 0 done; 1 findings that stop the job (any, with --strict); 2 wrong u
 """
 
 
+_LAYOUTS = "; ".join(f"{layout.name} ({layout.short}): {layout.about}" for layout in LAYOUTS)
+_SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
+# Name, default, what stands for the value, help.
+VALUES = (
+    ("--layout", "postfix", "NAME", f"where tf lives. {_LAYOUTS} (default: postfix)"),
+    ("--affix", "postfix", "SIDE", "postfix (default) or prefix"),
+    ("--topics", None, "HOW", "postfix, prefix or namespace (default: what the layout implies)"),
+    ("--shared-frames", ",".join(SHARED_FRAMES), "A,B", "default: %(default)s"),
+    ("--shared-topics", ",".join(SHARED_TOPICS), "A,B", "default: %(default)s"),
+    ("--changes", None, "FILE", "write every change as JSON"),
+)
+REPEATED = (
+    ("--separator", "KIND=SEP", f"defaults: {_SEPARATORS}"),
+    ("--vocabulary", "FILE", "more vocabulary"),
+)
+SWITCHES = (
+    ("--in-place", "write the result over the input file"),
+    ("--strip", "undo a rewrite made with the same options"),
+    ("--again", "rewrite although it was rewritten for this robot"),
+    ("--diff", "print a unified diff instead of the result"),
+    ("--strict", "warnings stop the job"),
+    ("--quiet", "no report, only findings"),
+)
+
+
 class _Parser(argparse.ArgumentParser):
     """Says what is wrong in one line instead of listing every option."""
 
@@ -42,42 +67,22 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=_formatter,
         allow_abbrev=False,
     )
-    add = result.add_argument
-    add("input", metavar="INPUT", help="URDF, xacro (named *.xacro), or - for standard input")
-    add("words", nargs="*", metavar="ROBOT", help="robot names, and NAME:=VALUE for xacro")
-    add("-o", "--output", metavar="PATH", help="output file; {robot} stands for the robot's name")
-    add("--in-place", action="store_true", help="write the result over the input file")
-    layouts = "; ".join(f"{layout.name} ({layout.short}): {layout.about}" for layout in LAYOUTS)
-    add("--layout", default="postfix", help=f"where tf lives. {layouts} (default: postfix)")
-    add("--affix", default="postfix", help="postfix (default) or prefix")
-    add("--topics", help="postfix, prefix or namespace (default: what the layout implies)")
-    add(
-        "--separator",
-        action="append",
-        default=[],
-        metavar="KIND=SEP",
-        help="defaults: " + " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items()),
+    result.add_argument(
+        "input", metavar="INPUT", help="URDF, xacro (named *.xacro), or - for standard input"
     )
-    add(
-        "--shared-frames",
-        default=",".join(SHARED_FRAMES),
-        metavar="A,B",
-        help="default: %(default)s",
+    result.add_argument(
+        "words", nargs="*", metavar="ROBOT", help="robot names, and NAME:=VALUE for xacro"
     )
-    add(
-        "--shared-topics",
-        default=",".join(SHARED_TOPICS),
-        metavar="A,B",
-        help="default: %(default)s",
+    result.add_argument(
+        "-o", "--output", metavar="PATH", help="output file; {robot} stands for the robot's name"
     )
-    add("--vocabulary", action="append", default=[], metavar="FILE", help="more vocabulary")
-    add("--strip", action="store_true", help="undo a rewrite made with the same options")
-    add("--again", action="store_true", help="rewrite although it was rewritten for this robot")
-    add("--diff", action="store_true", help="print a unified diff instead of the result")
-    add("--changes", metavar="FILE", help="write every change as JSON")
-    add("--strict", action="store_true", help="warnings stop the job")
-    add("--quiet", action="store_true", help="no report, only findings")
-    add("--version", action="version", version=f"%(prog)s {__version__}")
+    for name, default, metavar, help_ in VALUES:
+        result.add_argument(name, default=default, metavar=metavar, help=help_)
+    for name, metavar, help_ in REPEATED:
+        result.add_argument(name, action="append", default=[], metavar=metavar, help=help_)
+    for name, help_ in SWITCHES:
+        result.add_argument(name, action="store_true", help=help_)
+    result.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     return result
 
 
