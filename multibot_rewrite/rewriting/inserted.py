@@ -52,7 +52,8 @@ def _parent_edits(
     expanded = source[end - 2 : end] == b"/>"
     lead = _lead(source, start, end)
     elements = _elements(items, lead)
-    about = ", ".join(dict.fromkeys(item.old for item in items)).replace("--", "- -")
+    old = ("no namespace" if item.kind == "namespace" else item.old for item in items)
+    about = ", ".join(dict.fromkeys(old)).replace("--", "- -")
     word = " expanded" if expanded else ""
     marker = f"<!--multibot {HOLE} +{len(elements)}{word}: {about}: {WHY}-->"
     text = "".join(lead + part for part in (marker, *elements))
