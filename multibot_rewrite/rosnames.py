@@ -26,7 +26,6 @@ class RemapRule(NamedTuple):
     node: str
     source: str
     target: str
-    node_at: int
     source_at: int
     target_at: int
     scheme: str
@@ -42,7 +41,7 @@ def parse_remap(text: str) -> RemapRule | None:
     source, target = left[source_at:], text[target_at:]
     if not found or not source.strip() or not target.strip() or ":" in source or ":=" in target:
         return None
-    return RemapRule(node, source, target, 0, source_at, target_at, scheme)
+    return RemapRule(node, source, target, source_at, target_at, scheme)
 
 
 def _node_part(left: str) -> tuple[str, int]:

@@ -36,9 +36,9 @@ def expand(path: str, arguments: Mapping[str, str]) -> bytes:
     try:
         document = xacro.process_file(path, mappings=dict(arguments))
         text: str = document.toprettyxml(indent="  ")
-    except Exception as error:  # xacro runs the file's own Python expressions
+    except Exception as error:  # xacro runs the file's own Python: anything may come; it is chained
         inner = (xacro.filestack or [path])[-1]
-        raise InputError(_message(path, inner, error)) from None
+        raise InputError(_message(path, inner, error)) from error
     return text.encode()
 
 

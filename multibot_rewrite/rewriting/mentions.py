@@ -64,9 +64,11 @@ def _unclaimed(
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         slots = [(str(key), str(value)) for key, value in element.items()]
         slots.append(("", (element.text or "").strip()))
+        slots = [slot for slot in slots if (start, slot[0]) not in claimed]
+        # Text behind a child or comment is never what a site claims.
         slots += [("", (child.tail or "").strip()) for child in element]
         for attribute, value in slots:
-            if value in suspects and (start, attribute) not in claimed:
+            if value in suspects:
                 yield element, start, attribute, value
 
 

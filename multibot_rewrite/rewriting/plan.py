@@ -25,7 +25,7 @@ class Plan(NamedTuple):
     """Edits in source order, what they mean, and what prevents them.
 
     ``spellings`` are aligned with the inventory's claims. ``collisions`` are the recomputed contact
-    collisions, by claim index.
+    collisions with their new text.
     """
 
     edits: list[Edit]
