@@ -26,6 +26,7 @@ SEPARATORS = {
     "hardware": "_",
     "gpio": "_",
     "model": "_",
+    "group": "_",
     "node": "_",
     "stem": "_",
     "topic": "/",
@@ -43,7 +44,9 @@ FRAME_KINDS = frozenset({"link", "frame"})
 # A stem is a word topics are made of (camera_name); a subtopic stands below a stem or namespace.
 TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # A use of one of these must be declared in the same file.
-CLOSED_KINDS = frozenset({"link", "joint", "model"})
+CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
+# Declarations of these are looked up by name.
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame")
 # Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
 NOT_PLAIN = frozenset("{}$ ")
 
@@ -97,21 +100,28 @@ def make_naming(
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
 ) -> Naming:
     """Build the policy from plain words; raises UsageError for a word that is not known.
 
     ``layout`` is a name or short name of ``LAYOUTS``; ``affix`` is ``prefix`` or ``postfix``;
     ``topics`` is ``postfix``, ``prefix`` or ``namespace`` (default: what the layout implies).
+    ``groups`` is ``keep`` or ``rename``: MoveIt's YAML names an SRDF's groups, and each robot's
+    move_group has its own.
     """
     chosen = find_layout(layout)
     _one_of("affix", affix, (POSTFIX, PREFIX))
     strategy = topics or (NAMESPACE if chosen.namespaced else affix)
     _one_of("topics", strategy, (POSTFIX, PREFIX, NAMESPACE))
+    _one_of("groups", groups, ("keep", "rename"))
+    active = _active(chosen, strategy, _separators(separators or {}))
+    if groups == "keep":
+        active.pop("group", None)
     return Naming(
         chosen,
         affix,
         strategy,
-        _active(chosen, strategy, _separators(separators or {})),
+        active,
         frozenset(name.strip("/") for name in shared_frames),
         frozenset(name.strip("/") for name in shared_topics)
         | (frozenset() if chosen.tf_per_robot else frozenset(TF_TOPICS)),

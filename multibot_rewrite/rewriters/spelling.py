@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from multibot_rewrite.model import Claim
+from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import (
     CLOSED_KINDS,
     FRAME_KINDS,
@@ -14,19 +12,16 @@ from multibot_rewrite.naming import (
     affix,
     is_keyword,
 )
-from multibot_rewrite.rewriters.forms import FORMS, Part
+from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, Part
 
 HOLE = "\0"
-Declared = Mapping[str, Mapping[str, Claim]]
 # Kind and affix of each renamed name in one value, in order; ``at`` counts from the value's start.
 Spelling = tuple[tuple[str, Affix], ...]
 
 
 def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
     """The names in a claimed value; none where it stands in the scope of another model."""
-    parts = FORMS[claim.site.form](claim.value, claim.site.kinds)
-    elsewhere = len(parts) > 1 and claim.site.form == "scoped"
-    return () if elsewhere and parts[0].text not in declared["model"] else parts
+    return FORMS[claim.site.form](claim.value, claim.site.kinds, declared)
 
 
 def spelling_key(claim: Claim) -> tuple[object, str]:
@@ -44,28 +39,42 @@ def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
         there = affix(naming, plain, claim.value)
         return ((plain, there),) if there else ()
     result = []
-    for at, text, kinds in names_in(claim, declared):
-        kind = resolve(text, kinds, site.role, declared)
-        there = affix(naming, kind, text, site.namespaced) if kind else None
+    for part in names_in(claim, declared):
+        kind = kind_of(part, site.role, declared)
+        there = affix(naming, kind, part.text, site.namespaced) if kind else None
         if there is not None:
-            result.append((kind, there._replace(at=at + there.at) if at else there))
+            result.append((kind, there._replace(at=part.at + there.at) if part.at else there))
     return tuple(result)
 
 
-def resolve(text: str, kinds: tuple[str, ...], role: str, declared: Declared) -> str:
-    """Which of its kinds a name is; empty for a use of something that is not declared.
+def must_be_declared(site: Site) -> bool:
+    """A use of a name that this file must declare."""
+    return site.kinds[-1] in CLOSED_KINDS or site.form == "scoped"
+
+
+def kind_of(part: Part, role: str, declared: Declared) -> str:
+    """Which of its kinds a name is; empty for a use of something that is not declared."""
+    if part.matched:
+        return part.matched[0]
+    return resolve(part.text, part.kinds, role, declared, part.closed)
+
+
+def resolve(text: str, kinds: Kinds, role: str, declared: Declared, closed: bool = False) -> str:
+    """Which of ``kinds`` a name is; empty for a use of something that must be declared and is not.
 
     A frame that names a link is spelled like the link, one leading slash aside.
     """
     if role == "declares":
         return kinds[0]
     for kind in kinds:
-        if kind in CLOSED_KINDS and text in declared[kind]:
+        if text in declared.get(kind, ()):
             return kind
     bare = text[1:] if text.startswith("/") and not text.startswith("//") else text
     if not FRAME_KINDS.isdisjoint(kinds) and bare in declared["link"]:
         return "link"
-    return "" if is_keyword(text) else next((k for k in kinds if k not in CLOSED_KINDS), "")
+    if closed or is_keyword(text):
+        return ""
+    return next((kind for kind in kinds if kind not in CLOSED_KINDS), "")
 
 
 def respelled(value: str, spelling: Spelling, robot: str) -> str:

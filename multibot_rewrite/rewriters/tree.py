@@ -17,11 +17,22 @@ if TYPE_CHECKING:
     from lxml.etree import _Element
 
 
+_STAGE = "http://playerstage.sourceforge.net/gazebo/xmlschema/#"
 # Prefixes of the vocabulary; a document may bind others to the same namespaces.
 NAMESPACES = {
     "gz": "http://gazebosim.org/schema",
     "ignition": "http://ignitionrobotics.org/schema",
+    "drake": "http://drake.mit.edu",
+    **{prefix: _STAGE + prefix for prefix in ("controller", "sensor", "joint")},
 }
+
+
+def qualified(name: str) -> str:
+    """A tag or attribute of the vocabulary as lxml writes it."""
+    prefix, colon, local = name.partition(":")
+    return f"{{{NAMESPACES[prefix]}}}{local}" if colon and prefix in NAMESPACES else name
+
+
 # The section for plugins nobody knows that have a <ros> block: gazebo_ros::Node reads that.
 ANY_WITH_ROS = "any_with_ros"
 
@@ -60,9 +71,7 @@ class Node:
 
     def _add(self, site: Site) -> None:
         steps, attribute = split_path(site.path)
-        prefix, colon, local = attribute.partition(":")
-        if colon and prefix in NAMESPACES:
-            attribute = f"{{{NAMESPACES[prefix]}}}{local}"
+        attribute = qualified(attribute)
         node = self
         for step in steps:
             node = node._step(step, site.role != "keep")
@@ -79,6 +88,7 @@ class Node:
 
     def _step(self, step: str, active: bool) -> Node:
         tag, attribute, value = split_step(step)
+        tag = qualified(tag)
         child = self.children.setdefault(tag, Node())
         if active:
             self.active[tag] = child
@@ -94,7 +104,8 @@ class Node:
 class Tree:
     """The whole tree for one vocabulary.
 
-    ``formats`` maps a document's root tag to its node; ``tags`` are all tags worth a visit so far.
+    ``formats`` maps the sections of root elements to their nodes; ``tags`` are all tags worth a
+    visit so far.
     """
 
     def __init__(self, vocabulary: Vocabulary) -> None:
@@ -109,10 +120,18 @@ class Tree:
         for node in nodes.values():
             self._know(node)
 
+    def format_of(self, root: _Element) -> Node | None:
+        """The node of a root element: of those with its tag the one that knows most children."""
+        found = [node for name, node in self.formats.items() if _tag(name) == root.tag]
+        if len(found) < 2:
+            return found[0] if found else None
+        tags = {child.tag for child in root}
+        return max(found, key=lambda node: len(node.children.keys() & tags))
+
     def _hang(self, name: str, node: Node, nodes: dict[str, Node]) -> None:
         rewriter = node.rewriter
         assert rewriter is not None
-        tag = name.rpartition(".")[2]
+        tag = _tag(name)
         if rewriter.select:
             if rewriter.select not in SELECTORS:
                 raise _wrong(rewriter, f"select: is one of {', '.join(SELECTORS)}")
@@ -121,7 +140,7 @@ class Tree:
             if parent != "/" and parent not in nodes:
                 raise _wrong(rewriter, f"at: {parent}: there is no [element {parent}]")
             if parent == "/":
-                self.formats[tag] = node
+                self.formats[name] = node
             elif nodes[parent].children.setdefault(tag, node) is not node:
                 raise _wrong(rewriter, f"{parent}/{tag} has a section or sites already")
             else:
@@ -157,6 +176,11 @@ class Tree:
             self._chosen[key] = node
             self._know(node)
         return self._chosen[key]
+
+
+def _tag(name: str) -> str:
+    """The tag that a section is for: ``srdf.group`` is about ``<group>``."""
+    return qualified(name.rpartition(".")[2])
 
 
 def _wrong(rewriter: Rewriter, message: str) -> VocabularyError:

@@ -16,7 +16,7 @@ from multibot_rewrite.naming import (
     affix,
     is_keyword,
 )
-from multibot_rewrite.rewriters.spelling import names_in, resolve
+from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
@@ -92,14 +92,14 @@ def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
     declared = inventory.declared
     for claim in inventory.claims:
         site = claim.site
-        if site.role != "uses" or site.kinds[-1] not in CLOSED_KINDS:
+        if site.role != "uses" or not must_be_declared(site):
             continue
-        if any(claim.value in declared[kind] for kind in site.kinds):
+        if any(claim.value in declared.get(kind, ()) for kind in site.kinds):
             continue
         for part in names_in(claim, declared):
             if part.text in naming.shared_frames or is_keyword(part.text):
                 continue
-            if not resolve(part.text, part.kinds, site.role, declared):
+            if not kind_of(part, site.role, declared):
                 yield _dangling(inventory, claim, part.text, part.kinds)
 
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.model import Claim, InputError, Site
-from multibot_rewrite.naming import CLOSED_KINDS
+from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.document import Document, locate
 
@@ -60,14 +60,13 @@ def collect(document: Document, tree: Tree) -> Inventory:
 
 
 def _format(document: Document, tree: Tree) -> Node:
-    tag = document.root.tag
-    node = tree.formats.get(tag)
+    node = tree.format_of(document.root)
     if node is None:
-        known = " or ".join(f"<{name}>" for name in sorted(tree.formats))
+        known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
         line, column = locate(document.source, document.starts[0])
         raise InputError(
-            f"{document.file}:{line}:{column}: the root element is <{tag}>, expected {known}; "
-            "give a URDF or xacro file"
+            f"{document.file}:{line}:{column}: the root element is <{document.root.tag}>, expected "
+            f"{known}; give a robot description"
         )
     return node
 
@@ -90,7 +89,7 @@ def _applies(site: Site, element: etree._Element) -> bool:
 
 
 def _declared(claims: list[Claim]) -> dict[str, dict[str, Claim]]:
-    declared: dict[str, dict[str, Claim]] = {kind: {} for kind in CLOSED_KINDS}
+    declared: dict[str, dict[str, Claim]] = {kind: {} for kind in DECLARED_KINDS}
     for claim in claims:
         site = claim.site
         name = claim.value.strip()

@@ -81,11 +81,10 @@ def kept(element: etree._Element, attribute: str, tree: Tree) -> Site | None:
 def node_of(element: etree._Element, tree: Tree) -> Node | None:
     """The node of the tree that serves an element."""
     parent = element.getparent()
-    children = tree.formats if parent is None else None
-    if parent is not None:
-        above = node_of(parent, tree)
-        children = above.children if above else None
-    node = children.get(element.tag) if children else None
+    if parent is None:
+        return tree.format_of(element)
+    above = node_of(parent, tree)
+    node = above.children.get(str(element.tag)) if above else None
     return node.select(element) if node is not None and node.select is not None else node
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.model import ERROR, Claim, Finding
-from multibot_rewrite.naming import CLOSED_KINDS, Naming, affix, removal
-from multibot_rewrite.rewriters.spelling import names_in, resolve
+from multibot_rewrite.naming import Naming, affix, removal
+from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import finding
 from multibot_rewrite.rewriting.inserted import markers
@@ -42,7 +42,7 @@ def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, b
     for claim in inventory.claims:
         site = claim.site
         for part in names_in(claim, inventory.declared):
-            kind = resolve(part.text, part.kinds, site.role, inventory.declared)
+            kind = kind_of(part, site.role, inventory.declared)
             if kind and affix(naming, kind, part.text, site.namespaced) is not None:
                 yield kind, part.text, site.namespaced
 
@@ -54,7 +54,7 @@ def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> l
         _collision(inventory, kind, claim, name, robot)
         for robot in (robots if kept else ())
         for kind, name, claim in kept
-        if _stem(naming, robot, kind, name) in inventory.declared[kind]
+        if _stem(naming, robot, kind, name) in inventory.declared.get(kind, ())
     ]
 
 
@@ -66,10 +66,10 @@ def _kept(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, Clai
             if affix(naming, kind, name) is None:
                 yield kind, name, claim
     for claim in inventory.claims:
-        if claim.site.role != "uses" or claim.site.kinds[-1] not in CLOSED_KINDS:
+        if claim.site.role != "uses" or not must_be_declared(claim.site):
             continue
         for part in names_in(claim, declared):
-            if not resolve(part.text, part.kinds, claim.site.role, declared):
+            if not kind_of(part, claim.site.role, declared):
                 yield from ((kind, part.text, claim) for kind in part.kinds)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
-from multibot_rewrite.rewriters.spelling import names_in, resolve, spelling_key
+from multibot_rewrite.rewriters.spelling import kind_of, names_in, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import value_slot
 from multibot_rewrite.rewriting.inserted import removals
@@ -49,11 +49,11 @@ def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> li
     """The parts of the claimed value that an affix put there."""
     site = claim.site
     spans = []
-    for at, text, kinds in names_in(claim, inventory.declared):
-        kind = resolve(text, kinds, site.role, inventory.declared)
-        span = removal(naming, robot, kind, text, site.namespaced) if kind else None
+    for part in names_in(claim, inventory.declared):
+        kind = kind_of(part, site.role, inventory.declared)
+        span = removal(naming, robot, kind, part.text, site.namespaced) if kind else None
         if span is not None:
-            spans.append((at + span[0], at + span[1]))
+            spans.append((part.at + span[0], part.at + span[1]))
     return spans
 
 

@@ -57,6 +57,8 @@ def _facts(rewriter: Rewriter) -> str:
         "with": " ".join(f"[block {name}]" for name in rewriter.blocks),
         "only a remap moves": " ".join(rewriter.topics),
         "source": rewriter.source,
+        "finds by bare name in the whole world": rewriter.unique,
+        "remaps hold for": "the whole process" if rewriter.process_wide else "",
         "never inserted into": "" if rewriter.inserts else "it throws on unknown children",
     }
     return "; ".join(f"{what}: {text}" for what, text in facts.items() if text)

@@ -24,11 +24,30 @@ SETTINGS = (
     "subscribes",
     "serves",
     "insert",
+    "unique",
+    "process_wide",
 )
+# Settings that are one word out of few.
+VALUES = {
+    "ros": ("1", "2"),
+    "insert": ("yes", "no"),
+    "unique": tuple(SEPARATORS),
+    "process_wide": ("yes", "no"),
+}
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
 OPTIONS = ("form", "default", "when")
-FORMS = ("whole", "list", "scoped", "prefix", "remap", "argument", "collision")
+FORMS = (
+    "whole",
+    "list",
+    "scoped",
+    "suffixed",
+    "regex",
+    "prefix",
+    "remap",
+    "argument",
+    "collision",
+)
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _PATH = re.compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
@@ -40,6 +59,8 @@ class Rewriter(NamedTuple):
     ``publishes``, ``subscribes`` and ``serves`` are topics and services that no element controls:
     only a remap rule moves them.
     ``inserts`` is false where the consumer throws on children it does not know.
+    ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
+    tells that its remap rules hold for every node of the process.
     """
 
     type: str
@@ -53,6 +74,8 @@ class Rewriter(NamedTuple):
     subscribes: tuple[str, ...]
     serves: tuple[str, ...]
     inserts: bool
+    unique: str
+    process_wide: bool
     about: str
     source: str
     file: str
@@ -134,6 +157,8 @@ def assemble(
         words("subscribes"),
         words("serves"),
         settings.get("insert", "yes") == "yes",
+        settings.get("unique", ""),
+        settings.get("process_wide", "no") == "yes",
         settings.get("about", ""),
         settings.get("source", ""),
         file,
@@ -164,7 +189,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     if key not in SETTINGS:
         raise VocabularyError(f"{place}: unknown setting {key!r}, use one of {', '.join(SETTINGS)}")
     value = " ".join([settings[key], *words[1:]] if key in settings else words[1:])
-    allowed = {"ros": ("1", "2"), "insert": ("yes", "no")}.get(key)
+    allowed = VALUES.get(key)
     if not value or (allowed and value not in allowed):
         raise VocabularyError(
             f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
