@@ -25,7 +25,7 @@ FLOORS = (
     ("vocabulary",),
     ("rewriters",),
     ("rewriting", "companions"),
-    ("xacro_source",),
+    ("xacro_source", "config"),
     ("library",),
     ("remap",),
     ("graph", "lint", "fleet"),
