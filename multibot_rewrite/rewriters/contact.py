@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from lxml import etree
 
 from multibot_rewrite.model import Claim
+from multibot_rewrite.rewriters.forms import Declared
 
 Respell = Callable[[str, str], str]
 Links = dict[str, etree._Element]
@@ -22,7 +23,7 @@ LUMP = "_fixed_joint_lump__"
 
 
 def respell_collisions(
-    root: etree._Element, claims: Iterable[Claim], respell: Respell
+    root: etree._Element, claims: Iterable[Claim], declared: Declared, respell: Respell
 ) -> list[tuple[Claim, str]]:
     """Each contact collision whose name changes, with its new text.
 
@@ -34,11 +35,19 @@ def respell_collisions(
     names = collision_map(root, respell)
     result = []
     for claim in contacts:
-        scope, colons, old = claim.value.rpartition("::")
-        new = names.get(old, old)
-        if new != old:
-            result.append((claim, f"{scope}{colons}{new}"))
+        *scopes, old = claim.value.split("::")
+        new = "::".join([*_scopes(scopes, declared, respell), names.get(old, old)])
+        if new != claim.value:
+            result.append((claim, new))
     return result
+
+
+def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[str]:
+    """``model::link`` before a collision, spelled; as it is where the model is not of this file."""
+    elsewhere = len(names) > 1 and names[0] not in declared["model"]
+    for name in names:
+        kinds = [kind for kind in ("model", "link") if name in declared[kind]]
+        yield respell(kinds[0], name) if kinds and not elsewhere else name
 
 
 def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Collection, Iterator
 
-from multibot_rewrite.model import ERROR, WARNING, Claim, Finding
+from lxml.etree import _Element
+
+from multibot_rewrite.model import ERROR, WARNING, Claim, Finding, Site
 from multibot_rewrite.naming import (
     CLOSED_KINDS,
     FRAME_KINDS,
@@ -28,6 +30,7 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
     """All findings that do not depend on the robot's name, in source order."""
     found = [
         *leftover_xacro(inventory),
+        *worlds(inventory),
         *duplicates(inventory),
         *dangling(inventory, naming),
         *ambiguous(inventory),
@@ -75,16 +78,34 @@ def _uses_xacro(document: Document) -> bool:
 
 
 def duplicates(inventory: Inventory) -> Iterator[Finding]:
-    """Two declarations of one name in one scope; a <gazebo> block may repeat a URDF joint (PR2)."""
+    """Two declarations of one name in one model; a <gazebo> block may repeat a URDF joint (PR2)."""
+    seen: dict[tuple[Site, _Element | None, str], Claim] = {}
     for claim in inventory.claims:
         kind = claim.site.kinds[0]
         if claim.site.role != "declares" or kind not in CLOSED_KINDS:
             continue
-        first = inventory.declared[kind].get(claim.value.strip(), claim)
-        if first is not claim and first.site is claim.site:
+        key = claim.site, _scope(claim.element), claim.value.strip()
+        first = seen.setdefault(key, claim)
+        if first is not claim:
             line = finding(inventory.document, first.start, "", "", "").line
             message = f"{kind} {claim.value!r} is declared twice, first at line {line}"
             yield finding(inventory.document, claim.start, "MB201", ERROR, message, "rename one")
+
+
+def _scope(element: _Element) -> _Element | None:
+    """The model that a declaration stands in: names of nested SDF models are their own."""
+    return next(element.iterancestors("model", "robot"), None)
+
+
+def worlds(inventory: Inventory) -> Iterator[Finding]:
+    """A world holds several models: which of them is the robot, nobody can tell."""
+    document = inventory.document
+    starts = zip(document.root.iter("*"), document.starts, strict=True)
+    for element, start in starts if document.root.tag == "sdf" else ():
+        if element.tag == "world":
+            message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
+            hint = "give the model.sdf of the robot, and <include> the results in the world"
+            yield finding(document, start, "MB206", ERROR, message, hint)
 
 
 def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
@@ -181,7 +202,8 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             yield finding(inventory.document, claim.start, "MB305", WARNING, message, hint)
 
 
-def _is_unknown(rewriter: Rewriter) -> bool:
+def is_unknown(rewriter: Rewriter) -> bool:
+    """No section knows the plugin: the element's own stands in, or the one for any ROS node."""
     return rewriter.select == "plugin" or rewriter.names[0] == ANY_WITH_ROS
 
 
@@ -190,7 +212,7 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
     known = {}
     for host in inventory.hosts:
         rewriter = host.node.rewriter
-        if rewriter is None or not _is_unknown(rewriter):
+        if rewriter is None or not is_unknown(rewriter):
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
         if name not in known:

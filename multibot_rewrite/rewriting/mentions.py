@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -26,22 +27,41 @@ def slot_values(root: etree._Element) -> list[str]:
     return attributes + [text.strip() for text in texts]
 
 
+class Mention(NamedTuple):
+    """An unclaimed value that is ``name`` or holds it; ``attribute`` is empty for text."""
+
+    element: etree._Element
+    start: int
+    attribute: str
+    value: str
+    name: str
+
+
 def find_mentions(
     inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
 ) -> list[Finding]:
-    """A warning for each unclaimed value that is one of ``names`` or holds one as a list item,
-    path segment, scope or side of a remap rule. Values with a ``keep`` site are no mention."""
+    """A warning for each of ``unclaimed_mentions``."""
+    document = inventory.document
+    return [_finding(document, it) for it in unclaimed_mentions(inventory, values, names, tree)]
+
+
+def unclaimed_mentions(
+    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+) -> list[Mention]:
+    """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
+    scope or side of a remap rule; ``values`` are all of ``slot_values``. Values with a ``keep``
+    site are no mention."""
     if not names:
         return []
     names = frozenset(names)
-    telling = [value for value in set(values) if _mentioned(value, names)]
-    count = Counter(filter(frozenset(telling).__contains__, values))
+    telling = {value: name for value in set(values) if (name := _mentioned(value, names))}
+    count = Counter(filter(telling.__contains__, values))
     claimed = Counter([claim.value for claim in inventory.claims])
     suspects = {value for value in telling if count[value] > claimed[value]}
     if not suspects:
         return []
     return [
-        _mention(inventory.document, *slot, names)
+        Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree)
     ]
@@ -88,16 +108,9 @@ def node_of(element: etree._Element, tree: Tree) -> Node | None:
     return node.select(element) if node is not None and node.select is not None else node
 
 
-def _mention(
-    document: Document,
-    element: etree._Element,
-    start: int,
-    attribute: str,
-    value: str,
-    names: frozenset[str],
-) -> Finding:
+def _finding(document: Document, mention: Mention) -> Finding:
+    element, start, attribute, value, name = mention
     slot = value_slot(document.source, start, attribute, value)
-    name = _mentioned(value, names)
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
     return finding(

@@ -40,7 +40,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     spellings = _spellings(inventory, naming)
     edits, findings = _edits(inventory, spellings)
     document, claims, hosts, declared = inventory
-    collisions = respell_collisions(document.root, claims, respeller(naming, HOLE))
+    collisions = respell_collisions(document.root, claims, declared, respeller(naming, HOLE))
     findings += _unstable(inventory, naming, collisions)
     for claim, new in collisions:
         slot = value_slot(document.source, *claim[2:])
@@ -64,9 +64,10 @@ def _unstable(
     inventory: Inventory, naming: Naming, collisions: list[tuple[Claim, str]]
 ) -> list[Finding]:
     """Contacts whose collision is numbered by how the robot's name sorts: no plan holds for all."""
-    document, claims, _, _ = inventory
+    document, claims, _, declared = inventory
     # HOLE sorts before every letter, this after.
-    last = respell_collisions(document.root, claims, respeller(naming, LAST)) if collisions else []
+    respell = respeller(naming, LAST)
+    last = respell_collisions(document.root, claims, declared, respell) if collisions else []
     return [
         finding(
             document,

@@ -30,7 +30,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
         span = removal(naming, robot, kind, name)
         return name[: span[0]] + name[span[1] :] if span else name
 
-    for claim, old in respell_collisions(document.root, claims, unspell):
+    for claim, old in respell_collisions(document.root, claims, inventory.declared, unspell):
         slot = value_slot(document.source, *claim[2:])
         if slot is not None:
             edits.append(Edit(*slot, old.encode(), None))
