@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from multibot_rewrite.model import Change, Finding, InputError, UsageError
+from multibot_rewrite.model import Change, Finding, InputError, UsageError, VocabularyError
 from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
-from multibot_rewrite.vocabulary import load_vocabulary
+from multibot_rewrite.vocabulary import advice, load_vocabulary
 
 Source = str | bytes | os.PathLike[str]
 
@@ -151,5 +151,9 @@ def _check_robots(robots: Sequence[str]) -> None:
 
 @lru_cache(maxsize=8)
 def builtin_tree(vocabulary: tuple[str, ...] = ()) -> Tree:
-    """The tree of the built-in vocabulary and the files named in ``vocabulary``; made once."""
-    return Tree(load_vocabulary(vocabulary))
+    """The tree of the vocabulary built in, installed, and named in ``vocabulary``; made once."""
+    sections = load_vocabulary(vocabulary)
+    try:
+        return Tree(sections)
+    except VocabularyError as error:
+        raise VocabularyError(f"{error}{advice(str(error))}") from None

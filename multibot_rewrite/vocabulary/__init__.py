@@ -9,17 +9,60 @@ A file is a list of sections. The whole grammar:
     plugin/frame uses frame              the value refers to one (kinds are tried in order)
     @type        keep an enumeration     the value is never renamed, and why
 
+A section is one of
+
+    [element NAME]     an XML element by its tag; ``[element srdf.group]`` is about ``<group>`` too,
+                       where it stands elsewhere and means something else
+    [plugin NAME]      a plugin by its library, without ``lib`` and ``.so``, or by its class
+    [hardware NAME]    a ros2_control hardware class, as in ``<plugin>``
+    [sensor TYPE]      a ``<sensor>`` by its type
+    [block NAME]       lines that several sections share by ``with: NAME``
+
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
 ``param[@name=mimic]``. After the kinds may stand ``form=NAME`` (where in the value the names are)
 and ``default=TEXT`` (the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
 with its last segment replaced) and ``when=SIBLING=TEXT`` (else it is no name of ours), then
 ``# a note``.
+
+Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
+URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
+file declares it; a frame that is the name of a link is spelled like the link. A ``stem`` is a word
+that topics are made of, a ``subtopic`` stands below a stem or namespace.
+
+    form=whole       the value is one name (where no form is given)
+    form=list        names separated by commas or white space
+    form=scoped      ``model::link``: models, then the name
+    form=suffixed    ``link/light``: a declared name and what the consumer adds to it
+    form=regex       a regular expression for whole names, alternatives affixed one by one
+    form=prefix      put in front of names in code: a postfix cannot reach them (MB304)
+    form=remap       a ROS remap rule ``from:=to``: ``to`` is the name
+    form=argument    the same as an argument, ``__ns:=`` and ``__node:=`` among them
+    form=collision   a collision, scoped or not, recomputed when its link is renamed
+
+A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
+
+    at: ELEMENT...         elements only: where it may stand
+    select: TYPE           elements only: what it loads decides its section (plugin, hardware, sensor)
+    with: BLOCK...         the lines of these blocks too; an own line at the same path wins
+    ros: 1 | 2             for that ROS alone, where both have a plugin of this name
+    publishes: TOPIC...    topics that no parameter moves, where ``ros/remapping`` is read: remapped
+    subscribes: TOPIC...   the same
+    serves: SERVICE...     the same
+    insert: yes | no       no where the consumer throws on children it does not know (default: yes)
+    unique: KIND           bare names of this kind are looked up in the whole world
+    process_wide: yes | no its remap rules hold for every node of the process (default: no)
+    about: TEXT            what it is
+    source: TEXT           where in which source that can be read
+
+A section may be given again, in another file too: it adds lines and topics to the first one. Two
+lines at one path are refused. Files are the built-in ones, those of installed packages (see
+``installed``) and those a call or a command names, in this order.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.model import Site, VocabularyError
@@ -35,6 +78,7 @@ from multibot_rewrite.vocabulary.grammar import (
     split_path,
     split_step,
 )
+from multibot_rewrite.vocabulary.installed import advice, installed
 
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
@@ -45,6 +89,7 @@ __all__ = [
     "TYPES",
     "Rewriter",
     "Vocabulary",
+    "advice",
     "check_vocabulary",
     "load_vocabulary",
     "split_path",
@@ -99,7 +144,15 @@ class Vocabulary:
 
     def rewriters(self, *types: str) -> list[Rewriter]:
         """All rewriters of these types, parsed and checked, in file order."""
-        found = [r for type_, name in self._raw if type_ in types for r in self.find(type_, name)]
+        return self._parsed(key for key in self._raw if key[0] in types)
+
+    def rewriters_in(self, files: Container[str]) -> list[Rewriter]:
+        """All rewriters that these files have a part in, parsed and checked."""
+        raws = self._raw.items()
+        return self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
+
+    def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[Rewriter]:
+        found = [rewriter for key in keys for rewriter in self.find(*key)]
         return list({(rewriter.file, rewriter.line): rewriter for rewriter in found}.values())
 
     def _read(self, file: str, line: int, chunk: str) -> Rewriter:
@@ -121,29 +174,43 @@ class Vocabulary:
 
 
 @lru_cache(maxsize=8)
-def load_vocabulary(extra: tuple[str, ...] = ()) -> Vocabulary:
-    """The built-in vocabulary and the files named in ``extra``.
+def load_vocabulary(extra: tuple[str, ...] = (), *, packages: bool = True) -> Vocabulary:
+    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``.
 
-    Raises VocabularyError, naming file and line, for a mistake: at once where there are
-    ``extra`` files, else in a section that is used.
+    Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
+    else in a section that is used.
     """
     builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
-    texts = {name: _text(f"{HERE}/{name}") for name in builtin}
-    vocabulary = Vocabulary(texts | {path: _text(path) for path in extra})
-    if extra:
-        check_vocabulary(vocabulary)
+    more = _more(extra, packages, builtin)
+    texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
+    try:
+        vocabulary = Vocabulary(texts | {name: _text(name, path) for name, path in more.items()})
+        vocabulary.rewriters_in(more)
+    except VocabularyError as error:
+        raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None
     return vocabulary
 
 
-def _text(path: str) -> str:
+def _more(extra: tuple[str, ...], packages: bool, builtin: Sequence[str]) -> dict[str, str]:
+    """Name in messages -> path of the files beside the built-in ones, each file once."""
+    named = {file.name: file.path for file in (installed() if packages else ())}
+    # A user's file may be called like a built-in one.
+    named |= {os.path.join(".", path) if path in builtin else path: path for path in extra}
+    first: dict[str, str] = {}
+    for name, path in named.items():
+        first.setdefault(os.path.realpath(path), name)
+    return {name: named[name] for name in first.values()}
+
+
+def _text(name: str, path: str) -> str:
     try:
         with open(path, encoding="utf-8-sig") as file:
             return file.read()
     except OSError as error:
-        raise VocabularyError(f"{path}: cannot be read: {error.strerror}") from None
+        raise VocabularyError(f"{name}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise VocabularyError(
-            f"{path}: cannot be read: it is not UTF-8; save it as UTF-8"
+            f"{name}: cannot be read: it is not UTF-8; save it as UTF-8"
         ) from None
 
 

@@ -167,21 +167,42 @@ def assemble(
 
 
 def merge(first: Rewriter, second: Rewriter) -> Rewriter:
-    """What two sections say of one thing: a user's file may add to what is known."""
+    """What two sections say of one thing: a user's file may add to what is known.
+
+    Raises VocabularyError where both say something of one path or set one setting differently.
+    """
     paths = {site.path: site for site in first.sites}
-    for site in second.sites:
-        if site.path in paths and site.section == paths[site.path].section:
+    new = [site for site in second.sites if not _same_block(site, paths.get(site.path))]
+    for site in new:
+        if site.path in paths:
             raise VocabularyError(
                 f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
             )
     return first._replace(
-        sites=first.sites + tuple(site for site in second.sites if site.path not in paths),
+        sites=first.sites + tuple(new),
         at=first.at + tuple(name for name in second.at if name not in first.at),
+        blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
+        select=_either(first, second, "select"),
+        unique=_either(first, second, "unique"),
         publishes=first.publishes + second.publishes,
         subscribes=first.subscribes + second.subscribes,
         serves=first.serves + second.serves,
         inserts=first.inserts and second.inserts,
+        process_wide=first.process_wide or second.process_wide,
     )
+
+
+def _same_block(site: Site, other: Site | None) -> bool:
+    """Two sections with one block: its lines are not there twice."""
+    return other is not None and site.section == other.section and site.section[:6] == "block "
+
+
+def _either(first: Rewriter, second: Rewriter, setting: str) -> str:
+    old, new = getattr(first, setting), getattr(second, setting)
+    if old and new and old != new:
+        place = f"{second.file}:{second.line}"
+        raise VocabularyError(f"{place}: {setting}: is {old!r} already, in {first.file}")
+    return str(old or new)
 
 
 def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
