@@ -1,4 +1,4 @@
-"""What ``urdf-postfix`` prints and writes: results, diffs, findings, the summary."""
+"""What the commands print and write: results, diffs, findings, the summary."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
+from typing import TypeVar
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.usage import input_name, target_path
@@ -17,6 +18,7 @@ from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.naming import SEPARATORS
 
 MANY = 20
+_T = TypeVar("_T")
 
 
 def deliver(
@@ -30,21 +32,21 @@ def deliver(
     target = options.input if options.in_place else options.output
     if target:
         files = ((target_path(target, robot), data) for robot, data in results)
-        write_all(_watched(chain(more, files), total))
+        write_all(watched(chain(more, files), total, "writing"))
         return
     write_all(more)
     for robot, data in results:
-        _print(_diff(before, data, input_name(options), robot) if options.diff else data)
+        print_bytes(_diff(before, data, input_name(options), robot) if options.diff else data)
 
 
-def _watched(files: Iterable[tuple[str, bytes]], total: int) -> Iterable[tuple[str, bytes]]:
-    """The same files, with a progress bar where there are many and somebody is looking."""
+def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
+    """The same items, with a progress bar where there are many and somebody is looking."""
     if total < MANY or not sys.stderr.isatty():
-        return files
+        return items
     from rich.console import Console
     from rich.progress import track
 
-    return track(files, "writing", total, console=Console(stderr=True), transient=True)
+    return track(items, doing, total, console=Console(stderr=True), transient=True)
 
 
 def _diff(old: bytes, new: bytes, name: str, robot: str) -> bytes:
@@ -58,10 +60,13 @@ def _diff(old: bytes, new: bytes, name: str, robot: str) -> bytes:
     return b"".join(line if line.endswith(b"\n") else line + cut_short for line in lines)
 
 
-def _print(data: bytes) -> None:
-    """Write to standard output, now: what fails must be told before the report."""
+def print_bytes(data: bytes, instead: str = "-o") -> None:
+    """Write to standard output, now: what fails must be told before the report.
+
+    ``instead`` is the option that writes a file.
+    """
     if sys.stdout is None:
-        raise UsageError("standard output is closed; name a file with -o")
+        raise UsageError(f"standard output is closed; name a file with {instead}")
     try:
         sys.stdout.buffer.write(data)
         sys.stdout.buffer.flush()
@@ -111,6 +116,6 @@ def print_findings(findings: Sequence[Finding]) -> None:
         sys.stderr.write(f"{color}{finding}{color and chr(27) + '[0m'}\n")
 
 
-def say(text: str) -> None:
+def say(text: str, program: str = "urdf-postfix") -> None:
     """A line to standard error."""
-    sys.stderr.write(f"urdf-postfix: {text}\n")
+    sys.stderr.write(f"{program}: {text}\n")

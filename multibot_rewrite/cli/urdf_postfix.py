@@ -4,52 +4,29 @@ from __future__ import annotations
 
 import argparse
 import gc
-import io
-import signal
 import sys
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from multibot_rewrite.cli.output import changes_json, deliver, print_findings, say, summary
-from multibot_rewrite.cli.usage import (
-    UNUSABLE,
-    check_use,
-    input_name,
-    parser,
-    separators,
-    xacro_args,
-)
+from multibot_rewrite.cli.process import DONE, STOPPED, guarded
+from multibot_rewrite.cli.usage import check_use, input_name, parser, separators, xacro_args
 from multibot_rewrite.library import Rewrite, Source, read_source, rewrite_all, strip
-from multibot_rewrite.model import InputError, MultibotError, ProofError, RewriteRefused
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
-
-DONE, STOPPED, INTERRUPTED = 0, 1, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit code."""
-    # Closed by the caller: nobody wants to hear anything.
-    sys.stderr = sys.stderr or io.StringIO()
     if arguments is None:
         # A short process of its own: nothing it makes needs the collector of cycles.
         gc.disable()
-        signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        return _run(parser().parse_intermixed_args(arguments))
-    except RewriteRefused as error:
-        print_findings(error.findings)
-        return STOPPED
-    except ProofError as error:
-        say(f"the proof failed, nothing was written; this is a fault of the tool: {error}")
-        return STOPPED
-    except MultibotError as error:
-        say(str(error))
-        return UNUSABLE
-    except BrokenPipeError:
-        say("standard output was closed before everything was written")
-        return STOPPED
-    except KeyboardInterrupt:
-        say("interrupted; no half-written file is left")
-        return INTERRUPTED
+    run = partial(_start, arguments)
+    return guarded("urdf-postfix", run, own_process=arguments is None)
+
+
+def _start(arguments: Sequence[str] | None) -> int:
+    return _run(parser().parse_intermixed_args(arguments))
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -85,6 +62,8 @@ def _rewrite(options: argparse.Namespace, source: Source, robots: list[str]) -> 
         separators=separators(options),
         shared_frames=options.shared_frames.split(","),
         shared_topics=options.shared_topics.split(","),
+        groups=options.groups,
+        urdf=options.urdf,
         xacro_args=xacro_args(options),
         vocabulary=options.vocabulary,
         again=options.again,
@@ -118,6 +97,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         separators(options),
         options.shared_frames.split(","),
         options.shared_topics.split(","),
+        options.groups,
     )
     name = input_name(options)
     return strip(source, robot, naming=naming, vocabulary=options.vocabulary, file=name)

@@ -30,7 +30,7 @@ _NAMED = ("param", "parameter")
 class Tally(NamedTuple):
     """How often, in how many files, and where first: ``file:line``, with the value in question."""
 
-    count: int
+    times: int
     files: int
     place: str
     value: str
@@ -108,7 +108,7 @@ def add(surveys: Iterable[Survey]) -> Survey:
 def _sum(first: Tally | None, second: Tally) -> Tally:
     if first is None:
         return second
-    return first._replace(count=first.count + second.count, files=first.files + second.files)
+    return first._replace(times=first.times + second.times, files=first.files + second.files)
 
 
 def _kind(claim: Claim, inventory: Inventory) -> str:
@@ -166,7 +166,7 @@ def _mentions(inventory: Inventory, tree: Tree) -> dict[Mention, Tally]:
 def _first_or(tally: Tally | None, document: Document, start: int, value: str) -> Tally:
     """One more of what was tallied, or the first of it."""
     if tally is not None:
-        return tally._replace(count=tally.count + 1)
+        return tally._replace(times=tally.times + 1)
     line, _ = locate(document.source, start)
     return Tally(1, 1, f"{document.file}:{line}", value)
 
@@ -179,31 +179,30 @@ def tag_path(element: _Element, attribute: str) -> str:
 
 
 def _step(element: _Element) -> str:
-    tag = short_name(str(element.tag))
+    tag = short_name(str(element.tag), element.prefix)
     if tag == "plugin":
         return f"{tag}[{plugin_name(element)}]"
     name = element.get("name") if tag in _NAMED else None
     return f"{tag}[{name}]" if name else tag
 
 
-def short_name(name: str) -> str:
-    """A tag or attribute as the vocabulary writes it: a prefix for a namespace it knows."""
+def short_name(name: str, prefix: str | None = None) -> str:
+    """A tag or attribute as the vocabulary writes it; ``prefix`` is for a namespace it lacks."""
     uri, brace, local = name.removeprefix("{").partition("}")
-    return f"{_PREFIXES[uri]}:{local}" if brace and uri in _PREFIXES else name
+    short = _PREFIXES.get(uri, prefix) if brace else None
+    return f"{short}:{local}" if short else name
 
 
 def ranked(
     tallies: Iterable[tuple[Loaded | Mention, Tally]],
 ) -> list[tuple[Loaded | Mention, Tally]]:
     """The most frequent first, those of one frequency by name."""
-    return sorted(tallies, key=lambda pair: (-pair[1].count, pair[0]))
+    return sorted(tallies, key=lambda pair: (-pair[1].times, pair[0]))
 
 
 def share(total: Survey, type_: str) -> tuple[int, int]:
     """How many occurrences of that type there are, and how many of them are known."""
-    counts = [
-        (tally.count, it.known) for it, tally in total.loaded.items() if it.type == type_
-    ]
+    counts = [(tally.times, it.known) for it, tally in total.loaded.items() if it.type == type_]
     return sum(count for count, _ in counts), sum(count for count, known in counts if known)
 
 
