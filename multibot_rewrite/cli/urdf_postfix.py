@@ -11,6 +11,7 @@ from functools import partial
 from multibot_rewrite.cli.output import changes_json, deliver, print_findings, say, summary
 from multibot_rewrite.cli.process import DONE, STOPPED, guarded
 from multibot_rewrite.cli.usage import check_use, input_name, parser, separators, xacro_args
+from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, Source, read_source, rewrite_all, strip
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
@@ -32,6 +33,7 @@ def _start(arguments: Sequence[str] | None) -> int:
 def _run(options: argparse.Namespace) -> int:
     robots = [word for word in options.words if ":=" not in word]
     check_use(options, robots)
+    options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
     source: Source = _standard_input() if options.input == "-" else options.input
     if not options.strip:
         return _rewrite(options, source, robots)
