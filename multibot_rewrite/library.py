@@ -65,6 +65,8 @@ def rewrite_all(
     separators: Mapping[str, str] | None = None,
     shared_frames: Iterable[str] = SHARED_FRAMES,
     shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    urdf: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
     vocabulary: Sequence[str] = (),
     again: bool = False,
@@ -74,13 +76,19 @@ def rewrite_all(
 
     ``layout`` is one of tf-per-robot, frames-per-robot, both, postfix (or L1 to L4); ``affix`` is
     postfix or prefix; ``topics`` is postfix, prefix or namespace (default: what the layout
-    implies); ``separators`` maps kinds to separators; ``again`` allows a second rewrite; ``file``
-    is the name used in messages. Raises as ``rewrite`` does, before the first result.
+    implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what becomes of
+    an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to; ``again``
+    allows a second rewrite; ``file`` is the name used in messages. Raises as ``rewrite`` does,
+    before the first result.
     """
-    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics)
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     _check_robots(robots)
-    data, name = read_source(source, xacro_args or {})
-    template = pipeline.prepare(data, file or name, naming, builtin_tree(tuple(vocabulary)))
+    tree = builtin_tree(tuple(vocabulary))
+    args = xacro_args or {}
+    data, name = read_source(source, _args_for(source, urdf, args))
+    beside = None if urdf is None else read_source(urdf, _args_for(urdf, source, args))
+    outside = pipeline.prepare(*beside, naming, tree).inventory.declared if beside else {}
+    template = pipeline.prepare(data, file or name, naming, tree, outside)
     texts = pipeline.render(template, robots, again)
     findings = tuple(template.findings)
     return (Rewrite(r, t, findings, template) for r, t in zip(robots, texts, strict=True))
@@ -91,19 +99,32 @@ def strip(
     robot: str,
     *,
     naming: Naming | None = None,
+    urdf: Source | None = None,
     vocabulary: Sequence[str] = (),
     file: str = "",
     **policy: object,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
-    ``policy`` are the ``layout``, ``affix``, ``topics``, ``separators``, ``shared_frames`` and
-    ``shared_topics`` it was made with, or ``naming`` is all of them. Raises as ``rewrite`` does.
+    ``policy`` are the ``layout``, ``affix``, ``topics``, ``separators``, ``shared_frames``,
+    ``shared_topics`` and ``groups`` it was made with, or ``naming`` is all of them. ``urdf`` is the
+    rewritten description a rewritten SRDF belongs to. Raises as ``rewrite`` does.
     """
     data, name = read_source(source, {})
     check_robot_name(robot)
     chosen = naming or make_naming(**policy)  # type: ignore[arg-type]
-    return pipeline.strip(data, file or name, robot, chosen, builtin_tree(tuple(vocabulary)))
+    tree = builtin_tree(tuple(vocabulary))
+    outside = {} if urdf is None else pipeline.declarations(*read_source(urdf, {}), tree)
+    return pipeline.strip(data, file or name, robot, chosen, tree, outside)
+
+
+def _args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:
+    """The xacro arguments for ``source``: they are for a URDF, its SRDF, or both."""
+    return {} if other is not None and _is_xacro(other) and not _is_xacro(source) else args
+
+
+def _is_xacro(source: Source) -> bool:
+    return not isinstance(source, bytes) and os.fspath(source).endswith(".xacro")
 
 
 def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, str]:

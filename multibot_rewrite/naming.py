@@ -183,7 +183,7 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
         return None
     if kind == "namespace":
         return _namespace_affix(separator, text)
-    if not text or (kind in FRAME_KINDS and text.strip("/") in naming.shared_frames):
+    if kind in FRAME_KINDS and text.strip("/") in naming.shared_frames:
         return None
     return _name_affix(naming.affix, separator, text)
 

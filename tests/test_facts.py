@@ -33,6 +33,7 @@ KINDS = {
     "link or joint": {"link", "joint"},
     "link or frame": {"link", "frame"},
     "hardware_group": {"hardware"},
+    "end_effector": {"group"},
     "frame": {"frame", "link", "joint"},
     "link": {"link", "frame", "collision"},
     "collision": {"collision", "link", "model"},

@@ -102,7 +102,8 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         options.groups,
     )
     name = input_name(options)
-    return strip(source, robot, naming=naming, vocabulary=options.vocabulary, file=name)
+    extra = {"vocabulary": options.vocabulary, "urdf": options.urdf}
+    return strip(source, robot, naming=naming, file=name, **extra)
 
 
 if __name__ == "__main__":

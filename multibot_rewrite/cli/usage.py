@@ -19,6 +19,7 @@ examples:
   urdf-postfix rover.urdf robot1 -o robot1.urdf
   urdf-postfix rover.urdf.xacro robot1 robot2 -o 'out/{robot}.urdf' use_sim:=true
   urdf-postfix rover.urdf robot1 --affix prefix --layout frames-per-robot --separator link=_
+  urdf-postfix rover.srdf robot1 --urdf rover.urdf      an SRDF in step with its URDF
   urdf-postfix robot1.urdf robot1 --strip               the inverse
   cat rover.urdf | urdf-postfix - robot1 --diff
 exit codes: 0 done; 1 findings that stop the job (any, with --strict); 2 wrong use or unreadable input
@@ -32,6 +33,8 @@ VALUES = (
     ("--layout", "postfix", "NAME", f"where tf lives. {_LAYOUTS} (default: postfix)"),
     ("--affix", "postfix", "SIDE", "postfix (default) or prefix"),
     ("--topics", None, "HOW", "postfix, prefix or namespace (default: what the layout implies)"),
+    ("--groups", "keep", "HOW", "groups and end effectors of an SRDF: keep (default) or rename"),
+    ("--urdf", None, "FILE", "the URDF that an SRDF belongs to (with --strip: the rewritten one)"),
     ("--shared-frames", ",".join(SHARED_FRAMES), "A,B", "default: %(default)s"),
     ("--shared-topics", ",".join(SHARED_TOPICS), "A,B", "default: %(default)s"),
     ("--changes", None, "FILE", "write every change as JSON"),
@@ -68,7 +71,9 @@ def parser() -> argparse.ArgumentParser:
         allow_abbrev=False,
     )
     result.add_argument(
-        "input", metavar="INPUT", help="URDF, xacro (named *.xacro), or - for standard input"
+        "input",
+        metavar="INPUT",
+        help="URDF, SDF model, SRDF, xacro of one (named *.xacro), or - for standard input",
     )
     result.add_argument(
         "words", nargs="*", metavar="ROBOT", help="robot names, and NAME:=VALUE for xacro"
@@ -96,7 +101,8 @@ def check_use(options: argparse.Namespace, robots: list[str]) -> None:
     if not robots:
         raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
     _check_together(options)
-    if xacro_args(options) and not options.input.endswith(".xacro"):
+    inputs = (options.input, options.urdf or "")
+    if xacro_args(options) and not any(path.endswith(".xacro") for path in inputs):
         raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is not named *.xacro")
     if len(robots) > 1 and (options.strip or options.in_place):
         raise UsageError("--strip and --in-place take one robot at a time")

@@ -44,6 +44,12 @@ def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
     return (Part(value.index(name), name, kinds),) if name else ()
 
 
+def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+    """What the consumer puts in front of names, nothing at all included."""
+    name = value.strip()
+    return (Part(value.index(name), name, kinds),)
+
+
 def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
     """Names separated by commas or white space."""
     parts = []
@@ -139,7 +145,7 @@ FORMS: dict[str, Form] = {
     "scoped": scoped,
     "suffixed": suffixed,
     "regex": regex,
-    "prefix": whole,
+    "prefix": prefixed,
     "remap": remap,
     "argument": remap,
     "collision": nothing,

@@ -8,7 +8,8 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
-from multibot_rewrite.rewriters.spelling import HOLE, Declared, resolve
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import HOLE, resolve
 from multibot_rewrite.rosnames import expand, parse_remap
 from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
 
@@ -72,12 +73,21 @@ def _defaults(
 
 def _default(host: etree._Element, default: str, naming: Naming) -> str:
     """The value in force where the site is absent: a literal, or made from another topic."""
+    conditions, asked, default = default.rpartition("?")
+    if asked and not all(_holds(host, condition) for condition in conditions.split(",")):
+        return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
         return default
     # Only a postfix stands in the segment that is replaced.
     topic = host.findtext(sibling, "").strip() if naming.topics == POSTFIX else ""
     return topic[: topic.rfind("/") + 1] + last if topic else ""
+
+
+def _holds(host: etree._Element, condition: str) -> bool:
+    child, _, text = condition.partition("=")
+    found = host.findtext(child, "").strip()
+    return found == text or (text == "true" and found == "1")
 
 
 def _present(host: etree._Element, path: str) -> bool:

@@ -11,6 +11,7 @@ from multibot_rewrite.naming import (
     Naming,
     affix,
     is_keyword,
+    removal,
 )
 from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, Part
 
@@ -24,6 +25,19 @@ def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
     return FORMS[claim.site.form](claim.value, claim.site.kinds, declared)
 
 
+def spelled_in(claim: Claim, declared: Declared, naming: Naming) -> tuple[Part, ...]:
+    """The names that the naming can reach: a postfix is none where a prefix is asked for."""
+    site = claim.site
+    if site.form == "prefix" and (naming.affix != PREFIX or not (claim.value or takes_empty(site))):
+        return ()
+    return names_in(claim, declared)
+
+
+def takes_empty(site: Site) -> bool:
+    """An empty text is a value too: the prefix of names that have none yet."""
+    return site.form == "prefix" and site.role == "uses" and "@" not in site.path.rpartition("]")[2]
+
+
 def spelling_key(claim: Claim) -> tuple[object, str]:
     """Claims of one key are spelled alike: a link or joint at every site, others at each site."""
     return claim.site.plain or id(claim.site), claim.value
@@ -32,14 +46,12 @@ def spelling_key(claim: Claim) -> tuple[object, str]:
 def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     """Kind and affix of every name in the claimed value; empty where it stays as it is."""
     site = claim.site
-    if site.form == "prefix" and naming.affix != PREFIX:
-        return ()
     plain = site.plain
     if plain and claim.value in declared[plain]:
         there = affix(naming, plain, claim.value)
         return ((plain, there),) if there else ()
     result = []
-    for part in names_in(claim, declared):
+    for part in spelled_in(claim, declared, naming):
         kind = kind_of(part, site.role, declared)
         there = affix(naming, kind, part.text, site.namespaced) if kind else None
         if there is not None:
@@ -82,3 +94,30 @@ def respelled(value: str, spelling: Spelling, robot: str) -> str:
     for _, there in reversed(spelling):
         value = there.spell(value, robot)
     return value
+
+
+def respelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+    """Declarations by the names they have for ``robot``."""
+    return {
+        kind: {_spelled(naming, kind, name, robot): claim for name, claim in names.items()}
+        for kind, names in declared.items()
+    }
+
+
+def _spelled(naming: Naming, kind: str, name: str, robot: str) -> str:
+    there = affix(naming, kind, name)
+    return there.spell(name, robot) if there else name
+
+
+def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+    """Declarations by the names they had before a rewrite for ``robot``."""
+    return {
+        kind: {unspelled(naming, kind, name, robot): claim for name, claim in names.items()}
+        for kind, names in declared.items()
+    }
+
+
+def unspelled(naming: Naming, kind: str, name: str, robot: str) -> str:
+    """``name`` without what ``affix`` put there for ``robot``."""
+    span = removal(naming, robot, kind, name)
+    return name[: span[0]] + name[span[1] :] if span else name

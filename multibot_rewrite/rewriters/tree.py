@@ -23,7 +23,7 @@ NAMESPACES = {
     "gz": "http://gazebosim.org/schema",
     "ignition": "http://ignitionrobotics.org/schema",
     "drake": "http://drake.mit.edu",
-    **{prefix: _STAGE + prefix for prefix in ("controller", "sensor", "joint")},
+    **{prefix: _STAGE + prefix for prefix in ("controller", "sensor", "joint", "slider", "body")},
 }
 
 
@@ -120,13 +120,16 @@ class Tree:
         for node in nodes.values():
             self._know(node)
 
-    def format_of(self, root: _Element) -> Node | None:
-        """The node of a root element: of those with its tag the one that knows most children."""
-        found = [node for name, node in self.formats.items() if _tag(name) == root.tag]
+    def format_of(self, root: _Element) -> str:
+        """The section of a root element, empty where there is none.
+
+        Of those with its tag it is the one that knows most of its children.
+        """
+        found = [name for name in self.formats if _tag(name) == root.tag]
         if len(found) < 2:
-            return found[0] if found else None
+            return found[0] if found else ""
         tags = {child.tag for child in root}
-        return max(found, key=lambda node: len(node.children.keys() & tags))
+        return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
 
     def _hang(self, name: str, node: Node, nodes: dict[str, Node]) -> None:
         rewriter = node.rewriter

@@ -172,7 +172,8 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
     for claim in inventory.claims:
         if claim.site.form == "prefix":
             message = (
-                f"{claim.value!r} is put in front of names in code, a postfix cannot reach them"
+                f"{claim.site.path} {claim.value!r} stands in front of names that code makes, a "
+                "postfix cannot reach them"
             )
             yield finding(
                 inventory.document, claim.start, "MB304", WARNING, message, "use --affix prefix"
@@ -234,10 +235,11 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
     if naming.affix != POSTFIX or "joint" not in naming.separators:
         return
     siblings: dict[str, list[str]] = defaultdict(list)
-    for name, claim in inventory.declared["joint"].items():
-        parent = claim.element.find("parent")
+    declared = inventory.declared["joint"]
+    for claim in inventory.claims:
+        parent = claim.element.find("parent") if declared.get(claim.value) is claim else None
         if parent is not None:
-            siblings[parent.get("link", "")].append(name)
+            siblings[parent.get("link", "")].append(claim.value)
     for link, names in siblings.items():
         old = sorted(names)
         # The order may hang on the robot's name: a first and a last one show it.

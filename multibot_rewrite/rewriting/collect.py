@@ -8,8 +8,12 @@ from lxml import etree
 
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import takes_empty
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.document import Document, locate
+
+NOTHING: Declared = {}
 
 
 class Host(NamedTuple):
@@ -21,21 +25,24 @@ class Host(NamedTuple):
 
 
 class Inventory(NamedTuple):
-    """Everything a plan needs. ``declared`` maps a closed kind to its declarations by name."""
+    """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
+    URDF beside an SRDF included; ``format`` is the section of the root element."""
 
     document: Document
     claims: list[Claim]
     hosts: list[Host]
     declared: dict[str, dict[str, Claim]]
+    format: str
 
 
-def collect(document: Document, tree: Tree) -> Inventory:
-    """Walk the document in order beside the tree of rewriters."""
+def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inventory:
+    """Walk the document in order beside the tree of rewriters; ``outside`` is declared elsewhere."""
     claims: list[Claim] = []
     hosts: list[Host] = []
     walk = zip(document.root.iter("*"), document.starts, strict=True)
     root, _ = next(walk)
-    node = _format(document, tree)
+    format_ = _format(document, tree)
+    node = tree.formats[format_]
     nothing: dict[str, Node] = {}
     below: dict[etree._Element, dict[str, Node]] = {root: node.active}
     _claim(claims, node, root, document.starts[0])
@@ -56,19 +63,19 @@ def collect(document: Document, tree: Tree) -> Inventory:
             below[element] = found.active
         if found.attributes or found.text is not None:
             _claim(claims, found, element, start)
-    return Inventory(document, claims, hosts, _declared(claims))
+    return Inventory(document, claims, hosts, _declared(claims, outside), format_)
 
 
-def _format(document: Document, tree: Tree) -> Node:
-    node = tree.format_of(document.root)
-    if node is None:
+def _format(document: Document, tree: Tree) -> str:
+    found = tree.format_of(document.root)
+    if not found:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
         line, column = locate(document.source, document.starts[0])
         raise InputError(
             f"{document.file}:{line}:{column}: the root element is <{document.root.tag}>, expected "
             f"{known}; give a robot description"
         )
-    return node
+    return found
 
 
 def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int) -> None:
@@ -76,8 +83,9 @@ def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int)
         value = element.get(attribute)
         if value is not None:
             claims.append(Claim(site, element, start, attribute, value))
-    if node.text is not None and element.text and _applies(node.text, element):
-        claims.append(Claim(node.text, element, start, "", element.text.strip()))
+    site = node.text
+    if site is not None and (element.text or takes_empty(site)) and _applies(site, element):
+        claims.append(Claim(site, element, start, "", (element.text or "").strip()))
 
 
 def _applies(site: Site, element: etree._Element) -> bool:
@@ -88,8 +96,8 @@ def _applies(site: Site, element: etree._Element) -> bool:
     return parent is not None and parent.findtext(sibling, "").strip() == text
 
 
-def _declared(claims: list[Claim]) -> dict[str, dict[str, Claim]]:
-    declared: dict[str, dict[str, Claim]] = {kind: {} for kind in DECLARED_KINDS}
+def _declared(claims: list[Claim], outside: Declared) -> dict[str, dict[str, Claim]]:
+    declared = {kind: dict(outside.get(kind, {})) for kind in DECLARED_KINDS}
     for claim in claims:
         site = claim.site
         name = claim.value.strip()

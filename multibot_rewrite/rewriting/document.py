@@ -144,6 +144,21 @@ def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
     return (begin, begin + len(text)) if _reads_as(b"<a>%s</a>", text, value) else None
 
 
+def fillable(source: bytes, start: int) -> tuple[int, int, bytes] | None:
+    """Where ``<a/>`` ends, and the end tag it needs to hold text; None if it is not written so.
+
+    ``<a></a>`` is not fillable: emptied again, it could not be told from ``<a/>``.
+    """
+    end = tag_end(source, start)
+    name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")
+    return (end - 2, end, b"</%s>" % name) if source[end - 2 : end] == b"/>" else None
+
+
+def emptied(source: bytes, start: int, slot: tuple[int, int]) -> tuple[int, int]:
+    """What ``/>`` is to replace where a filled element is empty again."""
+    return slot[0] - 1, source.index(b">", slot[1]) + 1
+
+
 def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:
     element = etree.fromstring(frame % raw.replace(b'"', b"&quot;"))
     return (element.get("b") if b"b=" in frame else element.text or "") == value

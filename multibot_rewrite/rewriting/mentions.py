@@ -102,7 +102,7 @@ def node_of(element: etree._Element, tree: Tree) -> Node | None:
     """The node of the tree that serves an element."""
     parent = element.getparent()
     if parent is None:
-        return tree.format_of(element)
+        return tree.formats.get(tree.format_of(element))
     above = node_of(parent, tree)
     node = above.children.get(str(element.tag)) if above else None
     return node.select(element) if node is not None and node.select is not None else node

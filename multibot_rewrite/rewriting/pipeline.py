@@ -5,13 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.model import ERROR, Finding, RewriteRefused
-from multibot_rewrite.naming import Naming, overlap
+from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
+from multibot_rewrite.naming import Naming, affix, overlap
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import respelled_names, stripped_names
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import audit
 from multibot_rewrite.rewriting import robots as checks
 from multibot_rewrite.rewriting.apply import cut, fill
-from multibot_rewrite.rewriting.collect import Inventory, collect
+from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.rewriting.mentions import find_mentions, slot_values
 from multibot_rewrite.rewriting.plan import Plan, make_plan
@@ -20,6 +22,7 @@ from multibot_rewrite.rewriting.verify import verify
 
 # Kinds whose names are telling enough to be looked for where no site is.
 MENTIONED = ("link", "joint")
+SRDF = "srdf.robot"
 
 
 class Template(NamedTuple):
@@ -32,18 +35,39 @@ class Template(NamedTuple):
     findings: list[Finding]
     naming: Naming
     tree: Tree
+    outside: Declared
 
 
-def prepare(source: bytes, file: str, naming: Naming, tree: Tree) -> Template:
-    """Everything that does not depend on a robot's name; raises InputError and RewriteRefused."""
-    inventory = collect(read_document(source, file), tree)
+def prepare(
+    source: bytes, file: str, naming: Naming, tree: Tree, outside: Declared = NOTHING
+) -> Template:
+    """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
+
+    ``outside`` is what the URDF beside an SRDF declares.
+    """
+    inventory = collect(read_document(source, file), tree, outside)
+    _check_outside(inventory, outside)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, naming, tree), *plan.findings]
     _stop_on_errors(findings)
     values = slot_values(inventory.document.root)
-    findings += find_mentions(inventory, values, _renamed(inventory, plan), tree)
+    findings += find_mentions(inventory, values, _renamed(inventory, naming), tree)
     pieces = cut(source, plan.edits)
-    return Template(inventory, plan, values, pieces, findings, naming, tree)
+    return Template(inventory, plan, values, pieces, findings, naming, tree, outside)
+
+
+def declarations(source: bytes, file: str, tree: Tree) -> Declared:
+    """What a description declares, by kind and name."""
+    return collect(read_document(source, file), tree).declared
+
+
+def _check_outside(inventory: Inventory, outside: Declared) -> None:
+    """An SRDF names what its URDF declares: neither makes sense without the other."""
+    file = inventory.document.file
+    if inventory.format == SRDF and not outside:
+        raise InputError(f"{file}: an SRDF is rewritten beside its URDF: add --urdf robot.urdf")
+    if inventory.format != SRDF and outside:
+        raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
 
 
 def render(template: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
@@ -61,28 +85,32 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
         output = fill(template.pieces, robot)
         if number == 0:
             _, plan, values, *_ = template
-            verify(inventory, plan, values, output, robot, naming, template.tree)
+            outside = respelled_names(template.outside, naming, robot)
+            verify(inventory, plan, values, output, robot, naming, template.tree, outside)
         yield output
 
 
-def strip(source: bytes, file: str, robot: str, naming: Naming, tree: Tree) -> bytes:
-    """Undo a rewrite for ``robot``; the result is proved by rewriting it again."""
-    inventory = collect(read_document(source, file), tree)
+def strip(
+    source: bytes, file: str, robot: str, naming: Naming, tree: Tree, outside: Declared = NOTHING
+) -> bytes:
+    """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
+
+    ``outside`` is what the rewritten URDF beside a rewritten SRDF declares.
+    """
+    inventory = collect(read_document(source, file), tree, outside)
+    _check_outside(inventory, outside)
     found = checks.not_rewritten(inventory, naming, robot)
     _stop_on_errors(found)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
-    again = prepare(stripped, file, naming, tree)
+    again = prepare(stripped, file, naming, tree, stripped_names(outside, naming, robot))
     if fill(again.pieces, robot) != source:
         _stop_on_errors([checks.other_options(inventory, robot)])
     return stripped
 
 
-def _renamed(inventory: Inventory, plan: Plan) -> set[str]:
-    return {
-        claim.value.strip()
-        for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
-        if spelling and claim.site.role == "declares" and claim.site.kinds[0] in MENTIONED
-    }
+def _renamed(inventory: Inventory, naming: Naming) -> set[str]:
+    names = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
+    return {name for kind, name in names if affix(naming, kind, name)}
 
 
 def _stop_on_errors(findings: Sequence[Finding]) -> None:

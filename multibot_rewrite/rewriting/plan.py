@@ -5,16 +5,17 @@ A plan holds for every robot: the robot's name is a hole in its edits.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from operator import itemgetter
 from typing import NamedTuple
 
 from multibot_rewrite.model import ERROR, Claim, Edit, Finding
-from multibot_rewrite.naming import Naming, affix
+from multibot_rewrite.naming import Affix, Naming, affix
 from multibot_rewrite.rewriters.contact import Respell, respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions
 from multibot_rewrite.rewriters.spelling import HOLE, Spelling, spell, spelling_key
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import finding, value_slot
+from multibot_rewrite.rewriting.document import fillable, finding, value_slot
 from multibot_rewrite.rewriting.inserted import hole_edits, insertion_edits
 
 _START = itemgetter(0)
@@ -39,7 +40,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     """Apply ``naming`` once to every distinct name and place the results."""
     spellings = _spellings(inventory, naming)
     edits, findings = _edits(inventory, spellings)
-    document, claims, hosts, declared = inventory
+    document, claims, hosts, declared, _ = inventory
     collisions = respell_collisions(document.root, claims, declared, respeller(naming, HOLE))
     findings += _unstable(inventory, naming, collisions)
     for claim, new in collisions:
@@ -64,7 +65,7 @@ def _unstable(
     inventory: Inventory, naming: Naming, collisions: list[tuple[Claim, str]]
 ) -> list[Finding]:
     """Contacts whose collision is numbered by how the robot's name sorts: no plan holds for all."""
-    document, claims, _, declared = inventory
+    document, claims, _, declared, _ = inventory
     # HOLE sorts before every letter, this after.
     respell = respeller(naming, LAST)
     last = respell_collisions(document.root, claims, declared, respell) if collisions else []
@@ -86,7 +87,7 @@ def respeller(naming: Naming, robot: str) -> Respell:
     """The new spelling of a link or joint for ``robot``."""
 
     def respell(kind: str, name: str) -> str:
-        there = affix(naming, kind, name)
+        there = affix(naming, kind, name) if name else None
         return there.spell(name, robot) if there else name
 
     return respell
@@ -107,12 +108,15 @@ def _spellings(inventory: Inventory, naming: Naming) -> list[Spelling]:
 
 def _edits(inventory: Inventory, spellings: list[Spelling]) -> tuple[list[Edit], list[Finding]]:
     source = inventory.document.source
-    edits = []
-    findings = []
+    edits: list[Edit] = []
+    findings: list[Finding] = []
     for claim, spelling in zip(inventory.claims, spellings, strict=True):
         if not spelling:
             continue
         _, _, start, attribute, value = claim
+        if not value:
+            edits += _filled(inventory, claim, spelling[0][1], findings)
+            continue
         slot = value_slot(source, start, attribute, value)
         for _, (at, before, after) in spelling:
             place = value_place(source, slot, value, at) if slot else None
@@ -121,6 +125,18 @@ def _edits(inventory: Inventory, spellings: list[Spelling]) -> tuple[list[Edit],
                 break
             edits.append(Edit(place, place, before.encode(), after.encode()))
     return edits, findings
+
+
+def _filled(
+    inventory: Inventory, claim: Claim, there: Affix, findings: list[Finding]
+) -> Iterator[Edit]:
+    """``<param/>`` made to hold the robot's prefix."""
+    place = fillable(inventory.document.source, claim.start)
+    if place is None:
+        findings.append(_not_editable(inventory, claim))
+    else:
+        start, end, close = place
+        yield Edit(start, end, b">" + there.before.encode(), there.after.encode() + close)
 
 
 def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
@@ -140,11 +156,14 @@ def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> in
 
 
 def _not_editable(inventory: Inventory, claim: Claim) -> Finding:
+    hint = "write it as plain text, without escapes, CDATA or comments inside"
+    if not claim.value:
+        hint = f"write <{claim.element.tag} .../> instead of an empty pair of tags"
     return finding(
         inventory.document,
         claim.start,
         "MB104",
         ERROR,
         f"{claim.value.strip()!r} cannot be edited in place",
-        "write it as plain text, without escapes, CDATA or comments inside",
+        hint,
     )

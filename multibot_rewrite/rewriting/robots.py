@@ -6,7 +6,12 @@ from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.model import ERROR, Claim, Finding
 from multibot_rewrite.naming import Naming, affix, removal
-from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
+from multibot_rewrite.rewriters.spelling import (
+    kind_of,
+    must_be_declared,
+    names_in,
+    spelled_in,
+)
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import finding
 from multibot_rewrite.rewriting.inserted import markers
@@ -41,7 +46,7 @@ def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, b
     """Kind, name and namespaced of everything the naming spells for a robot."""
     for claim in inventory.claims:
         site = claim.site
-        for part in names_in(claim, inventory.declared):
+        for part in spelled_in(claim, inventory.declared, naming):
             kind = kind_of(part, site.role, inventory.declared)
             if kind and affix(naming, kind, part.text, site.namespaced) is not None:
                 yield kind, part.text, site.namespaced
@@ -61,16 +66,23 @@ def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> l
 def _kept(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, Claim]]:
     """Declared names no policy spells, and names that are used and declared nowhere."""
     declared = inventory.declared
-    for kind, names in declared.items():
-        for name, claim in names.items():
-            if affix(naming, kind, name) is None:
-                yield kind, name, claim
+    for kind, name, claim in _declarations(inventory):
+        if affix(naming, kind, name) is None:
+            yield kind, name, claim
     for claim in inventory.claims:
         if claim.site.role != "uses" or not must_be_declared(claim.site):
             continue
         for part in names_in(claim, declared):
             if not kind_of(part, claim.site.role, declared):
                 yield from ((kind, part.text, claim) for kind in part.kinds)
+
+
+def _declarations(inventory: Inventory) -> Iterator[tuple[str, str, Claim]]:
+    """Kind, name and claim of what this document itself declares."""
+    for claim in inventory.claims:
+        kind, name = claim.site.kinds[0], claim.value.strip()
+        if claim.site.role == "declares" and name and kind in inventory.declared:
+            yield kind, name, claim
 
 
 def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
@@ -106,17 +118,13 @@ def _spelled(naming: Naming, robot: str, kind: str, name: str, namespaced: bool)
 
 def not_rewritten(inventory: Inventory, naming: Naming, robot: str) -> list[Finding]:
     """Links and joints without the affix that ``--strip`` is to take off."""
-    found = []
-    for kind, names in inventory.declared.items():
-        for name, claim in names.items():
-            renamed = affix(naming, kind, name) is not None
-            if renamed and removal(naming, robot, kind, name) is None:
-                message = f"{kind} {name!r} is not spelled for {robot}"
-                hint = "give --strip the robot and the options the file was made with"
-                found.append(
-                    finding(inventory.document, claim.start, "MB107", ERROR, message, hint)
-                )
-    return found[:1]
+    for kind, name, claim in _declarations(inventory):
+        renamed = affix(naming, kind, name) is not None
+        if renamed and removal(naming, robot, kind, name) is None:
+            message = f"{kind} {name!r} is not spelled for {robot}"
+            hint = "give --strip the robot and the options the file was made with"
+            return [finding(inventory.document, claim.start, "MB107", ERROR, message, hint)]
+    return []
 
 
 def other_options(inventory: Inventory, robot: str) -> Finding:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
-from multibot_rewrite.rewriters.spelling import kind_of, names_in, spelling_key
+from multibot_rewrite.rewriters.spelling import kind_of, spelled_in, spelling_key, unspelled
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import value_slot
+from multibot_rewrite.rewriting.document import emptied, value_slot
 from multibot_rewrite.rewriting.inserted import removals
 from multibot_rewrite.rewriting.plan import value_place
 
@@ -16,7 +16,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     """Edits that undo ``make_plan`` for ``robot``, in source order."""
     document = inventory.document
     edits = removals(document, robot)
-    claims = outside(inventory.claims, edits)
+    claims = outside_of(inventory.claims, edits)
     known: dict[tuple[object, str], list[tuple[int, int]]] = {}
     for claim in claims:
         key = spelling_key(claim)
@@ -27,8 +27,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
             edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
-        span = removal(naming, robot, kind, name)
-        return name[: span[0]] + name[span[1] :] if span else name
+        return unspelled(naming, kind, name, robot)
 
     for claim, old in respell_collisions(document.root, claims, inventory.declared, unspell):
         slot = value_slot(document.source, *claim[2:])
@@ -37,7 +36,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     return sorted(edits, key=lambda edit: edit.start)
 
 
-def outside(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
+def outside_of(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     """The claims that do not stand in inserted text."""
     if not removed:
         return claims
@@ -49,7 +48,7 @@ def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> li
     """The parts of the claimed value that an affix put there."""
     site = claim.site
     spans = []
-    for part in names_in(claim, inventory.declared):
+    for part in spelled_in(claim, inventory.declared, naming):
         kind = kind_of(part, site.role, inventory.declared)
         span = removal(naming, robot, kind, part.text, site.namespaced) if kind else None
         if span is not None:
@@ -61,5 +60,7 @@ def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> l
     slot = value_slot(source, claim.start, claim.attribute, claim.value)
     if slot is None:
         return []
+    if spans == [(0, len(claim.value))]:
+        return [Edit(*emptied(source, claim.start, slot), b"/>", None)]
     places = [[value_place(source, slot, claim.value, at) for at in span] for span in spans]
     return [Edit(a, b, b"", None) for a, b in places if a is not None and b is not None]

@@ -193,9 +193,7 @@ def short_name(name: str, prefix: str | None = None) -> str:
     return f"{short}:{local}" if short else name
 
 
-def ranked(
-    tallies: Iterable[tuple[Loaded | Mention, Tally]],
-) -> list[tuple[Loaded | Mention, Tally]]:
+def ranked(tallies: Iterable[tuple[_Thing, Tally]]) -> list[tuple[_Thing, Tally]]:
     """The most frequent first, those of one frequency by name."""
     return sorted(tallies, key=lambda pair: (-pair[1].times, pair[0]))
 

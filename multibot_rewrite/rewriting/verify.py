@@ -8,6 +8,7 @@ from lxml import etree
 
 from multibot_rewrite.model import Claim, InputError, ProofError
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import HOLE, respelled
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.apply import cut, invert
@@ -16,7 +17,7 @@ from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.rewriting.inserted import removals
 from multibot_rewrite.rewriting.mentions import slot_values
 from multibot_rewrite.rewriting.plan import Plan
-from multibot_rewrite.rewriting.strip import outside, strip_edits
+from multibot_rewrite.rewriting.strip import outside_of, strip_edits
 
 
 def verify(
@@ -27,19 +28,21 @@ def verify(
     robot: str,
     naming: Naming,
     tree: Tree,
+    outside: Declared,
 ) -> None:
     """Raise ProofError unless ``output`` is the input with its names respelled and nothing else.
 
-    ``values`` are the input's ``slot_values``.
+    ``values`` are the input's ``slot_values``; ``outside`` is what the robot's URDF declares beside
+    an SRDF.
     """
     source, file = inventory.document.source, inventory.document.file
     try:
-        result = collect(read_document(output, f"{file} for {robot}"), tree)
+        result = collect(read_document(output, f"{file} for {robot}"), tree, outside)
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
     expected = _expected(inventory, plan, robot)
     inserted = removals(result.document, robot)
-    _same_names(inventory, outside(result.claims, inserted), expected)
+    _same_names(inventory, outside_of(result.claims, inserted), expected)
     _same_symbols(inventory, result, robot)
     come = Counter(expected)
     for item in plan.insertions:

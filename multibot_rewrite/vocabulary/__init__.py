@@ -21,7 +21,7 @@ A section is one of
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
 ``param[@name=mimic]``. After the kinds may stand ``form=NAME`` (where in the value the names are)
 and ``default=TEXT`` (the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
-with its last segment replaced) and ``when=SIBLING=TEXT`` (else it is no name of ours), then
+with its last segment replaced; ``a=true,b=?x`` is x where those siblings have these texts) and ``when=SIBLING=TEXT`` (else it is no name of ours), then
 ``# a note``.
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
