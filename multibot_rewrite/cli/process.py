@@ -9,9 +9,13 @@ from collections.abc import Callable
 
 from multibot_rewrite.cli.output import print_findings, say
 from multibot_rewrite.cli.usage import UNUSABLE
+from multibot_rewrite.cli.usage import _Parser as Parser
 from multibot_rewrite.model import MultibotError, ProofError, RewriteRefused
 
+__all__ = ["DONE", "INTERRUPTED", "PROGRAM", "STOPPED", "UNUSABLE", "Parser", "guarded"]
+
 DONE, STOPPED, INTERRUPTED = 0, 1, 130
+PROGRAM = "multibot"
 
 
 def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:

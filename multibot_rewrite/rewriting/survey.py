@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
@@ -53,6 +53,9 @@ class Mention(NamedTuple):
 
     path: str
     exact: bool
+
+
+_Thing = TypeVar("_Thing", Loaded, Mention)
 
 
 class Survey(NamedTuple):

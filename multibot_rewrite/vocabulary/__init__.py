@@ -19,10 +19,13 @@ A section is one of
     [block NAME]       lines that several sections share by ``with: NAME``
 
 A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
-``param[@name=mimic]``. After the kinds may stand ``form=NAME`` (where in the value the names are)
-and ``default=TEXT`` (the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
-with its last segment replaced; ``a=true,b=?x`` is x where those siblings have these texts) and ``when=SIBLING=TEXT`` (else it is no name of ours), then
-``# a note``.
+``param[@name=mimic]``. After the kinds may stand, in this order or another, then ``# a note``:
+
+    form=NAME          where in the value the names are
+    default=TEXT       the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
+                       with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
+                       these texts
+    when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
@@ -141,6 +144,15 @@ class Vocabulary:
     def names(self, type_: str) -> list[str]:
         """Every name and alias of that type."""
         return [name for kind, name in self._raw if kind == type_]
+
+    def file_of(self, site: Site) -> str:
+        """The file that a row stands in; a block or a later section may be in another one."""
+        type_, name = site.section.split()
+        for file, line, chunk in self._raw[type_, name]:
+            row = chunk.split("\n")[site.line - line :][:1] if site.line > line else []
+            if row and row[0].split()[:1] == [site.path]:
+                return file
+        raise AssertionError(site)
 
     def rewriters(self, *types: str) -> list[Rewriter]:
         """All rewriters of these types, parsed and checked, in file order."""

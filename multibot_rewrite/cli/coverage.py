@@ -1,0 +1,269 @@
+"""``multibot coverage``: how much of a set of descriptions the vocabulary knows."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.output import print_bytes, say, watched
+from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED, UNUSABLE
+from multibot_rewrite.cli.tables import Grid, clip, json_bytes, print_report
+from multibot_rewrite.cli.walk import check_target, find_files
+from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.library import builtin_tree, read_file, read_source
+from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rewriting.collect import collect
+from multibot_rewrite.rewriting.document import read_document
+from multibot_rewrite.rewriting.survey import (
+    Explained,
+    Loaded,
+    Mention,
+    Reason,
+    Survey,
+    Tally,
+    add,
+    explain,
+    ranked,
+    read_reasons,
+    share,
+    survey,
+)
+
+ABOUT = "how much of a set of descriptions is known, and what is not"
+SUFFIXES = (".urdf", ".sdf")
+MORE = """\
+Folders are searched for *.urdf and *.sdf; a xacro file is read where it is named itself.
+exit codes: 0 done; 1 less is known than asked for, or (with --explained) a mention is unexplained;
+2 wrong use, or nothing could be read
+"""
+
+
+class Unreadable(NamedTuple):
+    """A file that could not be read, and why."""
+
+    file: str
+    reason: str
+
+
+class Report(NamedTuple):
+    """Everything that is reported."""
+
+    total: Survey
+    unreadable: Sequence[Unreadable]
+    exact: Explained
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.epilog = MORE
+    parser.add_argument("paths", nargs="+", metavar="PATH", help="files and folders")
+    parser.add_argument(
+        "--json", metavar="FILE", help="write all of it as JSON (- is standard output)"
+    )
+    parser.add_argument(
+        "--vocabulary", action="append", default=[], metavar="FILE", help="more vocabulary"
+    )
+    parser.add_argument(
+        "--explained", metavar="FILE", help="mentions that are right: tag path, tab, reason a line"
+    )
+    parser.add_argument(
+        "--top", type=_count, default=20, metavar="N", help="rows a table (default: 20; 0 is all)"
+    )
+    parser.add_argument(
+        "--min-known", type=_percent, metavar="PERCENT", help="fail where fewer plugins are known"
+    )
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of rows, give 0 or more")
+    return int(text)
+
+
+def _percent(text: str) -> float:
+    try:
+        value = float(text.removesuffix("%"))
+    except ValueError:
+        value = math.nan
+    if not 0 <= value <= 100:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a percentage, give 0 to 100")
+    return value
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read, add up, report; returns the exit code."""
+    paths = find_files(options.paths, SUFFIXES)
+    reasons = _reasons(options.explained)
+    if options.json not in (None, "-"):
+        check_target(
+            options.json, [*paths, *options.vocabulary, *filter(None, [options.explained])]
+        )
+    tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
+    unreadable: list[Unreadable] = []
+    total = add(_surveys(watched(paths, len(paths), "reading"), tree, unreadable))
+    report = Report(total, unreadable, explain(total, reasons))
+    if options.json == "-":
+        print_bytes(json_bytes(as_json(report)))
+    else:
+        write_all([(options.json, json_bytes(as_json(report)))] if options.json else [])
+        print_report(_parts(report, options.top or None))
+    return _verdict(report, options)
+
+
+def _reasons(path: str | None) -> list[Reason]:
+    if path is None:
+        return []
+    try:
+        text = read_file(path).decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
+    return read_reasons(text, path)
+
+
+def _surveys(paths: Iterable[str], tree: Tree, unreadable: list[Unreadable]) -> Iterator[Survey]:
+    """One survey a file; what cannot be read is put into ``unreadable``."""
+    for path in paths:
+        try:
+            data, name = read_source(path, {})
+            yield survey(collect(read_document(data, name), tree), tree)
+        except InputError as error:
+            unreadable.append(Unreadable(path, str(error)))
+
+
+def _verdict(report: Report, options: argparse.Namespace) -> int:
+    """The exit code, and why on standard error."""
+    if not report.total.files:
+        say("none of the files can be read", PROGRAM)
+        return UNUSABLE
+    failed = False
+    count, known = share(report.total, "plugin")
+    if options.min_known is not None and known * 100 < options.min_known * count:
+        percent = _percentage(count, known)
+        say(f"{percent} % of the plugins are known, wanted {options.min_known:g} %", PROGRAM)
+        failed = True
+    left = sum(tally.times for _, tally in report.exact.left)
+    if options.explained is not None and left:
+        say(f"{left} exact mentions are not explained in {options.explained}", PROGRAM)
+        failed = True
+    return STOPPED if failed else DONE
+
+
+def _percentage(count: int, known: int) -> float:
+    """Rounded down, so that 100 means all; all of nothing is all."""
+    return math.floor(1000 * known / count) / 10 if count else 100.0
+
+
+def as_json(report: Report) -> dict[str, object]:
+    """The report as ``--json`` writes it; docs/coverage.md describes it."""
+    exact = report.exact
+    return {
+        "files": {
+            "read": report.total.files,
+            "unreadable": [item._asdict() for item in report.unreadable],
+        },
+        "plugins": _loaded_json(report.total, "plugin"),
+        "hardware": _loaded_json(report.total, "hardware"),
+        "claims": dict(sorted(report.total.claims.items())),
+        "mentions": {
+            "exact": [_mention_json(*pair) for pair in ranked(exact.left)],
+            "inside": [_mention_json(*pair) for pair in _inside(report)],
+            "explained": [
+                {**_mention_json(mention, tally), "reason": reason.text}
+                for mention, tally, reason in exact.explained
+            ],
+            "stale": [{"path": stale.path, "line": stale.line} for stale in exact.stale],
+        },
+    }
+
+
+def _loaded_json(total: Survey, type_: str) -> dict[str, object]:
+    count, known = share(total, type_)
+    names = [it for it in total.loaded if it.type == type_]
+    return {
+        "count": count,
+        "known": known,
+        "percent": _percentage(count, known),
+        "names": len(names),
+        "known_names": sum(it.known for it in names),
+        "unknown": [
+            {"name": it.name, "count": tally.times, "files": tally.files, "place": tally.place}
+            for it, tally in _unknown(total, type_)
+        ],
+    }
+
+
+def _mention_json(mention: Mention, tally: Tally) -> dict[str, object]:
+    return {
+        "path": mention.path,
+        "count": tally.times,
+        "files": tally.files,
+        "place": tally.place,
+        "value": tally.value,
+    }
+
+
+def _unknown(total: Survey, type_: str) -> list[tuple[Loaded, Tally]]:
+    return ranked((it, t) for it, t in total.loaded.items() if it.type == type_ and not it.known)
+
+
+def _inside(report: Report) -> list[tuple[Mention, Tally]]:
+    return ranked(pair for pair in report.total.mentions.items() if not pair[0].exact)
+
+
+def _parts(report: Report, top: int | None) -> Iterator[str | Grid]:
+    """What is printed; ``top`` is how many rows a table has at most."""
+    total, exact = report.total, report.exact
+    yield f"{total.files} files read, {len(report.unreadable)} cannot be read"
+    yield from (f"  {item.reason}" for item in report.unreadable)
+    yield from _loaded_parts(total, "plugin", "plugins", top)
+    yield from _loaded_parts(total, "hardware", "hardware classes", top)
+    claims = sorted(total.claims.items(), key=lambda pair: (-pair[1], pair[0]))
+    yield f"\n{sum(total.claims.values())} values claimed"
+    if claims:
+        yield "  " + ", ".join(f"{kind} {count}" for kind, count in claims)
+    yield from _mention_parts("unclaimed and exactly a link or joint", ranked(exact.left), top)
+    yield from _mention_parts("unclaimed with a link or joint inside", _inside(report), top)
+    if exact.explained:
+        yield f"\n{_times(exact.explained)} exact mentions explained"
+        rows = [
+            (str(t.times), str(t.files), m.path, reason.text) for m, t, reason in exact.explained
+        ]
+        yield Grid(("count", "files", "path", "reason"), rows[:top])
+        yield from _rest(rows, top)
+    for stale in exact.stale:
+        yield f"stale: line {stale.line} explains nothing any more: {stale.path}"
+
+
+def _loaded_parts(total: Survey, type_: str, words: str, top: int | None) -> Iterator[str | Grid]:
+    count, known = share(total, type_)
+    names = [it.known for it in total.loaded if it.type == type_]
+    percent = _percentage(count, known)
+    yield f"\n{known} of {count} {words} known ({percent} %), {sum(names)} of {len(names)} names"
+    unknown = _unknown(total, type_)
+    rows = [(str(t.times), str(t.files), it.name, t.place) for it, t in unknown]
+    if rows:
+        yield Grid(("count", "files", "not known", "first seen"), rows[:top])
+        yield from _rest(rows, top)
+
+
+def _mention_parts(
+    what: str, mentions: Sequence[tuple[Mention, Tally]], top: int | None
+) -> Iterator[str | Grid]:
+    yield f"\n{_times(mentions)} {what}"
+    rows = [(str(t.times), str(t.files), m.path, clip(t.value), t.place) for m, t in mentions]
+    if rows:
+        yield Grid(("count", "files", "path", "value", "first seen"), rows[:top])
+        yield from _rest(rows, top)
+
+
+def _times(rows: Iterable[tuple[Mention, Tally] | tuple[Mention, Tally, Reason]]) -> int:
+    return sum(row[1].times for row in rows)
+
+
+def _rest(rows: Sequence[object], top: int | None) -> Iterator[str]:
+    if top is not None and len(rows) > top:
+        yield f"  and {len(rows) - top} more rows; --top 0 shows all"

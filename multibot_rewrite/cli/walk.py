@@ -1,0 +1,57 @@
+"""Which files a command reads when it is given files and folders."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NoReturn
+
+from multibot_rewrite.model import InputError, UsageError
+
+
+def find_files(paths: Sequence[str], suffixes: tuple[str, ...]) -> list[str]:
+    """The files named, and those with one of the suffixes below the folders named; each file once.
+
+    Raises UsageError where a path is not there or nothing is found, InputError for a folder that
+    cannot be read.
+    """
+    found: dict[str, str] = {}
+    for path in paths:
+        if not os.path.exists(path):
+            raise UsageError(f"{path}: there is no such file or folder")
+        for file in _below(path, suffixes) if os.path.isdir(path) else (path,):
+            found.setdefault(os.path.realpath(file), file)
+    if not found:
+        wanted = " or ".join(f"*{suffix}" for suffix in suffixes)
+        raise UsageError(f"{', '.join(paths)}: no {wanted} there; name a file or another folder")
+    return list(found.values())
+
+
+def _below(top: str, suffixes: tuple[str, ...]) -> Iterator[str]:
+    """In order of names; links to folders are followed, each folder is visited once."""
+    seen = set()
+    for folder, folders, files in os.walk(top, onerror=_refuse, followlinks=True):
+        real = os.path.realpath(folder)
+        if real in seen:
+            folders.clear()
+            continue
+        seen.add(real)
+        folders.sort()
+        paths = [os.path.join(folder, name) for name in sorted(_named(files, suffixes))]
+        # A dead link is told of when it is read; a pipe would never end.
+        yield from (path for path in paths if os.path.isfile(path) or not os.path.exists(path))
+
+
+def _named(files: Iterable[str], suffixes: tuple[str, ...]) -> Iterator[str]:
+    return (name for name in files if name.lower().endswith(suffixes))
+
+
+def _refuse(error: OSError) -> NoReturn:
+    raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
+
+
+def check_target(target: str, inputs: Iterable[str]) -> None:
+    """Raise UsageError where writing ``target`` would replace one of the files that are read."""
+    real = os.path.realpath(target)
+    if any(os.path.realpath(path) == real for path in inputs):
+        raise UsageError(f"{target} is a file that is read; choose another one for --json")
