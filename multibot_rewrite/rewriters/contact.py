@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator
 from lxml import etree
 
 from multibot_rewrite.model import Claim
-from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.forms import Declared, is_included
 
 Respell = Callable[[str, str], str]
 Links = dict[str, etree._Element]
@@ -48,6 +48,7 @@ def _scopes(names: list[str], declared: Declared, respell: Respell) -> Iterator[
     for name in names:
         kinds = [kind for kind in ("model", "link") if name in declared[kind]]
         yield respell(kinds[0], name) if kinds and not elsewhere else name
+        elsewhere = elsewhere or is_included(name, declared)
 
 
 def collision_map(root: etree._Element, respell: Respell) -> dict[str, str]:

@@ -64,13 +64,24 @@ def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
 def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
     """SDF's ``model::link``: the last piece is the name, the ones before it are models.
 
-    No part where the first model is none of this file: what it holds is named elsewhere.
+    No part where the first model is none of this file, and none behind an included model: what
+    they hold is named elsewhere.
     """
     pieces = list(_pieces(value))
     if len(pieces) > 1 and pieces[0][1] not in declared["model"]:
         return ()
-    scopes = [Part(at, name, ("model",), True) for at, name in pieces[:-1]]
+    scopes = []
+    for at, name in pieces[:-1]:
+        scopes.append(Part(at, name, ("model",), True))
+        if is_included(name, declared):
+            return tuple(scopes)
     return (*scopes, *(Part(at, name, kinds, True) for at, name in pieces[-1:]))
+
+
+def is_included(model: str, declared: Declared) -> bool:
+    """Does another file describe this model? Its ``<include>`` only names it."""
+    claim = declared["model"].get(model)
+    return claim is not None and not claim.attribute
 
 
 def _pieces(value: str) -> Iterator[tuple[int, str]]:
