@@ -12,6 +12,7 @@ from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_n
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.changes import list_changes
+from multibot_rewrite.rewriting.explain import Explanation
 from multibot_rewrite.rosnames import check_robot_name
 from multibot_rewrite.vocabulary import advice, load_vocabulary
 
@@ -92,6 +93,32 @@ def rewrite_all(
     texts = pipeline.render(template, robots, again)
     findings = tuple(template.findings)
     return (Rewrite(r, t, findings, template) for r, t in zip(robots, texts, strict=True))
+
+
+def explain(
+    source: Source,
+    line: int,
+    robot: str = "robot1",
+    *,
+    urdf: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Sequence[str] = (),
+    file: str = "",
+    **policy: object,
+) -> list[Explanation]:
+    """What is known about the values that start on ``line``, and what they become for ``robot``.
+
+    ``policy`` is that of ``rewrite_all``. A description that a rewrite refuses is explained all the
+    same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
+    """
+    naming = make_naming(**policy)  # type: ignore[arg-type]
+    check_robot_name(robot)
+    tree = builtin_tree(tuple(vocabulary))
+    args = xacro_args or {}
+    data, name = read_source(source, _args_for(source, urdf, args))
+    beside = None if urdf is None else read_source(urdf, _args_for(urdf, source, args))
+    outside = pipeline.declarations(*beside, tree) if beside else {}
+    return pipeline.explain(data, file or name, naming, tree, outside, robot, line)
 
 
 def strip(

@@ -56,6 +56,7 @@ class Site(NamedTuple):
     line: int
     plain: str = ""
     when: str = ""
+    file: str = ""
 
 
 class Claim(NamedTuple):

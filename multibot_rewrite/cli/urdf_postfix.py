@@ -10,11 +10,10 @@ from functools import partial
 
 from multibot_rewrite.cli.output import changes_json, deliver, print_findings, say, summary
 from multibot_rewrite.cli.process import DONE, STOPPED, guarded
-from multibot_rewrite.cli.usage import check_use, input_name, parser, separators, xacro_args
+from multibot_rewrite.cli.usage import check_use, input_name, parser, policy, xacro_args
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, Source, read_source, rewrite_all, strip
 from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import make_naming
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -31,6 +30,10 @@ def _start(arguments: Sequence[str] | None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    if options.explain is not None:
+        from multibot_rewrite.cli import explain  # a rewrite does not need it
+
+        return explain.run(options)
     robots = [word for word in options.words if ":=" not in word]
     check_use(options, robots)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
@@ -58,13 +61,7 @@ def _rewrite(options: argparse.Namespace, source: Source, robots: list[str]) -> 
     rewrites = rewrite_all(
         source,
         robots,
-        layout=options.layout,
-        affix=options.affix,
-        topics=options.topics,
-        separators=separators(options),
-        shared_frames=options.shared_frames.split(","),
-        shared_topics=options.shared_topics.split(","),
-        groups=options.groups,
+        **policy(options),
         urdf=options.urdf,
         xacro_args=xacro_args(options),
         vocabulary=options.vocabulary,
@@ -92,18 +89,9 @@ def _results(first: Rewrite, others: Iterator[Rewrite]) -> Iterator[tuple[str, b
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
-    naming = make_naming(
-        options.layout,
-        options.affix,
-        options.topics,
-        separators(options),
-        options.shared_frames.split(","),
-        options.shared_topics.split(","),
-        options.groups,
-    )
-    name = input_name(options)
-    extra = {"vocabulary": options.vocabulary, "urdf": options.urdf}
-    return strip(source, robot, naming=naming, file=name, **extra)
+    name, vocabulary = input_name(options), options.vocabulary
+    extra = policy(options)
+    return strip(source, robot, urdf=options.urdf, vocabulary=vocabulary, file=name, **extra)
 
 
 if __name__ == "__main__":

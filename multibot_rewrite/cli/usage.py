@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from multibot_rewrite import __version__
 from multibot_rewrite.model import UsageError
@@ -21,6 +21,7 @@ examples:
   urdf-postfix rover.urdf robot1 --affix prefix --layout frames-per-robot --separator link=_
   urdf-postfix rover.srdf robot1 --urdf rover.urdf      an SRDF in step with its URDF
   urdf-postfix robot1.urdf robot1 --strip               the inverse
+  urdf-postfix --explain rover.urdf:42                  why is this (not) spelled?
   cat rover.urdf | urdf-postfix - robot1 --diff
 exit codes: 0 done; 1 findings that stop the job (any, with --strict); 2 wrong use or unreadable input
 """
@@ -37,6 +38,7 @@ VALUES = (
     ("--urdf", None, "FILE", "the URDF that an SRDF belongs to (with --strip: the rewritten one)"),
     ("--shared-frames", ",".join(SHARED_FRAMES), "A,B", "default: %(default)s"),
     ("--shared-topics", ",".join(SHARED_TOPICS), "A,B", "default: %(default)s"),
+    ("--explain", None, "FILE:LINE", "say which rewriter claims what stands there, and why"),
     ("--changes", None, "FILE", "write every change as JSON"),
 )
 REPEATED = (
@@ -72,6 +74,7 @@ def parser() -> argparse.ArgumentParser:
     )
     result.add_argument(
         "input",
+        nargs="?",
         metavar="INPUT",
         help="URDF, SDF model, SRDF, xacro of one (named *.xacro), or - for standard input",
     )
@@ -98,6 +101,8 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
 
 def check_use(options: argparse.Namespace, robots: list[str]) -> None:
     """Raise UsageError for what cannot be meant."""
+    if options.input is None:
+        raise UsageError("no input given; for example: urdf-postfix rover.urdf robot1")
     if not robots:
         raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
     _check_together(options)
@@ -176,3 +181,16 @@ def xacro_args(options: argparse.Namespace) -> dict[str, str]:
     """The words that are xacro arguments, as name -> value."""
     pairs = [word.partition(":=") for word in options.words if ":=" in word]
     return {name: value for name, _, value in pairs}
+
+
+def policy(options: argparse.Namespace) -> dict[str, Any]:
+    """The naming policy that the options ask for, as ``make_naming`` takes it."""
+    return {
+        "layout": options.layout,
+        "affix": options.affix,
+        "topics": options.topics,
+        "separators": separators(options),
+        "shared_frames": options.shared_frames.split(","),
+        "shared_topics": options.shared_topics.split(","),
+        "groups": options.groups,
+    }

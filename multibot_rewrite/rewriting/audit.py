@@ -11,6 +11,7 @@ from multibot_rewrite.model import ERROR, WARNING, Claim, Finding, Site
 from multibot_rewrite.naming import (
     CLOSED_KINDS,
     FRAME_KINDS,
+    NAMESPACE,
     POSTFIX,
     PREFIX,
     TF_TOPICS,
@@ -18,7 +19,7 @@ from multibot_rewrite.naming import (
     affix,
     is_keyword,
 )
-from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
+from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in, spell
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
@@ -37,6 +38,9 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
         *prefix_only(inventory, naming),
         *leading_slashes(inventory, naming),
         *moved_tf(inventory, naming),
+        *bare_lookups(inventory, naming),
+        *process_wide(inventory, naming),
+        *outside_frames(inventory, naming),
         *unknown_plugins(inventory, tree),
         *reordered(inventory, naming),
     ]
@@ -201,6 +205,69 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
             hint = "drop the rule, or use --layout both"
             yield finding(inventory.document, claim.start, "MB305", WARNING, message, hint)
+
+
+def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """Consumers that find things by bare name in the whole world, where those names stay bare."""
+    declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
+    for rewriter, start in _known_hosts(inventory):
+        kind = rewriter.unique
+        if kind in declared and kind not in naming.separators:
+            message = (
+                f"{rewriter.names[0]} looks {kind}s up by bare name in the whole world: "
+                "it may find another robot's"
+            )
+            hint = f"--layout both spells {kind}s per robot"
+            yield finding(inventory.document, start, "MB307", WARNING, message, hint)
+
+
+def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """Remap rules that hold for every node of the process keep robots apart only by namespaces
+    (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
+    if naming.topics != NAMESPACE:
+        for rewriter, start in _known_hosts(inventory):
+            if not rewriter.process_wide:
+                continue
+            message = (
+                f"remap rules of {rewriter.names[0]} hold for the whole process, other robots' too"
+            )
+            hint = "with several robots in one Gazebo use --topics namespace"
+            yield finding(inventory.document, start, "MB308", WARNING, message, hint)
+        return
+    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.rewriter)}
+    for claim in inventory.claims if inside else ():
+        rule = parse_remap(claim.value) if claim.site.form in ("remap", "argument") else None
+        if rule is None or inside.isdisjoint(claim.element.iterancestors()):
+            continue
+        if rule.target.startswith("/"):
+            message = f"{claim.value!r} holds for the whole process, other robots' nodes too"
+            hint = "a relative target ends in each robot's own namespace"
+            yield finding(inventory.document, claim.start, "MB308", WARNING, message, hint)
+
+
+def _holds_for_all(rewriter: Rewriter | None) -> bool:
+    return rewriter is not None and rewriter.process_wide
+
+
+def _known_hosts(inventory: Inventory) -> Iterator[tuple[Rewriter, int]]:
+    for host in inventory.hosts:
+        if host.node.rewriter is not None:
+            yield host.node.rewriter, host.start
+
+
+def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
+    for claim in inventory.claims:
+        if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
+            continue
+        for kind, there in spell(claim, inventory.declared, naming):
+            if kind == "frame":
+                new = there.spell(claim.value, "ROBOT")
+                message = (
+                    f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
+                )
+                hint = f"--shared-frames world,map,{claim.value} keeps it"
+                yield finding(inventory.document, claim.start, "MB309", WARNING, message, hint)
 
 
 def is_unknown(rewriter: Rewriter) -> bool:

@@ -83,9 +83,9 @@ def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int)
         value = element.get(attribute)
         if value is not None:
             claims.append(Claim(site, element, start, attribute, value))
-    site = node.text
-    if site is not None and (element.text or takes_empty(site)) and _applies(site, element):
-        claims.append(Claim(site, element, start, "", (element.text or "").strip()))
+    text = node.text
+    if text is not None and (element.text or takes_empty(text)) and _applies(text, element):
+        claims.append(Claim(text, element, start, "", (element.text or "").strip()))
 
 
 def _applies(site: Site, element: etree._Element) -> bool:

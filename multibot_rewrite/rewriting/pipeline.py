@@ -15,6 +15,7 @@ from multibot_rewrite.rewriting import robots as checks
 from multibot_rewrite.rewriting.apply import cut, fill
 from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
+from multibot_rewrite.rewriting.explain import Explanation, explain_line
 from multibot_rewrite.rewriting.mentions import find_mentions, slot_values
 from multibot_rewrite.rewriting.plan import Plan, make_plan
 from multibot_rewrite.rewriting.strip import strip_edits
@@ -88,6 +89,15 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
             outside = respelled_names(template.outside, naming, robot)
             verify(inventory, plan, values, output, robot, naming, template.tree, outside)
         yield output
+
+
+def explain(
+    source: bytes, file: str, naming: Naming, tree: Tree, outside: Declared, robot: str, line: int
+) -> list[Explanation]:
+    """What is known about the values on one line."""
+    inventory = collect(read_document(source, file), tree, outside)
+    _check_outside(inventory, outside)
+    return explain_line(inventory, naming, tree, robot, line)
 
 
 def strip(

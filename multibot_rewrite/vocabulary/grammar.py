@@ -219,6 +219,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
 
 
 def _site(place: str, section: str, line: int, row: str) -> Site:
+    file = place.rpartition(":")[0]
     spec, _, note = row.partition(" # ")
     path, *words = spec.split()
     if not _PATH.fullmatch(path):
@@ -229,14 +230,16 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     if role == "keep":
         if not rest:
             raise VocabularyError(f"{place}: {path} keep: say why it must stay")
-        return Site(path, role, (), "whole", "", False, section, " ".join(rest), line)
+        why = " ".join(rest)
+        return Site(path, role, (), "whole", "", False, section, why, line, file=file)
     options = dict(word.split("=", 1) for word in rest if "=" in word)
     kinds = tuple(word for word in rest if "=" not in word)
     _check_words(place, path, kinds, options)
     form, default = options.get("form", "whole"), options.get("default", "")
     plain = kinds[0] if form == "whole" and kinds in (("link",), ("joint",)) else ""
     when = options.get("when", "")
-    return Site(path, role, kinds, form, default, False, section, note.strip(), line, plain, when)
+    note = note.strip()
+    return Site(path, role, kinds, form, default, False, section, note, line, plain, when, file)
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
