@@ -13,7 +13,7 @@ _LIKE = 0.6
 
 def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Rewriter]:
     """The sections of these types that ``name`` means: a library file in any spelling, a class, an
-    element (``sensor`` also finds ``robot.sensor``), a sensor type or a block."""
+    element (``sensor`` also finds ``robot.sensor``, behind it), a sensor type or a block."""
     keys = spellings(name)
     found = [
         rewriter
@@ -22,6 +22,7 @@ def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Rew
         if known in keys or (type_ == "element" and known.rpartition(".")[2] == name)
         for rewriter in vocabulary.find(type_, known)
     ]
+    found.sort(key=lambda rewriter: keys.isdisjoint(rewriter.names))
     return list({(rewriter.file, rewriter.line): rewriter for rewriter in found}.values())
 
 
