@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Collection, Iterator
 
 from lxml.etree import _Element
@@ -10,20 +9,14 @@ from lxml.etree import _Element
 from multibot_rewrite.model import ERROR, WARNING, Claim, Finding, Site
 from multibot_rewrite.naming import (
     CLOSED_KINDS,
-    FRAME_KINDS,
-    NAMESPACE,
-    POSTFIX,
-    PREFIX,
-    TF_TOPICS,
     Naming,
-    affix,
     is_keyword,
 )
-from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in, spell
+from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
-from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.rewriting.hazards import hazards
 from multibot_rewrite.vocabulary import Rewriter
 
 
@@ -35,14 +28,8 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
         *duplicates(inventory),
         *dangling(inventory, naming),
         *ambiguous(inventory),
-        *prefix_only(inventory, naming),
-        *leading_slashes(inventory, naming),
-        *moved_tf(inventory, naming),
-        *bare_lookups(inventory, naming),
-        *process_wide(inventory, naming),
-        *outside_frames(inventory, naming),
         *unknown_plugins(inventory, tree),
-        *reordered(inventory, naming),
+        *hazards(inventory, naming),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 
@@ -169,107 +156,6 @@ def ambiguous(inventory: Inventory) -> Iterator[Finding]:
             )
 
 
-def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """Parameters that the consumer puts in front of names: they cannot hold a postfix."""
-    if naming.affix == PREFIX or "sensor" not in naming.separators:
-        return
-    for claim in inventory.claims:
-        if claim.site.form == "prefix":
-            message = (
-                f"{claim.site.path} {claim.value!r} stands in front of names that code makes, a "
-                "postfix cannot reach them"
-            )
-            yield finding(
-                inventory.document, claim.start, "MB304", WARNING, message, "use --affix prefix"
-            )
-
-
-def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
-    for claim in inventory.claims:
-        kinds = claim.site.kinds
-        if claim.site.form != "whole" or kinds[0] not in FRAME_KINDS:
-            continue
-        if claim.value[:1] == "/" and claim.value[1:] not in naming.shared_frames:
-            message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
-            yield finding(
-                inventory.document, claim.start, "MB301", WARNING, message, "drop the slash"
-            )
-
-
-def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """A rule of the file that takes a plugin off the one /tf which the layout wants."""
-    for claim in inventory.claims if not naming.layout.tf_per_robot else ():
-        rule = parse_remap(claim.value) if claim.site.form == "remap" else None
-        if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
-            message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
-            hint = "drop the rule, or use --layout both"
-            yield finding(inventory.document, claim.start, "MB305", WARNING, message, hint)
-
-
-def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """Consumers that find things by bare name in the whole world, where those names stay bare."""
-    declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
-    for rewriter, start in _known_hosts(inventory):
-        kind = rewriter.unique
-        if kind in declared and kind not in naming.separators:
-            message = (
-                f"{rewriter.names[0]} looks {kind}s up by bare name in the whole world: "
-                "it may find another robot's"
-            )
-            hint = f"--layout both spells {kind}s per robot"
-            yield finding(inventory.document, start, "MB307", WARNING, message, hint)
-
-
-def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """Remap rules that hold for every node of the process keep robots apart only by namespaces
-    (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
-    if naming.topics != NAMESPACE:
-        for rewriter, start in _known_hosts(inventory):
-            if not rewriter.process_wide:
-                continue
-            message = (
-                f"remap rules of {rewriter.names[0]} hold for the whole process, other robots' too"
-            )
-            hint = "with several robots in one Gazebo use --topics namespace"
-            yield finding(inventory.document, start, "MB308", WARNING, message, hint)
-        return
-    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.rewriter)}
-    for claim in inventory.claims if inside else ():
-        rule = parse_remap(claim.value) if claim.site.form in ("remap", "argument") else None
-        if rule is None or inside.isdisjoint(claim.element.iterancestors()):
-            continue
-        if rule.target.startswith("/"):
-            message = f"{claim.value!r} holds for the whole process, other robots' nodes too"
-            hint = "a relative target ends in each robot's own namespace"
-            yield finding(inventory.document, claim.start, "MB308", WARNING, message, hint)
-
-
-def _holds_for_all(rewriter: Rewriter | None) -> bool:
-    return rewriter is not None and rewriter.process_wide
-
-
-def _known_hosts(inventory: Inventory) -> Iterator[tuple[Rewriter, int]]:
-    for host in inventory.hosts:
-        if host.node.rewriter is not None:
-            yield host.node.rewriter, host.start
-
-
-def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
-    for claim in inventory.claims:
-        if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
-            continue
-        for kind, there in spell(claim, inventory.declared, naming):
-            if kind == "frame":
-                new = there.spell(claim.value, "ROBOT")
-                message = (
-                    f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
-                )
-                hint = f"--shared-frames world,map,{claim.value} keeps it"
-                yield finding(inventory.document, claim.start, "MB309", WARNING, message, hint)
-
-
 def is_unknown(rewriter: Rewriter) -> bool:
     """No section knows the plugin: the element's own stands in, or the one for any ROS node."""
     return rewriter.select == "plugin" or rewriter.names[0] == ANY_WITH_ROS
@@ -294,35 +180,3 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
             f"plugin {name!r} is not in the vocabulary: its own parameters stay as they are",
             f"the nearest known one is {near!r}" if near else "",
         )
-
-
-def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
-    of pinocchio's configuration vector."""
-    if naming.affix != POSTFIX or "joint" not in naming.separators:
-        return
-    siblings: dict[str, list[str]] = defaultdict(list)
-    declared = inventory.declared["joint"]
-    for claim in inventory.claims:
-        parent = claim.element.find("parent") if declared.get(claim.value) is claim else None
-        if parent is not None:
-            siblings[parent.get("link", "")].append(claim.value)
-    for link, names in siblings.items():
-        old = sorted(names)
-        # The order may hang on the robot's name: a first and a last one show it.
-        orders = [sorted(names, key=lambda name: _ordered(naming, name, r)) for r in "\0~"]
-        new = next((order for order in orders if order != old), None)
-        if new is not None:
-            yield finding(
-                inventory.document,
-                inventory.declared["joint"][new[0]].start,
-                "MB405",
-                WARNING,
-                f"the joints below link {link!r} change their order: {', '.join(new)}",
-                "urdfdom sorts them by name, a prefix would not: --affix prefix",
-            )
-
-
-def _ordered(naming: Naming, name: str, robot: str) -> str:
-    there = affix(naming, "joint", name)
-    return there.spell(name, robot) if there else name
