@@ -95,16 +95,17 @@ def test_claims_are_counted_by_the_kind_that_they_turn_out_to_be() -> None:
 @pytest.mark.parametrize(
     ("body", "path"),
     [
-        (plugin("/a/libacme.so", "<x><jointName>hip</jointName></x>"), "plugin[libacme.so]/x/jointName"),
-        (plugin("libacme.so", '<x frame="base"/>'), "plugin[libacme.so]/x@frame"),
-        (plugin("libacme.so", '<param name="a">base</param>'), "plugin[libacme.so]/param[a]"),
-        (plugin("libacme.so", '<y xmlns="http://gazebosim.org/schema">base</y>'), "plugin[libacme.so]/gz:y"),
-        (plugin("libacme.so", '<q:y xmlns:q="urn:q">base</q:y>'), "plugin[libacme.so]/q:y"),
-        (plugin("libacme.so", "<x/>base"), "plugin[libacme.so]"),
+        ("<x><jointName>hip</jointName></x>", "/x/jointName"),
+        ('<x frame="base"/>', "/x@frame"),
+        ('<param name="a">base</param>', "/param[a]"),
+        ('<y xmlns="http://gazebosim.org/schema">base</y>', "/gz:y"),
+        ('<q:y xmlns:q="urn:q">base</q:y>', "/q:y"),
+        ("<x/>base", ""),
     ],
-)  # fmt: skip
+)
 def test_where_a_mention_stands(body: str, path: str) -> None:
-    assert paths(surveyed(body)) == {f"robot/gazebo/{path}": 1}
+    found = surveyed(plugin("/opt/lib/libacme.so", body))
+    assert paths(found) == {f"robot/gazebo/plugin[libacme.so]{path}": 1}
 
 
 @pytest.mark.parametrize("value", ["a base b", "arm, hip", "camera/base", "r::hip", "x:=base"])

@@ -195,14 +195,19 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
     if parse_remap(value) is not None:
         return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
     for form, names in _readings(value):
-        kinds = tuple(kind for kind in MENTIONED if any(name in declared[kind] for name in names))
-        if kinds:
-            name = next(name for name in names if any(name in declared[kind] for kind in kinds))
-            holds = "is" if name == value else f"holds {shown(name)},"
-            return Guess(kinds, form, f"{shown(value)} {holds} a {' and a '.join(kinds)} here")
+        found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
+        told = [(kind, name) for kind, name in found.items() if name]
+        if told:
+            return Guess(tuple(kind for kind, _ in told), form, _why(value, told))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
     return None
+
+
+def _why(value: str, told: Sequence[tuple[str, str]]) -> str:
+    if all(name == value for _, name in told):
+        return f"{shown(value)} is a {' and a '.join(kind for kind, _ in told)} here"
+    return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in told)}"
 
 
 def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
