@@ -202,6 +202,9 @@ def builtin_tree(vocabulary: tuple[str, ...] = ()) -> Tree:
     """The tree of the vocabulary built in, installed, and named in ``vocabulary``; made once."""
     sections = load_vocabulary(vocabulary)
     try:
-        return Tree(sections)
+        tree = Tree(sections)
+        if sections.extended:
+            tree.check()
+        return tree
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error))}") from None

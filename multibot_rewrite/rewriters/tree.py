@@ -8,7 +8,7 @@ are made when a document first asks for them.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.vocabulary import Rewriter, Vocabulary, split_path, split_step
@@ -41,22 +41,46 @@ class Node:
     """What is known about the elements at one place of the document.
 
     ``select`` is set where the element itself decides which node serves it. ``active`` are the
-    children worth a visit: those with more below them than values to keep.
+    children worth a visit: those with more below them than values to keep. ``section`` is the name
+    of an element's section, whose node is made when something first asks for it.
     """
 
     __slots__ = (
+        "_make",
         "active",
         "asked",
         "attributes",
         "children",
         "keeps",
         "rewriter",
+        "section",
         "select",
         "text",
         "values",
     )
 
     def __init__(self, rewriter: Rewriter | None = None, sites: tuple[Site, ...] = ()) -> None:
+        self.section = ""
+        self._make: Callable[[Node], None] | None = None
+        self._know(rewriter, sites)
+
+    @classmethod
+    def later(cls, section: str, make: Callable[[Node], None]) -> Node:
+        """A node that ``make`` completes when one of its other attributes is first asked for."""
+        node = cls.__new__(cls)
+        node.section, node._make = section, make
+        return node
+
+    def __getattr__(self, name: str) -> Any:
+        # Called for slots without a value only: a node made later that is not made yet.
+        make = self._make
+        if make is None:
+            raise AttributeError(name)
+        self._know(None, ())
+        make(self)
+        return getattr(self, name)
+
+    def _know(self, rewriter: Rewriter | None, sites: tuple[Site, ...]) -> None:
         self.rewriter = rewriter
         self.children: dict[str, Node] = {}
         self.active: dict[str, Node] = {}
@@ -68,6 +92,10 @@ class Node:
         self.values: dict[str, Node] = {}
         for site in sites:
             self._add(site)
+
+    def fill(self, rewriter: Rewriter) -> None:
+        """Make it the node of a section."""
+        self._know(rewriter, rewriter.sites)
 
     def _add(self, site: Site) -> None:
         steps, attribute = split_path(site.path)
@@ -102,7 +130,7 @@ class Node:
 
 
 class Tree:
-    """The whole tree for one vocabulary.
+    """The whole tree for one vocabulary; sections are read when a document first needs them.
 
     ``formats`` maps the sections of root elements to their nodes; ``tags`` are all tags worth a
     visit so far.
@@ -113,12 +141,17 @@ class Tree:
         self.formats: dict[str, Node] = {}
         self.tags: set[str] = set()
         self._chosen: dict[tuple[str, str, int], Node] = {}
-        rewriters = vocabulary.rewriters("element")
-        nodes = {name: Node(r, r.sites) for r in rewriters for name in r.names}
-        for name, node in nodes.items():
-            self._hang(name, node, nodes)
-        for node in nodes.values():
-            self._know(node)
+        places = vocabulary.places()
+        self._nodes = {name: Node.later(name, self._make) for name in places}
+        self._below: dict[str, list[str]] = {name: [] for name in places}
+        for name, parents in places.items():
+            for parent in parents:
+                self._place(name, parent)
+
+    def check(self) -> None:
+        """Read every section now; raises VocabularyError for the first mistake."""
+        for node in self._nodes.values():
+            assert node.rewriter is not None
 
     def format_of(self, root: _Element) -> str:
         """The section of a root element, empty where there is none.
@@ -131,30 +164,36 @@ class Tree:
         tags = {child.tag for child in root}
         return max(found, key=lambda name: len(self.formats[name].children.keys() & tags))
 
-    def _hang(self, name: str, node: Node, nodes: dict[str, Node]) -> None:
-        rewriter = node.rewriter
-        assert rewriter is not None
-        tag = _tag(name)
+    def _place(self, name: str, parent: str) -> None:
+        if parent == "/":
+            self.formats[name] = self._nodes[name]
+        elif parent in self._below:
+            self._below[parent].append(name)
+        else:
+            (rewriter, *_) = self.vocabulary.find("element", name)
+            raise _wrong(rewriter, f"at: {parent}: there is no [element {parent}]")
+
+    def _make(self, node: Node) -> None:
+        (rewriter,) = self.vocabulary.find("element", node.section)
+        node.fill(rewriter)
         if rewriter.select:
             if rewriter.select not in SELECTORS:
                 raise _wrong(rewriter, f"select: is one of {', '.join(SELECTORS)}")
             node.select = self._selector(node, rewriter.select)
-        for parent in rewriter.at:
-            if parent != "/" and parent not in nodes:
-                raise _wrong(rewriter, f"at: {parent}: there is no [element {parent}]")
-            if parent == "/":
-                self.formats[name] = node
-            elif nodes[parent].children.setdefault(tag, node) is not node:
-                raise _wrong(rewriter, f"{parent}/{tag} has a section or sites already")
-            else:
-                nodes[parent].active[tag] = node
+        for name in self._below[node.section]:
+            child = self._nodes[name]
+            if node.children.setdefault(_tag(name), child) is not child:
+                place = f"{node.section}/{_tag(name)} has a section or sites already"
+                raise _wrong(self.vocabulary.find("element", name)[0], place)
+            node.active[_tag(name)] = child
+        self._know(node)
 
     def _know(self, node: Node) -> None:
         waiting = [node]
         while waiting:
             for tag, child in waiting.pop().active.items():
-                if tag not in self.tags or child.rewriter is None:
-                    self.tags.add(tag)
+                self.tags.add(tag)
+                if not child.section:
                     waiting += [child, *child.values.values()]
 
     def _selector(self, base: Node, type_: str) -> Callable[[_Element], Node]:

@@ -65,6 +65,7 @@ lines at one path are refused. Files are the built-in ones, those of installed p
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
@@ -85,6 +86,7 @@ from multibot_rewrite.vocabulary.installed import advice, installed
 
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
+_AT = re.compile(r"^at:(.*)", re.MULTILINE)
 
 __all__ = [
     "FORMS",
@@ -101,9 +103,13 @@ __all__ = [
 
 
 class Vocabulary:
-    """The sections of several files, parsed on demand; build with ``load_vocabulary``."""
+    """The sections of several files, parsed on demand; build with ``load_vocabulary``.
 
-    def __init__(self, texts: Mapping[str, str]) -> None:
+    ``extended`` tells that some of them are not built in.
+    """
+
+    def __init__(self, texts: Mapping[str, str], extended: bool = False) -> None:
+        self.extended = extended
         self._raw: dict[tuple[str, str], list[Raw]] = {}
         self._found: dict[tuple[str, str], list[Rewriter]] = {}
         for file, text in texts.items():
@@ -144,6 +150,15 @@ class Vocabulary:
     def names(self, type_: str) -> list[str]:
         """Every name and alias of that type."""
         return [name for kind, name in self._raw if kind == type_]
+
+    def places(self) -> dict[str, list[str]]:
+        """Each element with a section and the elements it may stand in, without reading more."""
+        found: dict[str, list[str]] = {}
+        for (type_, name), raws in self._raw.items():
+            if type_ == "element":
+                parents = [word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()]
+                found[name] = list(dict.fromkeys(parents))
+        return found
 
     def file_of(self, site: Site) -> str:
         """The file that a row stands in; a block or a later section may be in another one."""
@@ -196,7 +211,8 @@ def load_vocabulary(extra: tuple[str, ...] = (), *, packages: bool = True) -> Vo
     more = _more(extra, packages, builtin)
     texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
     try:
-        vocabulary = Vocabulary(texts | {name: _text(name, path) for name, path in more.items()})
+        texts |= {name: _text(name, path) for name, path in more.items()}
+        vocabulary = Vocabulary(texts, extended=bool(more))
         vocabulary.rewriters_in(more)
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None
