@@ -156,7 +156,9 @@ class Vocabulary:
         found: dict[str, list[str]] = {}
         for (type_, name), raws in self._raw.items():
             if type_ == "element":
-                parents = [word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()]
+                parents = [
+                    word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()
+                ]
                 found[name] = list(dict.fromkeys(parents))
         return found
 
