@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 HOME = Path(__file__).parents[1] / "fixtures" / "cases"
+ROBOTS = HOME.parent / "robots"
 RULE = b"----\n"
 HEADERS = ("about", "rewriter", "options", "expect", "finds")
 REQUIRED = ("about", "rewriter", "expect")
@@ -50,7 +51,8 @@ def read_case(name: str, data: bytes) -> Case:
     """Headers, a line of four dashes, the input and, for ``changed``, the rule and the output.
 
     Headers are ``about``, ``rewriter``, ``expect`` (``changed``, ``same`` or ``refused CODE``) and
-    optionally ``options`` (words of ``rewrite_all``) and ``finds`` (``CODE@line``, all of them).
+    optionally ``options`` (words of ``rewrite_all``; ``urdf`` is a file of ``ROBOTS``) and ``finds``
+    (``CODE@line``, all of them).
     """
     parts = data.split(b"\n" + RULE)
     headers = _headers(name, parts[0].decode())
@@ -93,10 +95,14 @@ def _options(name: str, text: str) -> dict[str, object]:
         if not value and key not in SWITCHES:
             raise CaseError(f"{name}: option {word!r} is not key=value")
         options[key] = _value(key, value) if equals else True
+    if not (ROBOTS / str(options.get("urdf", ""))).exists():
+        raise CaseError(f"{name}: there is no {options['urdf']} in {ROBOTS}")
     return options
 
 
 def _value(key: str, value: str) -> object:
+    if key == "urdf":
+        return ROBOTS / value
     if key in LISTS:
         return value.split(",")
     if key == "separators":

@@ -16,6 +16,7 @@ from multibot_rewrite import Rewrite, RewriteRefused, rewrite, strip
 from multibot_rewrite.library import builtin_tree, rewrite_all
 from multibot_rewrite.model import ERROR, Finding, Site
 from multibot_rewrite.naming import POSTFIX, Naming, make_naming
+from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.apply import fill
 from multibot_rewrite.vocabulary import Rewriter, load_vocabulary
@@ -36,9 +37,11 @@ BLOCKS = load_vocabulary().rewriters("block")
 LEAST_CASES = 340
 LEAST_REFEREED = 330
 # Not a word of rewrite's naming policy.
-NO_POLICY = ("again", "file")
+NO_POLICY = ("again", "file", "urdf")
 # Rows of the vocabulary, by section and path, at which no case renames anything.
 UNEXERCISED: set[tuple[str, str]] = set()
+# A plugin's parameter may be called <joint> or <link> too.
+NAMELESS = {("model", ""), ("link", ""), ("joint", "")}
 # A row of the vocabulary: its section, path and line.
 Row = tuple[str, str, int]
 
@@ -60,6 +63,19 @@ def policy(case: Case) -> Naming:
     """The naming policy that the case's options ask for."""
     words = {key: value for key, value in case.options.items() if key not in NO_POLICY}
     return make_naming(**words)
+
+
+def beside(case: Case) -> dict[str, bytes]:
+    """The rewritten URDF that the rewritten SRDF of a case belongs to, as an option of ``strip``."""
+    options = dict(case.options)
+    urdf = options.pop("urdf", None)
+    return {} if urdf is None else {"urdf": rewrite(urdf, ROBOTS[0], **options).data}
+
+
+def outside(case: Case) -> Declared:
+    """What the URDF beside an SRDF declares."""
+    urdf = case.options.get("urdf")
+    return {} if urdf is None else pipeline.declarations(urdf.read_bytes(), "", builtin_tree())
 
 
 def places(findings: tuple[Finding, ...]) -> list[str]:
@@ -92,14 +108,15 @@ def test_refused_with_that_code(case: Case) -> None:
 @every
 def test_identity(case: Case) -> None:
     naming = policy(case)._replace(separators={}, topics=POSTFIX)
-    template = pipeline.prepare(case.source, case.name, naming, builtin_tree())
+    template = pipeline.prepare(case.source, case.name, naming, builtin_tree(), outside(case))
     assert fill(template.pieces, ROBOTS[0]) == case.source
     assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)
 
 
 @every
 def test_strip_gives_the_input_back(case: Case) -> None:
-    assert strip(run(case).data, ROBOTS[0], naming=policy(case)) == case.source
+    stripped = strip(run(case).data, ROBOTS[0], naming=policy(case), **beside(case))
+    assert stripped == case.source
 
 
 @every
@@ -112,9 +129,9 @@ def test_two_robots_are_disjoint(case: Case) -> None:
 
 
 def declared(data: bytes) -> set[tuple[str, str]]:
-    """Tag and name of every link and joint below the root."""
-    found = etree.fromstring(data).iterchildren("link", "joint")
-    return {(str(element.tag), element.get("name", "")) for element in found}
+    """Tag and name of every model, link and joint, nested or not."""
+    found = etree.fromstring(data).iter("model", "link", "joint")
+    return {(str(element.tag), element.get("name", "")) for element in found} - NAMELESS
 
 
 @every
@@ -143,12 +160,17 @@ def test_only_lines_with_edits_change(case: Case) -> None:
 
 @every
 def test_yourdfpy_sees_the_same(case: Case) -> None:
-    before = sizes(case.source)
+    before = sizes(case.source) if is_urdf(case) else None
     assert before is None or sizes(run(case).data) == before
 
 
+def is_urdf(case: Case) -> bool:
+    """Is the input what yourdfpy reads? An SRDF is a ``<robot>`` too, an SDF it takes for empty."""
+    return "urdf" not in case.options and etree.fromstring(case.source).tag == "robot"
+
+
 def test_yourdfpy_refereed_enough_cases() -> None:
-    refereed = [case.name for case in REWRITTEN if sizes(case.source) is not None]
+    refereed = [case for case in REWRITTEN if is_urdf(case) and sizes(case.source) is not None]
     assert len(refereed) >= LEAST_REFEREED
 
 
@@ -244,6 +266,7 @@ SAME = HEAD + b"expect: same\n----\n<robot/>\n"
             id="nothing-changed",
         ),
         pytest.param(b"options: layout\n" + SAME, "'layout' is not key=value", id="option"),
+        pytest.param(b"options: urdf=no.urdf\n" + SAME, "there is no .*no.urdf", id="urdf"),
     ],
 )
 def test_a_wrong_case_is_refused(tmp_path: Path, data: bytes, words: str) -> None:
