@@ -11,7 +11,7 @@ from multibot_rewrite.rewriters.spelling import HOLE, kind_of, names_in, respell
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import locate, value_slot
-from multibot_rewrite.rewriting.mentions import kept, unclaimed_mentions
+from multibot_rewrite.rewriting.mentions import kept, mentioned
 from multibot_rewrite.rewriting.plan import Plan, make_plan
 from multibot_rewrite.rewriting.survey import tag_path
 
@@ -106,15 +106,15 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
             place = _place(inventory, start, attribute, value)
             if value and place[0] == line and (start, attribute) not in claimed:
                 site = kept(element, attribute, tree)
-                reason = site.note if site else _unclaimed(inventory, value, tree)
+                reason = site.note if site else _unclaimed(inventory, value)
                 path = tag_path(element, attribute)
                 yield Explanation(*place, path, value, site, reason, value)
 
 
-def _unclaimed(inventory: Inventory, value: str, tree: Tree) -> str:
-    names = {*inventory.declared["link"], *inventory.declared["joint"]}
-    found = unclaimed_mentions(inventory, [value], names, tree)
-    return f"it holds the name {found[0].name!r}" if found else "it holds no declared name"
+def _unclaimed(inventory: Inventory, value: str) -> str:
+    names = frozenset([*inventory.declared["link"], *inventory.declared["joint"]])
+    name = mentioned(value, names)
+    return f"it holds the name {name!r}" if name else "it holds no declared name"
 
 
 def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterator[Explanation]:

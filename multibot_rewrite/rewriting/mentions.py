@@ -54,7 +54,7 @@ def unclaimed_mentions(
     if not names:
         return []
     names = frozenset(names)
-    telling = {value: name for value in set(values) if (name := _mentioned(value, names))}
+    telling = {value: name for value in set(values) if (name := mentioned(value, names))}
     count = Counter(filter(telling.__contains__, values))
     claimed = Counter([claim.value for claim in inventory.claims])
     suspects = {value for value in telling if count[value] > claimed[value]}
@@ -67,7 +67,8 @@ def unclaimed_mentions(
     ]
 
 
-def _mentioned(value: str, names: frozenset[str]) -> str:
+def mentioned(value: str, names: frozenset[str]) -> str:
+    """The name that a value is, or that it holds; empty where there is none."""
     if value in names:
         return value
     if _NUMBERS.match(value):
