@@ -148,6 +148,14 @@ def test_of_several_values_at_one_path_the_telling_one_counts() -> None:
     assert (row.value, row.guess and row.guess.form) == ("hip knee", "list")
 
 
+def test_values_of_several_kinds_at_one_path_all_count() -> None:
+    (section,) = suggested(plugin("<x>hip</x><x>arm</x><t>a:=b</t><t>arm</t>"))
+    assert [row.guess and row.guess.kinds for row in section.rows] == [
+        ("joint", "link"),
+        ("topic",),
+    ]
+
+
 def test_plugins_of_one_name_share_a_section() -> None:
     other = plugin("<y>arm</y>", 'filename="/opt/libacme.so"')
     (section,) = suggested(plugin("<x>hip</x>") + other)

@@ -38,11 +38,15 @@ _LONGEST = 60
 
 
 class Guess(NamedTuple):
-    """What a value may name, where in it the names are, and why that is thought."""
+    """What a value may name, where in it the names are, and why that is thought.
+
+    ``by_tag`` tells that the value itself says nothing.
+    """
 
     kinds: tuple[str, ...]
     form: str
     why: str
+    by_tag: bool = False
 
 
 class Row(NamedTuple):
@@ -151,18 +155,22 @@ def _reads(row: str) -> bool:
 
 
 def _row(path: str, values: Sequence[str], declared: Declared) -> Row:
-    """The best guess of all values seen at one path: one of the values before one of the tag."""
+    """The best guess of all values seen at one path, with the kinds that others of them add."""
     word = tag_kind(path)
     guesses = [_guess(value, word, declared) for value in values]
     told = [it for it in guesses if it is not None]
     best = max(told, key=_weight, default=None)
     if best is None or not _is_path(path):
         return Row(path, values[0], None)
-    return Row(path, values[guesses.index(best)], best)
+    value = values[guesses.index(best)]
+    if best.by_tag or best.form == "remap":
+        return Row(path, value, best)
+    others = [kind for it in told if not it.by_tag and it.form != "remap" for kind in it.kinds]
+    return Row(path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others)))))
 
 
 def _weight(guess: Guess) -> tuple[bool, bool]:
-    return not guess.why.startswith("the tag"), guess.form != "whole"
+    return not guess.by_tag, guess.form != "whole"
 
 
 def tag_kind(path: str) -> str:
@@ -233,7 +241,7 @@ def _by_tag(value: str, word: str) -> Guess | None:
     if several and word not in _LISTED:
         return None
     form = "list" if several else "scoped" if "::" in value and word in _LISTED else "whole"
-    return Guess((word,), form, f"the tag, as in {shown(value)}")
+    return Guess((word,), form, f"the tag, as in {shown(value)}", by_tag=True)
 
 
 def shown(value: str) -> str:
