@@ -156,9 +156,9 @@ class Tree:
     def format_of(self, root: _Element) -> str:
         """The section of a root element, empty where there is none.
 
-        Of those with its tag it is the one that knows most of its children.
+        Of those with its tag it is the one that knows most of its children, else the plain one.
         """
-        found = [name for name in self.formats if _tag(name) == root.tag]
+        found = sorted((name for name in self.formats if _tag(name) == root.tag), key=len)
         if len(found) < 2:
             return found[0] if found else ""
         tags = {child.tag for child in root}
