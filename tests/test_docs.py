@@ -15,7 +15,11 @@ from multibot_rewrite.vocabulary.__main__ import page
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
-COMMANDS = re.findall(r"^    (urdf-postfix fixtures.*)$", README, re.MULTILINE)
+COMMANDS = re.findall(r"^    (urdf-postfix fixtures.*|multibot .*)$", README, re.MULTILINE)
+MODULES = {
+    "urdf-postfix": "multibot_rewrite.cli.urdf_postfix",
+    "multibot": "multibot_rewrite.cli.multibot",
+}
 
 
 def test_the_vocabulary_page_is_current() -> None:
@@ -24,12 +28,13 @@ def test_the_vocabulary_page_is_current() -> None:
 
 def test_the_readme_shows_commands() -> None:
     assert len(COMMANDS) >= 3
+    assert {line.split()[0] for line in COMMANDS} == set(MODULES)
 
 
 @pytest.mark.parametrize("line", COMMANDS)
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
     words = shlex.split(line.replace("out/", f"{tmp_path}/"))
-    command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix", *words[1:]]
+    command = [sys.executable, "-m", MODULES[words[0]], *words[1:]]
     result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
 

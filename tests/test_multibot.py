@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import pty
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -20,7 +21,9 @@ from multibot_rewrite.rewriters.lookup import look_up
 from multibot_rewrite.vocabulary import TYPES, load_vocabulary
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
-ROBOTS = Path(__file__).parent.parent / "fixtures" / "robots"
+ROOT = Path(__file__).parent.parent
+ROBOTS = ROOT / "fixtures" / "robots"
+PAGE = ROOT / "docs" / "coverage.md"
 PATIENCE = 60
 
 
@@ -288,6 +291,27 @@ def test_the_json_says_all_of_it(multibot: Multibot, two: Path) -> None:
             "stale": [],
         },
     }
+
+
+def test_the_page_describes_the_json(multibot: Multibot, two: Path) -> None:
+    """Every key of the example stands where it stands in the output, and the other way round."""
+    (block,) = re.findall(r"```json\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    write(two / "c.urdf", robot(plugin("libacme.so", "<y>hip</y>")))
+    write(two / "d.urdf", "")
+    write(two / "why.tsv", "*/y\tit is\nrobot/gone\tit was\n")
+    assert shape(json.loads(block)) == shape(
+        multibot.json("coverage", ".", "--explained", "why.tsv")
+    )
+
+
+def shape(value: Any) -> Any:
+    """The keys of a table and of the first row of its lists; counts and texts left out."""
+    if isinstance(value, list):
+        return [shape(item) for item in value[:1]]
+    if not isinstance(value, dict):
+        return type(value).__name__
+    lists = {"claims": {}, "inside": []}
+    return {key: lists.get(key, shape(item)) for key, item in value.items()}
 
 
 def test_json_into_a_file_comes_beside_the_table(multibot: Multibot, two: Path) -> None:
