@@ -163,7 +163,7 @@ def test_urdf_postfix_does_not_pay_for_it() -> None:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     there = {name for name in done.stdout.split() if name.startswith("multibot_rewrite")}
     assert "multibot_rewrite.cli.urdf_postfix" in there
-    late = (".suggest", ".multibot", ".coverage", ".tables", ".lookup")
+    late = (".survey", ".suggest", ".multibot", ".coverage", ".tables", ".lookup")
     assert not {name for name in there if name.endswith(late)}
     assert "rich" not in done.stdout.split()
 

@@ -12,8 +12,8 @@ from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import locate, value_slot
 from multibot_rewrite.rewriting.mentions import kept, mentioned
+from multibot_rewrite.rewriting.paths import tag_path
 from multibot_rewrite.rewriting.plan import Plan, make_plan
-from multibot_rewrite.rewriting.survey import tag_path
 
 
 class Explanation(NamedTuple):

@@ -5,26 +5,22 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.spelling import kind_of, names_in
-from multibot_rewrite.rewriters.tree import NAMESPACES, Tree
+from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.audit import is_unknown
 from multibot_rewrite.rewriting.collect import Host, Inventory
 from multibot_rewrite.rewriting.document import Document, locate
 from multibot_rewrite.rewriting.mentions import slot_values, unclaimed_mentions
-
-if TYPE_CHECKING:
-    from lxml.etree import _Element
+from multibot_rewrite.rewriting.paths import plugin_name, tag_path
 
 # Kinds whose names are telling enough to be looked for where no site is.
 MENTIONED = ("link", "joint")
 # Stands for the kind of a name that this file would have to declare.
 UNRESOLVED = "unresolved"
-_PREFIXES = {uri: prefix for prefix, uri in NAMESPACES.items()}
-_NAMED = ("param", "parameter")
 
 
 class Tally(NamedTuple):
@@ -149,12 +145,6 @@ def loaded_by(host: Host) -> Loaded | None:
     return Loaded(type_, class_, not rewriter.select) if class_ else None
 
 
-def plugin_name(element: _Element) -> str:
-    """What a ``<plugin>`` is called: its library without folders, else its class."""
-    library = element.get("filename", "").strip().rpartition("/")[2]
-    return library or element.get("name", "").strip()
-
-
 def _mentions(inventory: Inventory, tree: Tree) -> dict[Mention, Tally]:
     names = {name for kind in MENTIONED for name in inventory.declared[kind]}
     values = slot_values(inventory.document.root)
@@ -172,28 +162,6 @@ def _first_or(tally: Tally | None, document: Document, start: int, value: str) -
         return tally._replace(times=tally.times + 1)
     line, _ = locate(document.source, start)
     return Tally(1, 1, f"{document.file}:{line}", value)
-
-
-def tag_path(element: _Element, attribute: str) -> str:
-    """Where a value stands: the tags from the root on, and the attribute."""
-    steps = [_step(element), *(_step(above) for above in element.iterancestors())]
-    path = "/".join(reversed(steps))
-    return f"{path}@{short_name(attribute)}" if attribute else path
-
-
-def _step(element: _Element) -> str:
-    tag = short_name(str(element.tag), element.prefix)
-    if tag == "plugin":
-        return f"{tag}[{plugin_name(element)}]"
-    name = element.get("name") if tag in _NAMED else None
-    return f"{tag}[{name}]" if name else tag
-
-
-def short_name(name: str, prefix: str | None = None) -> str:
-    """A tag or attribute as the vocabulary writes it; ``prefix`` is for a namespace it lacks."""
-    uri, brace, local = name.removeprefix("{").partition("}")
-    short = _PREFIXES.get(uri, prefix) if brace else None
-    return f"{short}:{local}" if short else name
 
 
 def ranked(tallies: Iterable[tuple[_Thing, Tally]]) -> list[tuple[_Thing, Tally]]:
