@@ -46,7 +46,7 @@ TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
-DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame")
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor")
 # Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
 NOT_PLAIN = frozenset("{}$ ")
 

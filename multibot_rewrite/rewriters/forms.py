@@ -16,6 +16,11 @@ from multibot_rewrite.rosnames import parse_remap
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
 # What a top-level "|" of a regular expression must not be looked for in.
+_WORD = re.compile(r"[^\s()\"]+")
+_OWNED = re.compile(r"::|/")
+# Assertions look beyond the name, so an affix cannot stand behind them.
+_ASSERTION = re.compile(r"\(\?|\\[bB]")
+_POSIX = {"alpha": "a-zA-Z", "digit": "0-9", "alnum": "a-zA-Z0-9", "lower": "a-z", "upper": "A-Z"}
 _REGEX_PIECES = re.compile(r"\\.|\[\^?\]?(?:\\.|[^\]])*\]|.", re.DOTALL)
 
 
@@ -47,7 +52,7 @@ def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
 def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
     """What the consumer puts in front of names, nothing at all included."""
     name = value.strip()
-    return (Part(value.index(name), name, kinds),)
+    return (Part(value.index(name), name, kinds, False, kinds[:1]),)
 
 
 def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
@@ -92,15 +97,49 @@ def _pieces(value: str) -> Iterator[tuple[int, str]]:
         at += len(name) + 2
 
 
+def words(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+    """``(key value ...)`` lists: every word that the file declares."""
+    found = ((word.start(), word[0]) for word in _WORD.finditer(value))
+    known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
+    return tuple(Part(at, text, tuple(of), True) for at, text, of in known if of)
+
+
 def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
-    """``link/light``: a declared name, the longest there is, and what the consumer adds to it."""
+    """``link/light`` or ``link::visual``: a name and what is no name of ours behind it."""
+    return tuple(_owner(value, kinds, declared)[0])
+
+
+def member(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+    """``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a name below a link's."""
+    if not _OWNED.search(value):
+        return whole(value, kinds, declared)
+    scopes, at = _owner(value, ("link",), declared)
+    name = value[at:].rstrip()
+    known = name and scopes and scopes[-1].text in declared["link"]
+    return (*scopes, Part(at, name, kinds)) if known else ()
+
+
+def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[Part], int]:
+    """The models before ``::`` and the longest declared name behind them; where the rest starts.
+
+    What is before the first declared model is a world.
+    """
     at = len(value) - len(value.lstrip())
-    text = value.strip()
-    cuts = [n for n, mark in enumerate(text) if mark == "/"]
-    for cut in (len(text), *reversed(cuts)):
-        if any(text[:cut] in declared.get(kind, ()) for kind in kinds):
-            return (Part(at, text[:cut], kinds),)
-    return (Part(at, text[: cuts[0]] if cuts else text, kinds),) if text else ()
+    parts = []
+    pieces = list(_pieces(value))
+    for start, name in pieces[:-1]:
+        if name in declared["model"] and not any(name in declared.get(k, ()) for k in kinds):
+            parts.append(Part(start, name, ("model",), True))
+            at = start + len(name) + 2
+    text = value[at:].rstrip()
+    cuts = [found.start() for found in _OWNED.finditer(text)]
+    ends = [len(text), *reversed(cuts)]
+    known = (end for end in ends if any(text[:end] in declared.get(kind, ()) for kind in kinds))
+    end = next(known, cuts[0] if cuts else len(text))
+    if end:
+        parts.append(Part(at, text[:end], kinds))
+    behind = _OWNED.match(text, end)
+    return parts, at + (behind.end() if behind else end)
 
 
 def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
@@ -125,12 +164,27 @@ def _alternatives(value: str) -> Iterator[tuple[int, str]]:
 
 
 def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
-    """The kinds of which the pattern matches a declared name."""
+    """The kinds of which the pattern (ECMAScript's, as std::regex reads it) matches a name."""
+    if _ASSERTION.search(pattern):
+        return ()
+    for name, letters in _POSIX.items():
+        pattern = pattern.replace(f"[:{name}:]", letters)
     try:
         matches = re.compile(pattern).fullmatch
     except re.error:
         return ()
     return tuple(kind for kind in kinds if any(map(matches, declared.get(kind, ()))))
+
+
+def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+    """A topic of Gazebo Classic's own: ``~/`` is the world, ``~/model/`` the model that follows."""
+    name = value.strip()
+    at = value.index(name)
+    world = 2 if name.startswith("~/") else 0
+    model = name[world:].partition("/")[0]
+    if world and model in declared["model"]:
+        return (Part(at + world, model, ("model",), True),)
+    return (Part(at + world, name[world:], kinds),) if name[world:] else ()
 
 
 def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
@@ -154,7 +208,10 @@ FORMS: dict[str, Form] = {
     "whole": whole,
     "list": listed,
     "scoped": scoped,
+    "words": words,
     "suffixed": suffixed,
+    "member": member,
+    "transport": transport,
     "regex": regex,
     "prefix": prefixed,
     "remap": remap,

@@ -9,7 +9,7 @@ from lxml import etree
 
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import HOLE, resolve
+from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_value
 from multibot_rewrite.rosnames import expand, parse_remap
 from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
 
@@ -64,11 +64,10 @@ def _defaults(
         path = site.path.removeprefix(hidden)
         if _present(host, path):
             continue
-        kind = resolve(default, site.kinds, "uses", declared)
-        there = affix(naming, kind, default, site.namespaced) if kind else None
-        if there is not None:
-            new = there.spell(default, HOLE)
-            yield _insertion(host, path, kind, default, new)
+        spelling = spell_value(site, default, "uses", declared, naming)
+        if spelling:
+            new = respelled(default, spelling, HOLE)
+            yield _insertion(host, path, spelling[0][0], default, new)
 
 
 def _default(host: etree._Element, default: str, naming: Naming) -> str:

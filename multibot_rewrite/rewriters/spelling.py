@@ -25,12 +25,11 @@ def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
     return FORMS[claim.site.form](claim.value, claim.site.kinds, declared)
 
 
-def spelled_in(claim: Claim, declared: Declared, naming: Naming) -> tuple[Part, ...]:
+def spelled_in(site: Site, value: str, declared: Declared, naming: Naming) -> tuple[Part, ...]:
     """The names that the naming can reach: a postfix is none where a prefix is asked for."""
-    site = claim.site
-    if site.form == "prefix" and (naming.affix != PREFIX or not (claim.value or takes_empty(site))):
+    if site.form == "prefix" and (naming.affix != PREFIX or not (value or takes_empty(site))):
         return ()
-    return names_in(claim, declared)
+    return FORMS[site.form](value, site.kinds, declared)
 
 
 def takes_empty(site: Site) -> bool:
@@ -45,14 +44,18 @@ def spelling_key(claim: Claim) -> tuple[object, str]:
 
 def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     """Kind and affix of every name in the claimed value; empty where it stays as it is."""
-    site = claim.site
-    plain = site.plain
+    plain = claim.site.plain
     if plain and claim.value in declared[plain]:
         there = affix(naming, plain, claim.value)
         return ((plain, there),) if there else ()
+    return spell_value(claim.site, claim.value, claim.site.role, declared, naming)
+
+
+def spell_value(site: Site, value: str, role: str, declared: Declared, naming: Naming) -> Spelling:
+    """The same for a value that stands, or would stand, at a site."""
     result = []
-    for part in spelled_in(claim, declared, naming):
-        kind = kind_of(part, site.role, declared)
+    for part in spelled_in(site, value, declared, naming):
+        kind = kind_of(part, role, declared)
         there = affix(naming, kind, part.text, site.namespaced) if kind else None
         if there is not None:
             result.append((kind, there._replace(at=part.at + there.at) if part.at else there))

@@ -30,6 +30,7 @@ def hazards(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
         moved_tf,
         bare_lookups,
         process_wide,
+        hardwired,
         outside_frames,
         reordered,
     ):
@@ -110,6 +111,19 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
             message = f"{claim.value!r} holds for the whole process, other robots' nodes too"
             hint = "a relative target ends in each robot's own namespace"
             yield finding(inventory.document, claim.start, "MB308", WARNING, message, hint)
+
+
+def hardwired(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """Plugins whose code looks for a literal name: under another one they find nothing."""
+    for rewriter, start in _known_hosts(inventory):
+        for entry in rewriter.hardwired:
+            kind, _, name = entry.partition(":")
+            if name in inventory.declared[kind] and affix(naming, kind, name) is not None:
+                message = (
+                    f"{rewriter.names[0]} looks for a {kind} called {name!r}, which is renamed"
+                )
+                hint = "its code knows no other name: use --layout tf-per-robot"
+                yield finding(inventory.document, start, "MB310", WARNING, message, hint)
 
 
 def _holds_for_all(rewriter: Rewriter | None) -> bool:

@@ -10,6 +10,7 @@ from multibot_rewrite.rewriters.spelling import (
     kind_of,
     must_be_declared,
     names_in,
+    spell,
     spelled_in,
 )
 from multibot_rewrite.rewriting.collect import Inventory
@@ -46,7 +47,7 @@ def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, b
     """Kind, name and namespaced of everything the naming spells for a robot."""
     for claim in inventory.claims:
         site = claim.site
-        for part in spelled_in(claim, inventory.declared, naming):
+        for part in spelled_in(site, claim.value, inventory.declared, naming):
             kind = kind_of(part, site.role, inventory.declared)
             if kind and affix(naming, kind, part.text, site.namespaced) is not None:
                 yield kind, part.text, site.namespaced
@@ -67,7 +68,7 @@ def _kept(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, Clai
     """Declared names no policy spells, and names that are used and declared nowhere."""
     declared = inventory.declared
     for kind, name, claim in _declarations(inventory):
-        if affix(naming, kind, name) is None:
+        if not spell(claim, declared, naming):
             yield kind, name, claim
     for claim in inventory.claims:
         if claim.site.role != "uses" or not must_be_declared(claim.site):
@@ -119,7 +120,7 @@ def _spelled(naming: Naming, robot: str, kind: str, name: str, namespaced: bool)
 def not_rewritten(inventory: Inventory, naming: Naming, robot: str) -> list[Finding]:
     """Links and joints without the affix that ``--strip`` is to take off."""
     for kind, name, claim in _declarations(inventory):
-        renamed = affix(naming, kind, name) is not None
+        renamed = spell(claim, inventory.declared, naming)
         if renamed and removal(naming, robot, kind, name) is None:
             message = f"{kind} {name!r} is not spelled for {robot}"
             hint = "give --strip the robot and the options the file was made with"

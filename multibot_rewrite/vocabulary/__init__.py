@@ -35,7 +35,10 @@ that topics are made of, a ``subtopic`` stands below a stem or namespace.
     form=whole       the value is one name (where no form is given)
     form=list        names separated by commas or white space
     form=scoped      ``model::link``: models, then the name
-    form=suffixed    ``link/light``: a declared name and what the consumer adds to it
+    form=words       ``(key value ...)``: the words that this file declares
+    form=suffixed    ``link/light``, ``link::visual``: a declared name and what is none behind it
+    form=member      ``link::sensor``, ``world::model::link::sensor``, ``link/sensor``: below a link
+    form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
     form=regex       a regular expression for whole names, alternatives affixed one by one
     form=prefix      put in front of names in code: a postfix cannot reach them (MB304)
     form=remap       a ROS remap rule ``from:=to``: ``to`` is the name
@@ -53,6 +56,7 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     serves: SERVICE...     the same
     insert: yes | no       no where the consumer throws on children it does not know (default: yes)
     unique: KIND           bare names of this kind are looked up in the whole world
+    hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
     about: TEXT            what it is
     source: TEXT           where in which source that can be read

@@ -58,6 +58,7 @@ def _facts(rewriter: Rewriter) -> str:
         "only a remap moves": " ".join(rewriter.topics),
         "source": rewriter.source,
         "finds by bare name in the whole world": rewriter.unique,
+        "looks for": " ".join(rewriter.hardwired),
         "remaps hold for": "the whole process" if rewriter.process_wide else "",
         "never inserted into": "" if rewriter.inserts else "it throws on unknown children",
     }

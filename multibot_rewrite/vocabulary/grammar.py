@@ -26,6 +26,7 @@ SETTINGS = (
     "insert",
     "unique",
     "process_wide",
+    "hardwired",
 )
 # Settings that are one word out of few.
 VALUES = {
@@ -41,7 +42,10 @@ FORMS = (
     "whole",
     "list",
     "scoped",
+    "words",
     "suffixed",
+    "member",
+    "transport",
     "regex",
     "prefix",
     "remap",
@@ -60,7 +64,8 @@ class Rewriter(NamedTuple):
     only a remap rule moves them.
     ``inserts`` is false where the consumer throws on children it does not know.
     ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
-    tells that its remap rules hold for every node of the process.
+    tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
+    for whatever the file says, each as ``kind:name``.
     """
 
     type: str
@@ -76,6 +81,7 @@ class Rewriter(NamedTuple):
     inserts: bool
     unique: str
     process_wide: bool
+    hardwired: tuple[str, ...]
     about: str
     source: str
     file: str
@@ -159,6 +165,7 @@ def assemble(
         settings.get("insert", "yes") == "yes",
         settings.get("unique", ""),
         settings.get("process_wide", "no") == "yes",
+        words("hardwired"),
         settings.get("about", ""),
         settings.get("source", ""),
         file,
@@ -187,6 +194,7 @@ def merge(first: Rewriter, second: Rewriter) -> Rewriter:
         publishes=first.publishes + second.publishes,
         subscribes=first.subscribes + second.subscribes,
         serves=first.serves + second.serves,
+        hardwired=first.hardwired + second.hardwired,
         inserts=first.inserts and second.inserts,
         process_wide=first.process_wide or second.process_wide,
     )
