@@ -202,9 +202,11 @@ def test_a_pipe_in_a_folder_is_passed_by(multibot: Multibot, folder: Path) -> No
 
 
 def test_the_order_is_that_of_names(multibot: Multibot, folder: Path) -> None:
-    for name in ("c.urdf", "a/z.urdf", "b.urdf", "a/b/y.urdf"):
+    names = ["b.urdf", "c.urdf", "a/z.urdf", "a/b/y.urdf", "a/c/y.urdf", "d/x.urdf", "e/x.urdf"]
+    for name in sorted(names, key=lambda name: name[::-1]):
         write(folder / name, "no robot")
-    assert files_read(multibot, ".")[1] == ["./b.urdf", "./c.urdf", "./a/z.urdf", "./a/b/y.urdf"]
+    assert files_read(multibot, ".")[1] == [f"./{name}" for name in names]
+    assert files_read(multibot, "e", "c.urdf")[1] == ["e/x.urdf", "c.urdf"]
 
 
 def test_what_cannot_be_read_is_told_with_its_reason(multibot: Multibot, folder: Path) -> None:

@@ -156,6 +156,12 @@ def test_values_of_several_kinds_at_one_path_all_count() -> None:
     ]
 
 
+def test_a_value_tells_more_than_its_tag() -> None:
+    (section,) = suggested(plugin("<x_joint>nobody</x_joint><x_joint>hip</x_joint>"))
+    (row,) = section.rows
+    assert (row.value, row.guess and row.guess.by_tag) == ("hip", False)
+
+
 def test_plugins_of_one_name_share_a_section() -> None:
     other = plugin("<y>arm</y>", 'filename="/opt/libacme.so"')
     (section,) = suggested(plugin("<x>hip</x>") + other)
@@ -228,6 +234,15 @@ def test_the_rows_do_what_they_say(tmp_path: Path) -> None:
     done = rewrite(ROBOT.format(body), "r1", vocabulary=[str(tmp_path / "new.vocab")])
     assert "<x>hip_r1, knee_r1</x><y>bot_r1::arm/r1</y><topic>go/r1</topic><n>3</n>" in done.text
     assert "MB902" not in {finding.code for finding in done.findings}
+
+
+def test_a_plugin_that_is_a_ros_node_stays_one(tmp_path: Path) -> None:
+    body = plugin("<ros><remapping>a:=go</remapping></ros><x>hip</x>")
+    (tmp_path / "new.vocab").write_text(text_for(body))
+    done = rewrite(ROBOT.format(body), "r1", vocabulary=[str(tmp_path / "new.vocab")])
+    assert 'name="p_r1"' in done.text
+    assert "<remapping>a:=go/r1</remapping>" in done.text
+    assert "<x>hip_r1</x>" in done.text
 
 
 def test_a_plugin_no_section_can_be_called_like_is_a_comment() -> None:
