@@ -11,7 +11,8 @@ from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Node, hardware_keys, plugin_keys
 from multibot_rewrite.rewriting.collect import Host, Inventory
 from multibot_rewrite.rewriting.paths import short_name
-from multibot_rewrite.rewriting.survey import MENTIONED, loaded_by
+from multibot_rewrite.rewriting.pipeline import MENTIONED
+from multibot_rewrite.rewriting.survey import loaded_by
 from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.vocabulary.grammar import read_header, read_section, split_path, split_step
 

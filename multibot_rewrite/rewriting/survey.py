@@ -16,9 +16,8 @@ from multibot_rewrite.rewriting.collect import Host, Inventory
 from multibot_rewrite.rewriting.document import Document, locate
 from multibot_rewrite.rewriting.mentions import slot_values, unclaimed_mentions
 from multibot_rewrite.rewriting.paths import plugin_name, tag_path
+from multibot_rewrite.rewriting.pipeline import MENTIONED
 
-# Kinds whose names are telling enough to be looked for where no site is.
-MENTIONED = ("link", "joint")
 # Stands for the kind of a name that this file would have to declare.
 UNRESOLVED = "unresolved"
 
