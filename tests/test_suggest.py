@@ -6,16 +6,17 @@ from pathlib import Path
 
 import pytest
 
+import multibot_rewrite
 from multibot_rewrite import rewrite
 from multibot_rewrite.library import builtin_tree
-from multibot_rewrite.model import Site
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.audit import is_unknown
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.rewriting.suggest import Section, suggest, tag_kind, vocabulary_text
-from multibot_rewrite.vocabulary import load_vocabulary
+from multibot_rewrite.vocabulary import Vocabulary, load_vocabulary
 
+HERE = Path(multibot_rewrite.__file__).parent / "vocabulary"
 ROBOT = """<robot name="bot"><link name="base"/><link name="arm"/><link name="both"/>
 <joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>
 <joint name="knee" type="fixed"><parent link="base"/><child link="both"/></joint>
@@ -265,28 +266,32 @@ def test_a_file_of_any_name(name: str, tmp_path: Path) -> None:
     assert loaded(text, tmp_path).vocabulary.find("plugin", "acme")[0].sites[0].kinds == ("joint",)
 
 
-def test_the_corpus_has_nothing_unknown_after_a_suggestion(
-    corpus: dict[str, Path], tmp_path: Path
-) -> None:
-    tried = 0
+def test_what_a_small_vocabulary_lacks_can_be_suggested(corpus: dict[str, Path]) -> None:
+    """With the elements alone every plugin and hardware class of the corpus is unknown."""
+    texts = {name: (HERE / name).read_text() for name in ("urdf.vocab", "sdf.vocab")}
+    bare = Tree(Vocabulary(texts))
+    guessed = set()
     for path in list(corpus.values())[::6]:
         document = read_document(path.read_bytes(), path.name)
-        sections = suggest(collect(document, builtin_tree()))
-        if not sections:
-            continue
-        tried += 1
-        tree = loaded(vocabulary_text(sections, path.name), tmp_path)
-        load_vocabulary.cache_clear()
+        sections = suggest(collect(document, bare))
+        text = vocabulary_text(sections, path.name)
+        tree = Tree(Vocabulary(texts | {"new.vocab": text}))
         there = collect(document, tree)
         assert not any(is_unknown(h.node.rewriter) for h in there.hosts if h.node.rewriter), path
-        _all_guessed_rows_are_there(sections, tree)
-    assert tried > 5
+        assert len(tree.vocabulary.rewriters("plugin", "hardware")) == text.count("\n["), path
+        guessed |= _guessed(sections, tree.vocabulary)
+    assert len(guessed) > 50
+    assert {kind for _, kinds in guessed for kind in kinds} >= {"joint", "link", "frame", "topic"}
 
 
-def _all_guessed_rows_are_there(sections: list[Section], tree: Tree) -> None:
+def _guessed(sections: list[Section], vocabulary: Vocabulary) -> set[tuple[str, tuple[str, ...]]]:
+    """Path and kinds of every guessed row, as the vocabulary has read it."""
+    found = set()
     for section in sections:
-        sites: dict[str, Site] = {}
-        for rewriter in tree.vocabulary.find(section.type, section.name):
-            sites |= {site.path: site for site in rewriter.sites}
-        guessed = [row for row in section.rows if row.guess]
-        assert {row.path for row in guessed} <= set(sites)
+        (rewriter,) = vocabulary.find(section.type, section.name)
+        kinds = {site.path: site.kinds for site in rewriter.sites}
+        for row in section.rows:
+            if row.guess is not None:
+                assert kinds[row.path] == row.guess.kinds
+                found.add((row.path, row.guess.kinds))
+    return found
