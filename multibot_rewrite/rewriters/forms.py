@@ -16,7 +16,7 @@ from multibot_rewrite.rosnames import parse_remap
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
 # What a top-level "|" of a regular expression must not be looked for in.
-_WORD = re.compile(r"[^\s()\"]+")
+_WORD = re.compile(r"[^\s(),;\"]+")
 _OWNED = re.compile(r"::|/")
 # Assertions look beyond the name, so an affix cannot stand behind them.
 _ASSERTION = re.compile(r"\(\?|\\[bB]")
@@ -98,7 +98,7 @@ def _pieces(value: str) -> Iterator[tuple[int, str]]:
 
 
 def words(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
-    """``(key value ...)`` lists: every word that the file declares."""
+    """Text of whatever shape, ``(key value ...)``: every word of it that the file declares."""
     found = ((word.start(), word[0]) for word in _WORD.finditer(value))
     known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
     return tuple(Part(at, text, tuple(of), True) for at, text, of in known if of)

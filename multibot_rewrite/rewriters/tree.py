@@ -103,16 +103,16 @@ class Node:
         node = self
         for step in steps:
             node = node._step(step, site.role != "keep")
-        if site.role == "keep" or site.when:
+        # A plugin's own section has the last word over what holds for every plugin.
+        node.keeps.pop(attribute, None)
+        claim = None if site.role == "keep" else site
+        if claim is None or site.when:
             node.keeps[attribute] = site
-        if site.role == "keep":
-            return
         if attribute:
-            # A plugin's own section has the last word over what holds for every plugin.
-            others = (pair for pair in node.attributes if pair[0] != attribute)
-            node.attributes = (*others, (attribute, site))
+            others = tuple(pair for pair in node.attributes if pair[0] != attribute)
+            node.attributes = (*others, (attribute, claim)) if claim else others
         else:
-            node.text = site
+            node.text = claim
 
     def _step(self, step: str, active: bool) -> Node:
         tag, attribute, value = split_step(step)

@@ -35,7 +35,7 @@ that topics are made of, a ``subtopic`` stands below a stem or namespace.
     form=whole       the value is one name (where no form is given)
     form=list        names separated by commas or white space
     form=scoped      ``model::link``: models, then the name
-    form=words       ``(key value ...)``: the words that this file declares
+    form=words       any text, ``(key value ...)``: those of its words that this file declares
     form=suffixed    ``link/light``, ``link::visual``: a declared name and what is none behind it
     form=member      ``link::sensor``, ``world::model::link::sensor``, ``link/sensor``: below a link
     form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
