@@ -153,12 +153,14 @@ class Tree:
         for node in self._nodes.values():
             assert node.rewriter is not None
 
-    def format_of(self, root: _Element) -> str:
+    def format_of(self, root: _Element, likely: str = "") -> str:
         """The section of a root element, empty where there is none.
 
-        Of those with its tag it is the one that knows most of its children, else the plain one.
+        Of those with its tag it is the one that knows most of its children, else the ``likely`` one
+        or the plain one.
         """
-        found = sorted((name for name in self.formats if _tag(name) == root.tag), key=len)
+        found = [name for name in self.formats if _tag(name) == root.tag]
+        found.sort(key=lambda name: (name != likely, len(name)))
         if len(found) < 2:
             return found[0] if found else ""
         tags = {child.tag for child in root}

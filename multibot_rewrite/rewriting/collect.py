@@ -14,6 +14,7 @@ from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.document import Document, locate
 
 NOTHING: Declared = {}
+SRDF = "srdf.robot"
 
 
 class Host(NamedTuple):
@@ -41,7 +42,7 @@ def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inve
     hosts: list[Host] = []
     walk = zip(document.root.iter("*"), document.starts, strict=True)
     root, _ = next(walk)
-    format_ = _format(document, tree)
+    format_ = _format(document, tree, SRDF if outside else "")
     node = tree.formats[format_]
     nothing: dict[str, Node] = {}
     below: dict[etree._Element, dict[str, Node]] = {root: node.active}
@@ -66,8 +67,8 @@ def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inve
     return Inventory(document, claims, hosts, _declared(claims, outside), format_)
 
 
-def _format(document: Document, tree: Tree) -> str:
-    found = tree.format_of(document.root)
+def _format(document: Document, tree: Tree, likely: str) -> str:
+    found = tree.format_of(document.root, likely)
     if not found:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
         line, column = locate(document.source, document.starts[0])

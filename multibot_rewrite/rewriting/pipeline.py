@@ -13,7 +13,7 @@ from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import audit
 from multibot_rewrite.rewriting import robots as checks
 from multibot_rewrite.rewriting.apply import cut, fill
-from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
+from multibot_rewrite.rewriting.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.rewriting.explain import Explanation, explain_line
 from multibot_rewrite.rewriting.mentions import find_mentions, slot_values
@@ -23,7 +23,6 @@ from multibot_rewrite.rewriting.verify import verify
 
 # Kinds whose names are telling enough to be looked for where no site is.
 MENTIONED = ("link", "joint")
-SRDF = "srdf.robot"
 
 
 class Template(NamedTuple):
