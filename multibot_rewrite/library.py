@@ -5,16 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.model import Change, Finding, InputError, UsageError, VocabularyError
 from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.changes import list_changes
-from multibot_rewrite.rewriting.explain import Explanation
 from multibot_rewrite.rosnames import check_robot_name
 from multibot_rewrite.vocabulary import advice, load_vocabulary
+
+if TYPE_CHECKING:
+    from multibot_rewrite.rewriting.explain import Explanation
 
 Source = str | bytes | os.PathLike[str]
 

@@ -101,7 +101,9 @@ def host_trouble(fact: Fact) -> str:
     """The same for a plugin or a hardware class, under each of its names."""
     for name in fact.names:
         found = load_vocabulary().find(fact.type, name)
-        flavours = [r for r in found if not (fact.ros in ("1", "2") and r.ros not in ("", fact.ros))]
+        flavours = [
+            r for r in found if not (fact.ros in ("1", "2") and r.ros not in ("", fact.ros))
+        ]
         if not flavours:
             return f"no section [{fact.type} {name}]{' for ROS ' + fact.ros if found else ''}"
         for rewriter in flavours:

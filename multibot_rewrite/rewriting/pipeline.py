@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
 from multibot_rewrite.naming import Naming, affix, overlap
@@ -15,11 +15,13 @@ from multibot_rewrite.rewriting import robots as checks
 from multibot_rewrite.rewriting.apply import cut, fill
 from multibot_rewrite.rewriting.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.rewriting.explain import Explanation, explain_line
 from multibot_rewrite.rewriting.mentions import find_mentions, slot_values
 from multibot_rewrite.rewriting.plan import Plan, make_plan
 from multibot_rewrite.rewriting.strip import strip_edits
 from multibot_rewrite.rewriting.verify import verify
+
+if TYPE_CHECKING:
+    from multibot_rewrite.rewriting.explain import Explanation
 
 # Kinds whose names are telling enough to be looked for where no site is.
 MENTIONED = ("link", "joint")
@@ -94,6 +96,8 @@ def explain(
     source: bytes, file: str, naming: Naming, tree: Tree, outside: Declared, robot: str, line: int
 ) -> list[Explanation]:
     """What is known about the values on one line."""
+    from multibot_rewrite.rewriting.explain import explain_line  # a rewrite does not need it
+
     inventory = collect(read_document(source, file), tree, outside)
     _check_outside(inventory, outside)
     return explain_line(inventory, naming, tree, robot, line)
