@@ -113,6 +113,7 @@ def strip(
     inventory = collect(read_document(source, file), tree, outside)
     _check_outside(inventory, outside)
     found = checks.not_rewritten(inventory, naming, robot)
+    found += checks.other_urdf(inventory, naming, robot, outside)
     _stop_on_errors(found)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
     again = prepare(stripped, file, naming, tree, stripped_names(outside, naming, robot))

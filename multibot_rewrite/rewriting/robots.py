@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.model import ERROR, Claim, Finding
 from multibot_rewrite.naming import Naming, affix, removal
+from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import (
     kind_of,
     must_be_declared,
@@ -125,6 +126,17 @@ def not_rewritten(inventory: Inventory, naming: Naming, robot: str) -> list[Find
             message = f"{kind} {name!r} is not spelled for {robot}"
             hint = "give --strip the robot and the options the file was made with"
             return [finding(inventory.document, claim.start, "MB107", ERROR, message, hint)]
+    return []
+
+
+def other_urdf(inventory: Inventory, naming: Naming, robot: str, urdf: Declared) -> list[Finding]:
+    """A name of the URDF without that affix: it is not the one the SRDF was rewritten with."""
+    for kind, names in urdf.items():
+        for name, claim in names.items():
+            if spell(claim, urdf, naming) and removal(naming, robot, kind, name) is None:
+                message = f"{kind} {name!r} of the URDF is not spelled for {robot}"
+                hint = "give --urdf the URDF as it was rewritten with the same options"
+                return [finding(inventory.document, 0, "MB107", ERROR, message, hint)]
     return []
 
 
