@@ -22,8 +22,8 @@ MODULES = {
 }
 
 
-def test_the_vocabulary_page_is_current() -> None:
-    assert (ROOT / "docs" / "vocabulary.md").read_text() == page()
+def test_the_page_of_plugins_is_current() -> None:
+    assert (ROOT / "docs" / "plugins.md").read_text() == page()
 
 
 def test_the_readme_shows_commands() -> None:

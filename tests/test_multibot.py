@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from robots import CORPUS
 
 import multibot_rewrite
 from multibot_rewrite.cli.multibot import COMMANDS, main
@@ -24,7 +25,10 @@ COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
 ROOT = Path(__file__).parent.parent
 ROBOTS = ROOT / "fixtures" / "robots"
 PAGE = ROOT / "docs" / "coverage.md"
+UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
 PATIENCE = 60
+# Percent of the occurrences of hardware classes over the corpus.
+LEAST_HARDWARE = 95
 
 
 class Result(NamedTuple):
@@ -654,3 +658,14 @@ def test_a_bad_vocabulary_stops_it(multibot: Multibot, two: Path) -> None:
     result = multibot("coverage", ".", "--vocabulary", "bad.vocab")
     assert (result.code, result.out) == (2, "")
     assert result.err.startswith("multibot: bad.vocab:2: unknown kind 'wheel'")
+
+
+def test_the_corpus_is_known_and_its_rest_explained(
+    corpus: dict[str, Path], multibot: Multibot
+) -> None:
+    options = ("--min-known", "98", "--explained", str(UNCLAIMED))
+    report = multibot.json("coverage", str(CORPUS / "urdf"), *options)
+    assert report["files"]["read"] == len(corpus)
+    assert report["mentions"]["exact"] == []
+    assert report["mentions"]["stale"] == []
+    assert report["hardware"]["percent"] >= LEAST_HARDWARE

@@ -8,8 +8,7 @@ import sys
 from collections.abc import Callable
 
 from multibot_rewrite.cli.output import print_findings, say
-from multibot_rewrite.cli.usage import UNUSABLE
-from multibot_rewrite.cli.usage import _Parser as Parser
+from multibot_rewrite.cli.usage import UNUSABLE, Parser
 from multibot_rewrite.model import MultibotError, ProofError, RewriteRefused
 
 __all__ = ["DONE", "INTERRUPTED", "PROGRAM", "STOPPED", "UNUSABLE", "Parser", "guarded"]

@@ -55,7 +55,7 @@ SWITCHES = (
 )
 
 
-class _Parser(argparse.ArgumentParser):
+class Parser(argparse.ArgumentParser):
     """Says what is wrong in one line instead of listing every option."""
 
     def error(self, message: str) -> NoReturn:
@@ -64,7 +64,7 @@ class _Parser(argparse.ArgumentParser):
 
 def parser() -> argparse.ArgumentParser:
     """The command line; what it cannot read ends the process with one line."""
-    result = _Parser(
+    result = Parser(
         prog="urdf-postfix",
         usage=USAGE,
         description="Rewrite a robot description for one robot or many, and prove nothing was missed.",

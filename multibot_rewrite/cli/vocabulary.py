@@ -18,6 +18,7 @@ from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.rewriting.suggest import suggest, vocabulary_text
 from multibot_rewrite.vocabulary import TYPES, Rewriter, Vocabulary
+from multibot_rewrite.vocabulary.describe import facts
 
 ABOUT = "what is known of a plugin, hardware class or element"
 MORE = """\
@@ -59,9 +60,9 @@ def run(options: argparse.Namespace) -> int:
     else:
         found = _found(vocabulary, options.name, types)
     if options.json is not None:
-        _write_json(options.json, {"sections": [as_json(it, vocabulary) for it in found]}, files)
+        _write_json(options.json, {"sections": [as_json(it) for it in found]}, files)
     if options.json != "-":
-        print_report(_list(found) if options.name is None else _details(found, vocabulary))
+        print_report(_list(found) if options.name is None else _details(found))
     return DONE
 
 
@@ -93,32 +94,17 @@ def _list(sections: Sequence[Rewriter]) -> Iterator[str | Grid]:
     yield Grid(columns, rows)
 
 
-def _details(sections: Sequence[Rewriter], vocabulary: Vocabulary) -> Iterator[str | Grid]:
+def _details(sections: Sequence[Rewriter]) -> Iterator[str | Grid]:
     """Everything known, a block of lines a section."""
     for number, rewriter in enumerate(sections):
         yield f"{chr(10) * (number > 0)}{rewriter.name}  {rewriter.file}:{rewriter.line}"
-        yield from (f"  {what}: {text}" for what, text in _facts(rewriter).items() if text)
-        rows = [_row(site, rewriter, vocabulary) for site in rewriter.sites]
+        yield from (f"  {what}: {text}" for what, text in facts(rewriter).items())
+        rows = [_row(site, rewriter) for site in rewriter.sites]
         if rows:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
-def _facts(rewriter: Rewriter) -> dict[str, str]:
-    return {
-        "about": rewriter.about,
-        "also called": " ".join(rewriter.names[1:]),
-        "stands in": " ".join(rewriter.at),
-        "chosen by": rewriter.select,
-        "shares": " ".join(f"[block {name}]" for name in rewriter.blocks),
-        "only a remap moves": " ".join(rewriter.topics),
-        "finds by bare name in the whole world": rewriter.unique,
-        "remaps hold for": "the whole process" if rewriter.process_wide else "",
-        "never inserted into": "" if rewriter.inserts else "it throws on unknown children",
-        "source": rewriter.source,
-    }
-
-
-def _row(site: Site, rewriter: Rewriter, vocabulary: Vocabulary) -> tuple[str, ...]:
+def _row(site: Site, rewriter: Rewriter) -> tuple[str, ...]:
     not_inserted = " (not inserted)" if site.default and not rewriter.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
@@ -130,11 +116,11 @@ def _row(site: Site, rewriter: Rewriter, vocabulary: Vocabulary) -> tuple[str, .
         "" if site.form == "whole" else site.form,
         f"{site.default}{not_inserted}",
         note,
-        f"{vocabulary.file_of(site)}:{site.line}{shared}",
+        f"{site.file}:{site.line}{shared}",
     )
 
 
-def as_json(rewriter: Rewriter, vocabulary: Vocabulary) -> dict[str, object]:
+def as_json(rewriter: Rewriter) -> dict[str, object]:
     """A section as ``--json`` writes it; docs/coverage.md describes it."""
     return {
         "type": rewriter.type,
@@ -147,11 +133,11 @@ def as_json(rewriter: Rewriter, vocabulary: Vocabulary) -> dict[str, object]:
         "at": rewriter.at,
         "blocks": rewriter.blocks,
         "remap_only": rewriter.topics,
-        "rows": [_row_json(site, rewriter, vocabulary) for site in rewriter.sites],
+        "rows": [_row_json(site, rewriter) for site in rewriter.sites],
     }
 
 
-def _row_json(site: Site, rewriter: Rewriter, vocabulary: Vocabulary) -> dict[str, object]:
+def _row_json(site: Site, rewriter: Rewriter) -> dict[str, object]:
     return {
         "path": site.path,
         "role": site.role,
@@ -162,7 +148,7 @@ def _row_json(site: Site, rewriter: Rewriter, vocabulary: Vocabulary) -> dict[st
         "when": site.when,
         "note": site.note,
         "block": block_of(site),
-        "file": vocabulary.file_of(site),
+        "file": site.file,
         "line": site.line,
     }
 

@@ -166,15 +166,6 @@ class Vocabulary:
                 found[name] = list(dict.fromkeys(parents))
         return found
 
-    def file_of(self, site: Site) -> str:
-        """The file that a row stands in; a block or a later section may be in another one."""
-        type_, name = site.section.split()
-        for file, line, chunk in self._raw[type_, name]:
-            row = chunk.split("\n")[site.line - line :][:1] if site.line > line else []
-            if row and row[0].split()[:1] == [site.path]:
-                return file
-        raise AssertionError(site)
-
     def rewriters(self, *types: str) -> list[Rewriter]:
         """All rewriters of these types, parsed and checked, in file order."""
         return self._parsed(key for key in self._raw if key[0] in types)

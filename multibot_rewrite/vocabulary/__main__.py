@@ -6,12 +6,13 @@ import sys
 from itertools import groupby
 
 from multibot_rewrite.vocabulary import Rewriter, check_vocabulary, load_vocabulary
+from multibot_rewrite.vocabulary.describe import facts
 
 HEAD = """\
-# Vocabulary
+# Plugins, elements and hardware classes
 
 Everything the rewriters know, generated from `multibot_rewrite/vocabulary/*.vocab` by
-`python -m multibot_rewrite.vocabulary > docs/vocabulary.md`.
+`python -m multibot_rewrite.vocabulary > docs/plugins.md`.
 
 `declares` and `uses` name kinds, tried in order until one resolves; `keep` values are never renamed.
 A default is inserted where the element is absent and the default would be the same for every robot.
@@ -32,7 +33,10 @@ def page() -> str:
 
 def _section(rewriter: Rewriter) -> str:
     lines = [f"\n### {rewriter.name}\n"]
-    lines += [f"\n{text}\n" for text in (rewriter.about, _facts(rewriter)) if text]
+    told = facts(rewriter)
+    about = told.pop("about", "")
+    others = "; ".join(f"{what}: {text}" for what, text in told.items())
+    lines += [f"\n{text}\n" for text in (about, others) if text]
     own = [
         site for site in rewriter.sites if site.section == f"{rewriter.type} {rewriter.names[0]}"
     ]
@@ -48,21 +52,6 @@ def _section(rewriter: Rewriter) -> str:
 
 def _form(form: str) -> str:
     return "" if form == "whole" else f" ({form})"
-
-
-def _facts(rewriter: Rewriter) -> str:
-    facts = {
-        "also called": " ".join(rewriter.names[1:]),
-        "in": " ".join(rewriter.at),
-        "with": " ".join(f"[block {name}]" for name in rewriter.blocks),
-        "only a remap moves": " ".join(rewriter.topics),
-        "source": rewriter.source,
-        "finds by bare name in the whole world": rewriter.unique,
-        "looks for": " ".join(rewriter.hardwired),
-        "remaps hold for": "the whole process" if rewriter.process_wide else "",
-        "never inserted into": "" if rewriter.inserts else "it throws on unknown children",
-    }
-    return "; ".join(f"{what}: {text}" for what, text in facts.items() if text)
 
 
 if __name__ == "__main__":
