@@ -70,17 +70,19 @@ def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
     """SDF's ``model::link``: the last piece is the name, the ones before it are models.
 
     No part where the first model is none of this file, and none behind an included model: what
-    they hold is named elsewhere.
+    they hold is named elsewhere. A link may be called ``a::b`` itself: SDF 1.7 is flattened so.
     """
-    pieces = list(_pieces(value))
-    if len(pieces) > 1 and pieces[0][1] not in declared["model"]:
-        return ()
-    scopes = []
-    for at, name in pieces[:-1]:
+    scopes: list[Part] = []
+    for at, name in _pieces(value):
+        rest = value[at:].rstrip()
+        if rest == name or any(rest in declared.get(kind, ()) for kind in kinds):
+            return (*scopes, Part(at, rest, kinds, True))
+        if not scopes and name not in declared["model"]:
+            return ()
         scopes.append(Part(at, name, ("model",), True))
         if is_included(name, declared):
-            return tuple(scopes)
-    return (*scopes, *(Part(at, name, kinds, True) for at, name in pieces[-1:]))
+            break
+    return tuple(scopes)
 
 
 def is_included(model: str, declared: Declared) -> bool:
