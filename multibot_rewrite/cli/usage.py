@@ -21,7 +21,7 @@ examples:
   urdf-postfix rover.urdf robot1 --affix prefix --layout frames-per-robot --separator link=_
   urdf-postfix rover.srdf robot1 --urdf rover.urdf      an SRDF in step with its URDF
   urdf-postfix robot1.urdf robot1 --strip               the inverse
-  urdf-postfix --explain rover.urdf:42                  why is this (not) spelled?
+  urdf-postfix --explain rover.urdf:34                  why is this (not) spelled?
   cat rover.urdf | urdf-postfix - robot1 --diff
 exit codes: 0 done; 1 findings that stop the job (any, with --strict); 2 wrong use or unreadable input
 """
