@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
 def _place(text: str) -> tuple[str, int]:
     path, colon, line = text.rpartition(":")
     if not colon or not line.isdigit() or not path:
-        raise UsageError(f"--explain {text}: write FILE:LINE, for example rover.urdf:42")
+        raise UsageError(f"--explain {text}: write FILE:LINE, for example rover.urdf:34")
     return path, int(line)
 
 
