@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.model import Edit, Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
@@ -144,19 +144,26 @@ def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
     return (begin, begin + len(text)) if _reads_as(b"<a>%s</a>", text, value) else None
 
 
-def fillable(source: bytes, start: int) -> tuple[int, int, bytes] | None:
-    """Where ``<a/>`` ends, and the end tag it needs to hold text; None if it is not written so.
+def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes] | None:
+    """The end of an empty element, and what stands around a text in it; None if it is not empty.
 
-    ``<a></a>`` is not fillable: emptied again, it could not be told from ``<a/>``.
+    A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
     """
     end = tag_end(source, start)
     name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")
-    return (end - 2, end, b"</%s>" % name) if source[end - 2 : end] == b"/>" else None
+    if source[end - 2 : end] == b"/>":
+        return end - 2, end, b">", b"</%s>" % name
+    close = b"</%s>" % name
+    return (end, end + len(close), b"", b"</%s >" % name) if source.startswith(close, end) else None
 
 
-def emptied(source: bytes, start: int, slot: tuple[int, int]) -> tuple[int, int]:
-    """What ``/>`` is to replace where a filled element is empty again."""
-    return slot[0] - 1, source.index(b">", slot[1]) + 1
+def emptied(source: bytes, slot: tuple[int, int]) -> Edit:
+    """The edit that takes the text of a filled element out again."""
+    end = source.index(b">", slot[1]) + 1
+    close = source[slot[1] : end]
+    if close.endswith(b" >"):
+        return Edit(slot[0], end, close[:-2] + b">", None)
+    return Edit(slot[0] - 1, end, b"/>", None)
 
 
 def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:

@@ -135,8 +135,8 @@ def _filled(
     if place is None:
         findings.append(_not_editable(inventory, claim))
     else:
-        start, end, close = place
-        yield Edit(start, end, b">" + there.before.encode(), there.after.encode() + close)
+        start, end, opening, close = place
+        yield Edit(start, end, opening + there.before.encode(), there.after.encode() + close)
 
 
 def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
@@ -158,7 +158,7 @@ def value_place(source: bytes, slot: tuple[int, int], value: str, at: int) -> in
 def _not_editable(inventory: Inventory, claim: Claim) -> Finding:
     hint = "write it as plain text, without escapes, CDATA or comments inside"
     if not claim.value:
-        hint = f"write <{claim.element.tag} .../> instead of an empty pair of tags"
+        hint = f"write <{claim.element.tag} .../>"
     return finding(
         inventory.document,
         claim.start,

@@ -60,7 +60,7 @@ def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> l
     slot = value_slot(source, claim.start, claim.attribute, claim.value)
     if slot is None:
         return []
-    if spans == [(0, len(claim.value))]:
-        return [Edit(*emptied(source, claim.start, slot), b"/>", None)]
+    if claim.site.form == "prefix" and spans == [(0, len(claim.value))]:
+        return [emptied(source, slot)]
     places = [[value_place(source, slot, claim.value, at) for at in span] for span in spans]
     return [Edit(a, b, b"", None) for a, b in places if a is not None and b is not None]
