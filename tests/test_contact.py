@@ -196,6 +196,37 @@ def test_a_number_that_hangs_on_the_robots_name_is_refused() -> None:
     assert "r1/base_fixed_joint_lump__r1/a_collision_1</collision>" in prefixed
 
 
+SDF = """<sdf version="1.9"><model name="m">
+  <link name="tip"><collision name="tip"/></link>
+  <model name="hand"><link name="tip"><collision name="c"/></link></model>
+  <include><uri>model://tool</uri><name>tool</name></include>
+  <link name="base"><sensor name="s" type="contact"><contact>
+    <collision>{}</collision></contact></sensor></link>
+</model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        pytest.param("tip", "tip", id="bare"),
+        pytest.param("c", "c", id="bare-in-another-scope"),
+        pytest.param("tip::tip", "tip/r1::tip", id="link"),
+        pytest.param("m::tip::tip", "m_r1::tip/r1::tip", id="model"),
+        pytest.param("m::hand::tip::c", "m_r1::hand_r1::tip/r1::c", id="nested"),
+        pytest.param("tool::tip::c", "tool_r1::tip::c", id="included"),
+        pytest.param("m::tool::tip::c", "m_r1::tool_r1::tip::c", id="included-from-the-root"),
+        pytest.param("table::tip::tip", "table::tip::tip", id="another-model"),
+    ],
+)
+def test_a_contact_of_sdf_spells_its_scopes(old: str, new: str) -> None:
+    """A collision of SDF has a name of its own; only one made from a URDF link's is recomputed."""
+    source = SDF.format(old)
+    result = rewrite(source, "r1")
+    assert f"<collision>{new}</collision>" in result.text
+    assert result.findings == ()
+    assert strip(result.data, "r1") == source.encode()
+
+
 def test_a_joint_circle_ends() -> None:
     assert names([Link("a", parent="b"), Link("b", parent="a")]) == []
 

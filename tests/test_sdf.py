@@ -89,12 +89,14 @@ def inside(scope: etree._Element, name: str) -> etree._Element | None:
 
 def target(place: Place) -> etree._Element | None:
     """What a reference leads to: an element of this file, or the include it goes into."""
-    found = place.scope
-    for name in place.text.split("::"):
-        if found is None or found.tag == "include":
-            break
-        found = inside(found, name) if found.tag == "model" else None
-    return found if found is not place.scope else None
+    found, rest = place.scope, place.text
+    while rest and found is not None and found.tag == "model":
+        # Before SDF 1.8 a link may be called a::b.
+        whole = inside(found, rest)
+        name, _, below = rest.partition("::")
+        found, rest = (inside(found, name), below) if whole is None else (whole, "")
+    dead_end = rest and found is not None and found.tag != "include"
+    return None if dead_end or found is place.scope else found
 
 
 def references(root: etree._Element) -> Iterator[Place]:
@@ -258,6 +260,24 @@ DECLARED = [
     pytest.param(b'<joint name="axle_', b'<joint name="axel_', id="joint"),
     pytest.param(b"rover_robot1", b"rover", id="model-not-renamed"),
 ]
+
+
+FLAT = b"""<sdf version="1.7">
+  <model name="rover">
+    <link name="base"/>
+    <link name="arm::base"/>
+    <joint name="arm::j" type="fixed"><parent>base</parent><child>arm::base</child></joint>
+  </model>
+</sdf>
+"""
+
+
+def test_a_wrong_flattened_name_is_noticed() -> None:
+    output = rewrite(FLAT, ROBOT).data
+    right, wrong = b"<child>arm::base/robot1<", b"<child>base/robot1<"
+    assert right in output
+    assert [*problems(FLAT, output, {})] == []
+    assert [*problems(FLAT, output.replace(right, wrong), {})] != []
 
 
 @pytest.mark.parametrize(("old", "new"), [*WRONG, *DECLARED])
