@@ -29,6 +29,8 @@ from robots import (
     spelled,
     spread,
 )
+from test_bad_input import STOPPED, UNUSABLE, check_refusal
+from test_cli import run
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip
 
@@ -440,3 +442,25 @@ def test_libsdformat_notices_a_wrong_name(
     assert old in output
     assert differences(sdf_tool, NESTED, output, {}, tmp_path) == []
     assert differences(sdf_tool, NESTED, output.replace(old, new), {}, tmp_path)
+
+
+# ---------------------------------------------------------------- the command
+
+
+def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
+    (tmp_path / "model.sdf").write_bytes(NESTED)
+    assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}/model.sdf").code == UNUSABLE
+    assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}.sdf").code == 0
+    for robot in ("r1", "r2"):
+        assert (tmp_path / f"{robot}.sdf").read_bytes() == rewrite(NESTED, robot).data
+        back = run(tmp_path, f"{robot}.sdf", robot, "--strip")
+        assert (back.code, back.out) == (0, NESTED)
+
+
+def test_a_world_is_refused_with_a_way_out(tmp_path: Path) -> None:
+    world = NESTED.replace(b'1.9">', b'1.9"><world name="w">').replace(b"</sdf>", b"</world></sdf>")
+    (tmp_path / "w.sdf").write_bytes(world)
+    done = run(tmp_path, "w.sdf", ROBOT, "-o", "out.urdf")
+    check_refusal(
+        tmp_path, done, STOPPED, ("w.sdf:1:20:", "MB206", "'w'", "model.sdf", "<include>")
+    )
