@@ -94,7 +94,7 @@ UNREADABLE = {
     "two-roots": (robot("") + "<robot/>", ("in.urdf:5:", "Extra content", "mend")),
     "tag-mismatch": (robot('<link name="a">'), ("in.urdf:4:", "link line 3", "mend")),
     "attribute-twice": (robot('<link name="a" name="b"/>'), ("in.urdf:3:", "redefined", "mend")),
-    "sdf": ('<sdf version="1.9">\n<model name="m"/>\n</sdf>', ("in.urdf:1:", "<sdf>", "<robot>")),
+    "mjcf": ('<mujoco model="m">\n<worldbody/>\n</mujoco>', ("in.urdf:1:", "<mujoco>", "<robot> or <sdf>")),
     "other-root": ("<html/>", ("in.urdf:1:", "<html>", "<robot>")),
 }
 

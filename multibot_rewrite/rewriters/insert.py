@@ -9,7 +9,7 @@ from lxml import etree
 
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_value
+from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_default
 from multibot_rewrite.rosnames import expand, parse_remap
 from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
 
@@ -64,7 +64,7 @@ def _defaults(
         path = site.path.removeprefix(hidden)
         if _present(host, path):
             continue
-        spelling = spell_value(site, default, "uses", declared, naming)
+        spelling = spell_default(site, default, declared, naming)
         if spelling:
             new = respelled(default, spelling, HOLE)
             yield _insertion(host, path, spelling[0][0], default, new)

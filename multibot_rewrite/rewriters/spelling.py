@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import (
     CLOSED_KINDS,
@@ -14,6 +16,7 @@ from multibot_rewrite.naming import (
     removal,
 )
 from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, Part
+from multibot_rewrite.rewriters.scopes import in_scope, scope_of
 
 HOLE = "\0"
 # Kind and affix of each renamed name in one value, in order; ``at`` counts from the value's start.
@@ -22,14 +25,17 @@ Spelling = tuple[tuple[str, Affix], ...]
 
 def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
     """The names in a claimed value; none where it stands in the scope of another model."""
-    return FORMS[claim.site.form](claim.value, claim.site.kinds, declared)
+    site = claim.site
+    parts = FORMS[site.form](claim.value, site.kinds, declared)
+    return in_scope(claim.element, parts, declared) if site.form == "scoped" else parts
 
 
-def spelled_in(site: Site, value: str, declared: Declared, naming: Naming) -> tuple[Part, ...]:
-    """The names that the naming can reach: a postfix is none where a prefix is asked for."""
-    if site.form == "prefix" and (naming.affix != PREFIX or not (value or takes_empty(site))):
+def spelled_in(claim: Claim, declared: Declared, naming: Naming) -> tuple[Part, ...]:
+    """Those of them that the naming can reach: no postfix is where a prefix is asked for."""
+    site = claim.site
+    if site.form == "prefix" and (naming.affix != PREFIX or not (claim.value or takes_empty(site))):
         return ()
-    return FORMS[site.form](value, site.kinds, declared)
+    return names_in(claim, declared)
 
 
 def takes_empty(site: Site) -> bool:
@@ -39,7 +45,10 @@ def takes_empty(site: Site) -> bool:
 
 def spelling_key(claim: Claim) -> tuple[object, str]:
     """Claims of one key are spelled alike: a link or joint at every site, others at each site."""
-    return claim.site.plain or id(claim.site), claim.value
+    site = claim.site
+    if site.form == "scoped":
+        return (id(site), scope_of(claim.element)), claim.value
+    return site.plain or id(site), claim.value
 
 
 def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
@@ -48,13 +57,24 @@ def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
     if plain and claim.value in declared[plain]:
         there = affix(naming, plain, claim.value)
         return ((plain, there),) if there else ()
-    return spell_value(claim.site, claim.value, claim.site.role, declared, naming)
+    return _spelling(
+        spelled_in(claim, declared, naming), claim.site, claim.site.role, declared, naming
+    )
 
 
-def spell_value(site: Site, value: str, role: str, declared: Declared, naming: Naming) -> Spelling:
-    """The same for a value that stands, or would stand, at a site."""
+def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:
+    """The same for a value that would stand at a site if the file had it."""
+    if site.form == "prefix" and naming.affix != PREFIX:
+        return ()
+    parts = FORMS[site.form](value, site.kinds, declared)
+    return _spelling(parts, site, "uses", declared, naming)
+
+
+def _spelling(
+    parts: Iterable[Part], site: Site, role: str, declared: Declared, naming: Naming
+) -> Spelling:
     result = []
-    for part in spelled_in(site, value, declared, naming):
+    for part in parts:
         kind = kind_of(part, role, declared)
         there = affix(naming, kind, part.text, site.namespaced) if kind else None
         if there is not None:

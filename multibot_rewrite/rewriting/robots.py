@@ -48,7 +48,7 @@ def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, b
     """Kind, name and namespaced of everything the naming spells for a robot."""
     for claim in inventory.claims:
         site = claim.site
-        for part in spelled_in(site, claim.value, inventory.declared, naming):
+        for part in spelled_in(claim, inventory.declared, naming):
             kind = kind_of(part, site.role, inventory.declared)
             if kind and affix(naming, kind, part.text, site.namespaced) is not None:
                 yield kind, part.text, site.namespaced

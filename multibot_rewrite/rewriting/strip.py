@@ -48,7 +48,7 @@ def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> li
     """The parts of the claimed value that an affix put there."""
     site = claim.site
     spans = []
-    for part in spelled_in(site, claim.value, inventory.declared, naming):
+    for part in spelled_in(claim, inventory.declared, naming):
         kind = kind_of(part, site.role, inventory.declared)
         span = removal(naming, robot, kind, part.text, site.namespaced) if kind else None
         if span is not None:
