@@ -94,7 +94,10 @@ UNREADABLE = {
     "two-roots": (robot("") + "<robot/>", ("in.urdf:5:", "Extra content", "mend")),
     "tag-mismatch": (robot('<link name="a">'), ("in.urdf:4:", "link line 3", "mend")),
     "attribute-twice": (robot('<link name="a" name="b"/>'), ("in.urdf:3:", "redefined", "mend")),
-    "mjcf": ('<mujoco model="m">\n<worldbody/>\n</mujoco>', ("in.urdf:1:", "<mujoco>", "<robot> or <sdf>")),
+    "mjcf": (
+        '<mujoco model="m">\n<worldbody/>\n</mujoco>',
+        ("in.urdf:1:", "<mujoco>", "<robot> or <sdf>"),
+    ),
     "other-root": ("<html/>", ("in.urdf:1:", "<html>", "<robot>")),
 }
 

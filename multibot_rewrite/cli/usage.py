@@ -102,7 +102,7 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
 def check_use(options: argparse.Namespace, robots: list[str]) -> None:
     """Raise UsageError for what cannot be meant."""
     if options.input is None:
-        raise UsageError("no input given; for example: urdf-postfix rover.urdf robot1")
+        raise UsageError("no INPUT and no ROBOT given; see urdf-postfix --help")
     if not robots:
         raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
     _check_together(options)
