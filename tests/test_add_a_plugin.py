@@ -112,7 +112,7 @@ def test_the_page_works_as_written(tmp_path: Path, environment: dict[str, str]) 
         else:
             (folder / block.file).parent.mkdir(exist_ok=True)
             (folder / block.file).write_text(block.text)
-    page = (folder / "multibot_rewrite" / "docs" / "vocabulary.md").read_text()
+    page = (folder / "multibot_rewrite" / "docs" / "plugins.md").read_text()
     assert "### plugin acme_winch\n" in page
 
 

@@ -135,7 +135,7 @@ def test_nothing_is_removed_that_was_not_put_there(kind: str, text: str) -> None
         ("subtopic", "image", "image", "image"),
         ("subtopic", "/image", "/image/r1", "/r1/image"),
         ("namespace", "/front", "/front", "/front"),
-        ("link", "", "", ""),
+        ("link", "", "/r1", "r1/"),
     ],
 )
 def test_a_name_under_the_default_layout(kind: str, text: str, postfix: str, prefix: str) -> None:
