@@ -29,6 +29,7 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
         *dangling(inventory, naming),
         *ambiguous(inventory),
         *unknown_plugins(inventory, tree),
+        *unknown_hardware(inventory, tree),
         *hazards(inventory, naming),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
@@ -178,5 +179,25 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
             "MB902",
             WARNING,
             f"plugin {name!r} is not in the vocabulary: its own parameters stay as they are",
+            f"the nearest known one is {near!r}" if near else "",
+        )
+
+
+def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
+    """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is None or rewriter.select != "hardware":
+            continue
+        name = host.element.findtext("hardware/plugin", "").strip()
+        if not name or host.element.find("hardware/param") is None:
+            continue
+        near = nearest(name, tree.vocabulary.names("hardware"))
+        yield finding(
+            inventory.document,
+            host.start,
+            "MB903",
+            WARNING,
+            f"hardware class {name!r} is not in the vocabulary: its own parameters stay as they are",
             f"the nearest known one is {near!r}" if near else "",
         )
