@@ -1,6 +1,6 @@
 """Rewrite a robot description for one robot or many, and prove that nothing was missed."""
 
-from multibot_rewrite.library import Rewrite, rewrite, rewrite_all, strip
+from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
 from multibot_rewrite.model import (
     Change,
     Finding,
@@ -24,6 +24,7 @@ __all__ = [
     "RewriteRefused",
     "UsageError",
     "VocabularyError",
+    "explain",
     "rewrite",
     "rewrite_all",
     "strip",

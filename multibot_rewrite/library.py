@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.model import Change, Finding, InputError, UsageError, VocabularyError
+from multibot_rewrite.model import Change, Finding, UsageError, VocabularyError
 from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
+from multibot_rewrite.sources import Source, args_for, read_source
 from multibot_rewrite.vocabulary import advice, load_vocabulary
 
 if TYPE_CHECKING:
     from multibot_rewrite.rewriting.explain import Explanation
-
-Source = str | bytes | os.PathLike[str]
 
 
 class Rewrite(NamedTuple):
@@ -88,8 +86,8 @@ def rewrite_all(
     _check_robots(robots)
     tree = builtin_tree(tuple(vocabulary))
     args = xacro_args or {}
-    data, name = read_source(source, _args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, _args_for(urdf, source, args))
+    data, name = read_source(source, args_for(source, urdf, args))
+    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
     outside = pipeline.prepare(*beside, naming, tree).inventory.declared if beside else {}
     template = pipeline.prepare(data, file or name, naming, tree, outside)
     texts = pipeline.render(template, robots, again)
@@ -117,8 +115,8 @@ def explain(
     check_robot_name(robot)
     tree = builtin_tree(tuple(vocabulary))
     args = xacro_args or {}
-    data, name = read_source(source, _args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, _args_for(urdf, source, args))
+    data, name = read_source(source, args_for(source, urdf, args))
+    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
     outside = pipeline.declarations(*beside, tree) if beside else {}
     return pipeline.explain(data, file or name, naming, tree, outside, robot, line)
 
@@ -145,48 +143,6 @@ def strip(
     tree = builtin_tree(tuple(vocabulary))
     outside = {} if urdf is None else pipeline.declarations(*read_source(urdf, {}), tree)
     return pipeline.strip(data, file or name, robot, chosen, tree, outside)
-
-
-def _args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:
-    """The xacro arguments for ``source``: they are for a URDF, its SRDF, or both."""
-    return {} if other is not None and _is_xacro(other) and not _is_xacro(source) else args
-
-
-def _is_xacro(source: Source) -> bool:
-    return not isinstance(source, bytes) and os.fspath(source).endswith(".xacro")
-
-
-def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, str]:
-    """The bytes of a source and the name for messages."""
-    if isinstance(source, bytes):
-        return source, "<bytes>"
-    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _encoded(source), "<text>"
-    path = os.fspath(source)
-    if path.endswith(".xacro"):
-        from multibot_rewrite.xacro_source import expand
-
-        return expand(path, xacro_args), f"{path} (expanded)"
-    if xacro_args:
-        raise UsageError(f"{path}: xacro arguments given, but the file is not named ….xacro")
-    return read_file(path), path
-
-
-def _encoded(text: str) -> bytes:
-    try:
-        return text.encode()
-    except UnicodeEncodeError as error:
-        raise InputError(f"<text>: character {error.start + 1} is half of one: {error}") from None
-
-
-def read_file(path: str) -> bytes:
-    """The bytes of a file; raises InputError with the reason."""
-    try:
-        with open(path, "rb") as file:
-            return file.read()
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", "") or error
-        raise InputError(f"{path}: cannot be read: {reason}") from None
 
 
 def _check_robots(robots: Sequence[str]) -> None:

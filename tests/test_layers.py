@@ -26,6 +26,7 @@ FLOORS = (
     ("rewriters",),
     ("rewriting", "companions"),
     ("xacro_source", "config"),
+    ("sources",),
     ("library",),
     ("remap",),
     ("graph", "lint", "fleet"),

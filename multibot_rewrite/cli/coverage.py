@@ -13,7 +13,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED, UNUSABLE
 from multibot_rewrite.cli.tables import Grid, clip, json_bytes, print_report
 from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import builtin_tree, read_file, read_source
+from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.collect import collect
@@ -32,6 +32,7 @@ from multibot_rewrite.rewriting.survey import (
     share,
     survey,
 )
+from multibot_rewrite.sources import read_file, read_source
 
 ABOUT = "how much of a set of descriptions is known, and what is not"
 SUFFIXES = (".urdf", ".sdf")

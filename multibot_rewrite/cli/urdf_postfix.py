@@ -12,8 +12,9 @@ from multibot_rewrite.cli.output import changes_json, deliver, print_findings, s
 from multibot_rewrite.cli.process import DONE, STOPPED, guarded
 from multibot_rewrite.cli.usage import check_use, input_name, parser, policy, xacro_args
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import Rewrite, Source, read_source, rewrite_all, strip
+from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.model import InputError
+from multibot_rewrite.sources import Source, read_source
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
