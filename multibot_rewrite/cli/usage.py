@@ -101,6 +101,8 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
 
 def check_use(options: argparse.Namespace, robots: list[str]) -> None:
     """Raise UsageError for what cannot be meant."""
+    if options.input == "":
+        raise UsageError("the name of the input is empty")
     if options.input is None:
         raise UsageError("no INPUT and no ROBOT given; see urdf-postfix --help")
     if not robots:

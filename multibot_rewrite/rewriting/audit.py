@@ -120,17 +120,23 @@ def _dangling(inventory: Inventory, claim: Claim, name: str, kinds: tuple[str, .
     words = " or ".join(kinds)
     known = [known for kind in kinds for known in inventory.declared.get(kind, ())]
     near = nearest(name, known)
-    where = (
-        f"{claim.element.tag}@{claim.attribute}" if claim.attribute else f"<{claim.element.tag}>"
-    )
     return finding(
         inventory.document,
         claim.start,
         "MB202",
         WARNING,
-        f"{where} names the {words} {name!r}, which is not declared: it stays as it is",
+        f"{_where(claim)} names the {words} {name!r}, which is not declared: it stays as it is",
         f"did you mean {near!r}?" if near else "",
     )
+
+
+def _where(claim: Claim) -> str:
+    """``<tag>`` or ``tag@attribute``; all parameters have one tag, so theirs has the name in it."""
+    tag = str(claim.element.tag)
+    if claim.attribute:
+        return f"{tag}@{claim.attribute}"
+    name = claim.element.get("name") if tag == "param" else None
+    return f'<{tag} name="{name}">' if name else f"<{tag}>"
 
 
 def nearest(name: str, known: Collection[str]) -> str:
