@@ -238,7 +238,10 @@ def plugin_keys(element: _Element) -> list[str]:
     """
     library = element.get("filename", "").strip().rpartition("/")[2]
     class_ = element.get("name", "").strip()
-    known = [library_key(library), class_.replace("ignition::gazebo::", "gz::sim::")]
+    known = [library_key(library)]
+    # Without a scope it is a label, in Gazebo Classic a node name: anything at all.
+    if "::" in class_:
+        known.append(class_.replace("ignition::gazebo::", "gz::sim::"))
     return known if element.find("ros") is None else [*known, ANY_WITH_ROS]
 
 
