@@ -88,8 +88,8 @@ class Slot(NamedTuple):
 
 
 def spelled(name: str, separator: str, options: Options, robot: str) -> str:
-    """A link's or joint's name as the options ask for; SDF keywords like ``__model__`` stay."""
-    if options.get("layout") in BARE_LAYOUTS or re.fullmatch("__.*__", name):
+    """A declared link's or joint's name as the options ask for."""
+    if options.get("layout") in BARE_LAYOUTS:
         return name
     if options.get("affix", "postfix") == "postfix":
         return f"{name}{separator}{robot}"
