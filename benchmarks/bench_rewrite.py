@@ -41,7 +41,7 @@ NOTE = """
   hundreds of names. They take about 1.2. A loop that merges the steps measured no faster.
 - **The command.** Importing lxml and our modules is 1.3 of importing lxml; the rewrite and its proof
   are the rest.
-- **A further robot at 2 MB** is one `bytes.join` of some 20,000 pieces; at 75 kB it is below its goal.
+- **A further robot at 2 MB** is one `bytes.join` of some 20,000 pieces; at 75 kB it is about its goal.
 
 The proof reads, walks and strips the output anew, so it costs more than the rewrite. It is not
 optional.
