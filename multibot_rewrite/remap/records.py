@@ -1,0 +1,97 @@
+"""Frozen records of the remap table: what nodes ask for, the rules they get, where names lead."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+TOPIC, SERVICE, ACTION = "topic", "service", "action"
+KINDS = (TOPIC, SERVICE, ACTION)
+PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
+ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
+
+
+class Endpoint(NamedTuple):
+    """A topic, service or action as a node's code asks for it, before any rule.
+
+    ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic,
+    which brings its image_transport siblings. ``fixed`` says why no rule reaches it; else empty.
+    ``parameter`` is the node parameter that sets the name, if one does.
+    """
+
+    kind: str
+    role: str
+    name: str
+    type: str = ""
+    transport: bool = False
+    parameter: str = ""
+    fixed: str = ""
+    note: str = ""
+
+
+class NodeFacts(NamedTuple):
+    """What is known of a node: its default name, its package, and what it asks for.
+
+    ``shared`` tells that one node serves all robots (a bridge, RViz, a clock).
+    """
+
+    name: str
+    package: str
+    endpoints: tuple[Endpoint, ...]
+    shared: bool = False
+    note: str = ""
+
+
+class Rule(NamedTuple):
+    """One remap rule of one robot's node, as rcl takes it: ``source:=target``.
+
+    ``node`` is the node's name before the rules; ``why`` says what would go wrong without it.
+    """
+
+    robot: str
+    node: str
+    source: str
+    target: str
+    kind: str
+    why: str
+
+
+class Name(NamedTuple):
+    """Where an endpoint of a robot's node leads once the rules are in force.
+
+    ``node`` and ``name`` are fully qualified.
+    """
+
+    robot: str
+    node: str
+    endpoint: Endpoint
+    name: str
+
+
+class Problem(NamedTuple):
+    """What a table cannot do or does wrongly; an error means two robots would meet."""
+
+    code: str
+    level: str
+    robot: str
+    node: str
+    message: str
+    hint: str
+
+
+class NodeTable(NamedTuple):
+    """One node of one robot: its namespace and name, and its rules in the order they are given."""
+
+    robot: str
+    node: str
+    namespace: str
+    name: str
+    rules: tuple[Rule, ...]
+
+
+class Table(NamedTuple):
+    """The table of a fleet."""
+
+    layout: str
+    nodes: tuple[NodeTable, ...]
+    names: tuple[Name, ...]
+    problems: tuple[Problem, ...]
