@@ -14,6 +14,7 @@ from multibot_rewrite.rosnames import (
     expand,
     parse_remap,
     propose_token,
+    split_remap,
 )
 
 
@@ -99,10 +100,13 @@ def test_anything_else_is_no_rule(text: str) -> None:
 
 @pytest.mark.parametrize(
     "text",
-    ["a:=b", "n:a:=b", "n:rosservice://~/a:=/b/c", "rostopic:///a:=rostopic://b", "__ns:=/x"],
-)
+    [
+        "a:=b", "n:a:=b", "n:rosservice://~/a:=/b/c", "rostopic:///a:=rostopic://b", "__ns:=/x",
+        "${robot}a:=$(arg b)/c",
+    ],
+)  # fmt: skip
 def test_every_part_stands_where_the_rule_says(text: str) -> None:
-    rule = parse_remap(text)
+    rule = split_remap(text)
     assert rule is not None
     for part, at in (
         (rule.node, 0),

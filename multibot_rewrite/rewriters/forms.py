@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.model import Claim
-from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.rosnames import split_remap
 
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
@@ -192,7 +192,7 @@ def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
 def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
     """``[node:]from:=to``: ``from`` is the consumer's own word, ``to`` is the name in the graph."""
     lead = len(value) - len(value.lstrip())
-    rule = parse_remap(value.strip())
+    rule = split_remap(value.strip())
     if rule is None:
         return ()
     parts = [Part(lead, rule.node, ("node",))] if rule.node else []

@@ -10,7 +10,7 @@ from lxml import etree
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_default
-from multibot_rewrite.rosnames import expand, parse_remap
+from multibot_rewrite.rosnames import expand, split_remap
 from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
 
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
@@ -123,7 +123,7 @@ def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterato
     texts = (
         [] if home is None else [e.text or "" for e in home.iterchildren("remapping", "argument")]
     )
-    rules = [parse_remap(text.strip()) for text in texts]
+    rules = [split_remap(text.strip()) for text in texts]
     namespace = "" if home is None else (home.findtext("namespace") or "").strip()
     node = host.get("name", "")
     taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}

@@ -18,7 +18,7 @@ from multibot_rewrite.naming import (
 from multibot_rewrite.rewriters.spelling import spell
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import finding
-from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.vocabulary import Rewriter
 
 
@@ -68,7 +68,7 @@ def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
 def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
     """A rule of the file that takes a plugin off the one /tf which the layout wants."""
     for claim in inventory.claims if not naming.layout.tf_per_robot else ():
-        rule = parse_remap(claim.value) if claim.site.form == "remap" else None
+        rule = split_remap(claim.value) if claim.site.form == "remap" else None
         if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
             message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
             hint = "drop the rule, or use --layout both"
@@ -104,7 +104,7 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
         return
     inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.rewriter)}
     for claim in inventory.claims if inside else ():
-        rule = parse_remap(claim.value) if claim.site.form in ("remap", "argument") else None
+        rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
         if rule is None or inside.isdisjoint(claim.element.iterancestors()):
             continue
         if rule.target.startswith("/"):

@@ -13,7 +13,7 @@ from multibot_rewrite.rewriting.collect import Host, Inventory
 from multibot_rewrite.rewriting.paths import short_name
 from multibot_rewrite.rewriting.pipeline import MENTIONED
 from multibot_rewrite.rewriting.survey import loaded_by
-from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.vocabulary.grammar import read_header, read_section, split_path, split_step
 
 if TYPE_CHECKING:
@@ -196,7 +196,7 @@ def _guess(value: str, word: str, declared: Declared) -> Guess | None:
 
 def _by_value(value: str, declared: Declared) -> Guess | None:
     """What a value says by holding a declared name, or by being a remap rule."""
-    if parse_remap(value) is not None:
+    if split_remap(value) is not None:
         return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
