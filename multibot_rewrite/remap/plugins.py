@@ -1,0 +1,72 @@
+"""The nodes that a rewritten description starts by itself: its plugins, with the rules it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml import etree
+
+from multibot_rewrite.model import Claim
+from multibot_rewrite.naming import TOPIC_KINDS
+from multibot_rewrite.remap.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+    NodeFacts,
+    NodeTable,
+    Rule,
+)
+from multibot_rewrite.rewriting.collect import Host, Inventory
+from multibot_rewrite.rosnames import parse_remap
+
+ROS_NODE = "ros/remapping"
+
+
+def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
+    """Each ROS 2 plugin of ``robot``'s rewritten description: what it asks for, what it is told."""
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is None or all(site.path != ROS_NODE for site in rewriter.sites):
+            continue
+        name = host.element.get("name", "").strip()
+        facts = NodeFacts(name, rewriter.names[0], tuple(_endpoints(inventory, host)))
+        namespace = "/" + _told(host.element, "namespace").strip("/")
+        yield facts, NodeTable(robot, name, namespace, name, tuple(_rules(host, robot, name)))
+
+
+def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
+    """Hard-wired names of the plugin's code, and those that its parameters set."""
+    rewriter = host.node.rewriter
+    assert rewriter is not None
+    wired = (
+        (PUBLISHES, TOPIC, rewriter.publishes),
+        (SUBSCRIBES, TOPIC, rewriter.subscribes),
+        (SERVES, SERVICE, rewriter.serves),
+    )
+    for role, kind, names in wired:
+        yield from (Endpoint(kind, role, name) for name in names)
+    for claim in inventory.claims:
+        if _sets_topic(claim) and host.element in claim.element.iterancestors():
+            kind = SERVICE if claim.site.kinds[0] == SERVICE else TOPIC
+            yield Endpoint(kind, "", claim.value, parameter=claim.site.path)
+
+
+def _sets_topic(claim: Claim) -> bool:
+    site = claim.site
+    return site.form == "whole" and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
+
+
+def _rules(host: Host, robot: str, node: str) -> Iterator[Rule]:
+    for element in (host.element.find("ros"), host.element):
+        for remapping in element.iterchildren("remapping") if element is not None else ():
+            rule = parse_remap((remapping.text or "").strip())
+            if rule is not None:
+                why = f"in the description, line {remapping.sourceline}"
+                yield Rule(robot, node, rule.source, rule.target, TOPIC, why)
+
+
+def _told(element: etree._Element, tag: str) -> str:
+    return (element.findtext(f"ros/{tag}") or element.findtext(tag) or "").strip()

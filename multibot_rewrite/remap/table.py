@@ -1,0 +1,182 @@
+"""Robots, nodes and a naming policy -> the rules each node needs, and where its names then lead.
+
+A rule is made only where a name would otherwise be the same for every robot. What comes out is
+checked by resolving every name with the rules as rcl does (``rosnames``), not by trusting them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.model import ERROR, WARNING
+from multibot_rewrite.naming import NAMESPACE, Naming, affix
+from multibot_rewrite.remap.records import (
+    ACTION,
+    SERVICE,
+    TOPIC,
+    Endpoint,
+    Name,
+    NodeFacts,
+    NodeTable,
+    Problem,
+    Rule,
+    Table,
+)
+from multibot_rewrite.rosnames import RemapRule, parse_remap, resolve_name
+
+# What an action is made of (rcl_action names.c): three services and two topics.
+ACTION_PARTS = (
+    ("_action/send_goal", SERVICE),
+    ("_action/cancel_goal", SERVICE),
+    ("_action/get_result", SERVICE),
+    ("_action/feedback", TOPIC),
+    ("_action/status", TOPIC),
+)
+# Topics that image_transport's plugins make of a base name.
+TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
+# Stands for a robot that is not there: one robot alone meets nobody.
+PROBE = "multibot_probe"
+SAME = "the same name for every robot otherwise"
+Pairs = Sequence[tuple[NodeFacts, NodeTable]]
+NOTHING: Mapping[str, Pairs] = {}
+
+
+def build_table(
+    robots: Sequence[str],
+    nodes: Sequence[NodeFacts],
+    naming: Naming,
+    plugins: Mapping[str, Pairs] = NOTHING,
+) -> Table:
+    """The table of a fleet, nodes for all robots once, and everything that is wrong with it.
+
+    ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
+    """
+    shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
+    own = [node for node in nodes if not node.shared]
+    fleet: dict[str, Pairs] = {
+        robot: [*((n, node_table(robot, n, naming)) for n in own), *plugins.get(robot, ())]
+        for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
+    }
+    names = {robot: list(_names(pairs)) for robot, pairs in fleet.items()}
+    problems = [*_fixed(robots, own, naming), *_meeting(names, naming)]
+    problems += [found for robot in robots for found in _useless(fleet[robot])]
+    pairs = [*shared, *(pair for robot in robots for pair in fleet[robot])]
+    kept = [*_names(shared), *(name for robot in robots for name in names[robot])]
+    tables = tuple(table for _, table in pairs)
+    return Table(naming.layout.name, tables, tuple(kept), tuple(problems))
+
+
+def node_table(robot: str, node: NodeFacts, naming: Naming) -> NodeTable:
+    """Namespace, name and rules of one robot's node; a node for all robots stays as it is."""
+    if node.shared:
+        return NodeTable("", node.name, "/", node.name, ())
+    namespace, name = placed(robot, node.name, naming)
+    # Below a namespace of its own a relative target would not leave it.
+    root = f"/{robot}/" if namespace.count("/") > 1 else ""
+    rules: dict[tuple[str, str], Rule] = {}
+    for endpoint in node.endpoints:
+        for kind, source in expanded(endpoint):
+            target = target_of(source, kind, robot, naming)
+            if target and not endpoint.fixed:
+                target = f"{root}{target}" if naming.topics == NAMESPACE else target
+                rule = Rule(robot, node.name, source, target, kind, SAME)
+                rules.setdefault((kind, source), rule)
+    return NodeTable(robot, node.name, namespace, name, tuple(rules.values()))
+
+
+def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
+    """Namespace and name that a robot's node runs under."""
+    # A costmap is a node below its own namespace, whatever robot it is of.
+    above, _, name = node.strip("/").rpartition("/")
+    if naming.topics == NAMESPACE:
+        return "/" + "/".join(filter(None, [robot, above])), name
+    there = affix(naming, "node", name)
+    return f"/{above}", there.spell(name, robot) if there else name
+
+
+def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
+    """The graph names an endpoint is made of, each with its kind: rcl knows no actions."""
+    name = endpoint.name
+    if endpoint.kind != ACTION:
+        yield endpoint.kind, name
+    else:
+        yield TOPIC, name
+        yield from ((kind, f"{name}/{part}") for part, kind in ACTION_PARTS)
+    if endpoint.transport:
+        yield from ((TOPIC, f"{name}/{transport}") for transport in TRANSPORTS)
+
+
+def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
+    """What a rule makes of ``name``; empty where none is needed.
+
+    Targets are relative where a namespace serves: the rule is then the same for every robot.
+    """
+    bare = name.strip("/")
+    if name.startswith("~") or bare in naming.shared_topics:
+        return ""
+    if naming.topics == NAMESPACE:
+        return bare if name.startswith("/") else ""
+    there = affix(naming, "service" if kind == SERVICE else TOPIC, name)
+    return there.spell(name, robot) if there else ""
+
+
+def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
+    """The rules as rcl reads them."""
+    found = (parse_remap(f"{rule.source}:={rule.target}") for rule in rules)
+    return tuple(rule for rule in found if rule is not None)
+
+
+def _names(pairs: Pairs) -> Iterator[Name]:
+    for node, table in pairs:
+        rules = parsed(table.rules)
+        root = table.namespace.rstrip("/")
+        for endpoint in node.endpoints:
+            kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
+            given = () if endpoint.fixed else rules
+            found = resolve_name(endpoint.name, kind, table.name, table.namespace, given)
+            yield Name(table.robot, f"{root}/{table.name}", endpoint, found)
+
+
+def _fixed(robots: Sequence[str], nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
+    """Names that need a rule which would do nothing."""
+    for node in nodes:
+        for endpoint in node.endpoints:
+            needed = target_of(endpoint.name, endpoint.kind, PROBE, naming)
+            if endpoint.fixed and needed:
+                message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {endpoint.fixed}"
+                hint = f"set its parameter {endpoint.parameter}" if endpoint.parameter else ""
+                for robot in robots:
+                    yield Problem("MR101", WARNING, robot, node.name, message, hint)
+
+
+def _meeting(names: dict[str, list[Name]], naming: Naming) -> Iterator[Problem]:
+    """Names of two robots that come out alike without being shared."""
+    first: dict[tuple[str, str], Name] = {}
+    for name in (name for found in names.values() for name in found):
+        kind = SERVICE if name.endpoint.kind == SERVICE else TOPIC
+        if not name.robot or name.name.strip("/") in naming.shared_topics or name.endpoint.fixed:
+            continue
+        other = first.setdefault((kind, name.name), name)
+        if other.robot != name.robot:
+            message = f"{name.name} is {other.robot}'s as well, by {other.node}"
+            hint = "give one of them another name"
+            yield Problem("MR102", ERROR, other.robot, name.node, message, hint)
+
+
+def _useless(pairs: Pairs) -> Iterator[Problem]:
+    """Rules that match nothing their node asks for, and rules behind one that matches first."""
+    for node, table in pairs:
+        asked = {pair for endpoint in node.endpoints for pair in expanded(endpoint)}
+        full = {(k, resolve_name(n, k, table.name, table.namespace, ())) for k, n in asked}
+        seen: set[tuple[str, str]] = set()
+        for rule in table.rules:
+            match = resolve_name(rule.source, rule.kind, table.name, table.namespace, ())
+            if (rule.kind, match) in seen:
+                message = (
+                    f"{rule.source}:={rule.target} never counts: an earlier rule matches first"
+                )
+                yield Problem("MR104", ERROR, table.robot, node.name, message, "leave it out")
+            elif (rule.kind, match) not in full:
+                message = f"{rule.source}:={rule.target} matches nothing this node asks for"
+                yield Problem("MR103", WARNING, table.robot, node.name, message, "leave it out")
+            seen.add((rule.kind, match))
