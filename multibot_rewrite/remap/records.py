@@ -16,6 +16,11 @@ class Endpoint(NamedTuple):
     ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic,
     which brings its image_transport siblings. ``fixed`` says why no rule reaches it; else empty.
     ``parameter`` is the node parameter that sets the name, if one does.
+    ``also`` are other types it has, by parameter or release. ``when`` is the condition under which
+    it is there, empty for always. ``helper`` tells that a helper node with a name of its own asks
+    for it, in the same process: a rule for the whole process reaches it, one for this node does
+    not. ``remapped`` is what the stack's usual launch file makes of the name by a rule of its own:
+    a table's rule has to lead there, since only the first match counts.
     """
 
     kind: str
@@ -26,12 +31,26 @@ class Endpoint(NamedTuple):
     parameter: str = ""
     fixed: str = ""
     note: str = ""
+    also: tuple[str, ...] = ()
+    when: str = ""
+    helper: bool = False
+    remapped: str = ""
+
+
+class Frame(NamedTuple):
+    """A parameter that holds a frame id, which no remap rule reaches, and its default."""
+
+    parameter: str
+    default: str
 
 
 class NodeFacts(NamedTuple):
     """What is known of a node: its default name, its package, and what it asks for.
 
-    ``shared`` tells that one node serves all robots (a bridge, RViz, a clock).
+    A name with slashes is a node in a namespace of its own below the robot's, as costmaps are.
+    ``shared`` tells that one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
+    whose process it always runs in. ``when`` is the condition under which it is started, empty for
+    always. ``frames`` and ``fixed`` are what no rule reaches beside the endpoints.
     """
 
     name: str
@@ -39,6 +58,10 @@ class NodeFacts(NamedTuple):
     endpoints: tuple[Endpoint, ...]
     shared: bool = False
     note: str = ""
+    host: str = ""
+    when: str = ""
+    frames: tuple[Frame, ...] = ()
+    fixed: tuple[str, ...] = ()
 
 
 class Rule(NamedTuple):
