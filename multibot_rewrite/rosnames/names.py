@@ -22,6 +22,7 @@ _LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_")
 _TOKEN = _LETTERS | _DIGITS
 # Nearly every name there is; what does not match is looked at letter by letter.
 _PLAIN = re.compile(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+_FULL = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 _SUBSTITUTION = re.compile(r"\{(node|ns|namespace)\}")
 
 
@@ -45,31 +46,24 @@ def check_topic_name(name: str) -> Fault | None:
 
 def check_full_name(name: str) -> Fault | None:
     """What is wrong with a fully qualified topic or service name."""
-    if len(name) > MAX_TOPIC:
-        return _full_form(name) or _too_long(name, MAX_TOPIC)
-    return _full_form(name)
+    return _full_form(name) or _too_long(name, MAX_TOPIC)
 
 
 def check_namespace(namespace: str) -> Fault | None:
     """What is wrong with a node's namespace: absolute, ``/`` alone or without a slash at its end."""
     if namespace == "/":
         return None
-    fault = _full_form(namespace)
-    if fault is None and len(namespace) > MAX_NAMESPACE:
-        return _too_long(namespace, MAX_NAMESPACE)
-    return fault
+    return _full_form(namespace) or _too_long(namespace, MAX_NAMESPACE)
 
 
 def check_node_name(name: str) -> Fault | None:
     """What is wrong with a node's name: one token of at most 255 characters."""
+    if name.isascii() and name.isidentifier():
+        return _too_long(name, MAX_NODE)
     if not name:
         return Fault("it is empty", 0)
     fault = _letters(name, _TOKEN, "a letter, a digit or an underscore")
-    if fault is None and name[0] in _DIGITS:
-        fault = _digit_first(name, 0)
-    if fault is None and len(name) > MAX_NODE:
-        fault = _too_long(name, MAX_NODE)
-    return fault
+    return fault or _digit_first(name, 0)
 
 
 def _ends(name: str) -> Fault | None:
@@ -119,6 +113,8 @@ def _digits_after_slashes(name: str) -> Fault | None:
 
 def _full_form(name: str) -> Fault | None:
     """All that is asked of a fully qualified name but its length."""
+    if _FULL.fullmatch(name):
+        return None
     if not name:
         return Fault("it is empty", 0)
     if name[0] != "/":
@@ -158,7 +154,9 @@ def _slash_last(name: str) -> Fault:
     return _at(name, len(name) - 1, "is a slash at the end")
 
 
-def _too_long(name: str, limit: int) -> Fault:
+def _too_long(name: str, limit: int) -> Fault | None:
+    if len(name) <= limit:
+        return None
     # rcl points at the last character that is allowed.
     return Fault(f"it has {len(name)} characters, ROS 2 allows {limit}", limit - 1)
 
@@ -169,12 +167,12 @@ def expand(name: str, namespace: str, node: str) -> str:
     ``{node}``, ``{ns}`` and ``{namespace}`` are filled in, other substitutions stay: rcl knows no
     other. The namespace may lack its leading slash. Nothing is checked here.
     """
-    namespace = "/" + namespace.strip("/")
-    root = namespace.rstrip("/")
+    bare = namespace.strip("/")
+    root = f"/{bare}" if bare else ""
     if name.startswith("~"):
         name = f"{root}/{node}{name[1:]}"
     if "{" in name:
-        words = {"node": node, "ns": namespace, "namespace": namespace}
+        words = {"node": node, "ns": root or "/", "namespace": root or "/"}
         name = _SUBSTITUTION.sub(lambda found: words[found[1]], name)
     return name if name.startswith("/") else f"{root}/{name}"
 

@@ -28,12 +28,15 @@ _TOKEN = re.compile(r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*")
 # Braces are not in the lexer's alphabet: a rule cannot hold {node} or {ns}.
 _PATH = re.compile(rf"(?:~?/)?{_TOKEN.pattern}(?:/{_TOKEN.pattern})*")
 _NAMESPACE = re.compile(rf"/(?:{_TOKEN.pattern}(?:/{_TOKEN.pattern})*/?)?")
+_FORMS = {_PATH: "a name", _TOKEN: "a node's name", _NAMESPACE: "a namespace that starts with '/'"}
 _HINTS = {
     "*": "a wildcard, which rcl does not have",
     "\\": "a back reference, which rcl does not have",
     "{": "a substitution, which no rule can hold",
-    "__": "a second underscore in a row, which no rule can hold",
-    "~": "a '~' without a slash and a name",
+    "__": "two underscores in a row, which no rule can hold",
+    "~": "a '~', which must lead and have a slash and a name after it",
+    "/": "a slash out of place",
+    ":=": "':='",
     "rostopic://": "a scheme, which only the left side can have",
     "rosservice://": "a scheme, which only the left side can have",
 }
@@ -99,19 +102,19 @@ def _sides(
     start, end = source
     if not text.startswith(":=", end):
         return _refused(text, end, "':='")
-    target = form.match(text, end + 2)
+    target = None if text.startswith(SCHEMES, end + 2) else form.match(text, end + 2)
     if target is None:
-        absolute = "an absolute namespace" if form is _NAMESPACE else "a name"
-        return _refused(text, end + 2, absolute)
+        return _refused(text, end + 2, _FORMS[form])
     if target.end() != len(text):
-        return _refused(text, target.end(), "nothing more")
+        return _refused(text, target.end(), "the end")
     return RemapRule(node, text[start:end], target[0], start, end + 2, scheme)
 
 
 def _refused(text: str, at: int, wanted: str) -> Fault:
     found = next((hint for key, hint in _HINTS.items() if text.startswith(key, at)), "")
-    there = f"character {at + 1}, {text[at]!r}" if at < len(text) else "the end"
-    return Fault(f"{there}: expected {wanted}" + (f", found {found}" if found else ""), at)
+    if not found:
+        found = repr(text[at]) if at < len(text) else "the end"
+    return Fault(f"character {at + 1}: expected {wanted}, found {found}", at)
 
 
 def split_remap(text: str) -> RemapRule | None:
@@ -196,6 +199,11 @@ def resolve_bound(name: str, kind: str, bound: BoundNode) -> str:
     """
     _demand(f"{kind} name", name, check_topic_name(name))
     full = expand(name, bound.namespace, bound.node)
+    if "{" in full:
+        unknown = full[full.index("{") : full.index("}") + 1]
+        raise UsageError(
+            f"{kind} name {name!r}: {unknown} is not known, use {{node}}, {{ns}} or {{namespace}}"
+        )
     full = (bound.services if kind == "service" else bound.topics).get(full, full)
     _demand(f"{kind} name", full, check_full_name(full))
     return full
