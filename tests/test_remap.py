@@ -185,10 +185,24 @@ def test_robots_meet_in_shared_names_only(layout: str, affix: str) -> None:
 def test_what_no_rule_reaches_is_said_and_gets_no_rule() -> None:
     found = table("L2", (STUBBORN,))
     assert rules(found, "robot1", "stubborn") == {}
-    assert [(p.code, p.robot, p.hint) for p in found.problems] == [
-        ("MR101", "robot1", "set its parameter topic"),
-        ("MR101", "robot2", "set its parameter topic"),
+    assert [(p.code, p.node, p.hint) for p in found.problems] == [
+        ("MR101", "stubborn", "set its parameter topic")
     ]
+
+
+def test_a_name_made_at_run_time_follows_a_namespace_and_nothing_else() -> None:
+    maker = NodeFacts("maker", "maker", (Endpoint(TOPIC, PUBLISHES, "<camera>/image"),))
+    assert table("L2", (maker,)).problems == ()
+    assert [problem.code for problem in table("L4", (maker,)).problems] == ["MR101"]
+
+
+def test_what_the_stack_renames_itself_is_led_where_the_stack_wants_it() -> None:
+    endpoint = Endpoint(TOPIC, PUBLISHES, "cmd_vel", remapped="cmd_vel_nav")
+    nodes = (NodeFacts("controller_server", "nav2_controller", (endpoint,)),)
+    wanted = {"L2": "/robot1/cmd_vel_nav", "L4": "/cmd_vel_nav/robot1"}
+    for layout, name in wanted.items():
+        found = leads(table(layout, nodes), "robot1", "")
+        assert found == {"cmd_vel": name}
 
 
 def plugin(*given: tuple[str, str]) -> dict[str, list[tuple[NodeFacts, NodeTable]]]:

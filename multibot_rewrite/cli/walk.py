@@ -50,8 +50,8 @@ def _refuse(error: OSError) -> NoReturn:
     raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
 
 
-def check_target(target: str, inputs: Iterable[str]) -> None:
+def check_target(target: str, inputs: Iterable[str], option: str = "--json") -> None:
     """Raise UsageError where writing ``target`` would replace one of the files that are read."""
     real = os.path.realpath(target)
     if any(os.path.realpath(path) == real for path in inputs):
-        raise UsageError(f"{target} is a file that is read; choose another one for --json")
+        raise UsageError(f"{target} is a file that is read; choose another one for {option}")

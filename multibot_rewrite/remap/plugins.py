@@ -21,6 +21,7 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.rewriting.collect import Host, Inventory
 from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.vocabulary import Rewriter
 
 ROS_NODE = "ros/remapping"
 
@@ -31,10 +32,22 @@ def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, 
         rewriter = host.node.rewriter
         if rewriter is None or all(site.path != ROS_NODE for site in rewriter.sites):
             continue
-        name = host.element.get("name", "").strip()
-        facts = NodeFacts(name, rewriter.names[0], tuple(_endpoints(inventory, host)))
+        name = _node_name(host.element, rewriter)
+        rules = tuple(_rules(host, robot, name))
+        # The vocabulary does not list what a plugin publishes below its own name; the file does.
+        private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
+        facts = NodeFacts(name, rewriter.names[0], (*_endpoints(inventory, host), *private))
         namespace = "/" + _told(host.element, "namespace").strip("/")
-        yield facts, NodeTable(robot, name, namespace, name, tuple(_rules(host, robot, name)))
+        yield facts, NodeTable(robot, name, namespace, name, rules)
+
+
+def _node_name(plugin: etree._Element, rewriter: Rewriter) -> str:
+    """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
+    sites = [site for site in rewriter.sites if site.kinds[:1] == ("node",) and site.default]
+    if any(site.path == "@name" for site in rewriter.sites if site.role == "declares"):
+        return plugin.get("name", "").strip()
+    named = (plugin.findtext(site.path, "").strip() or site.default for site in sites)
+    return next(named, "") or rewriter.names[0].replace("-", "_")
 
 
 def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
@@ -65,7 +78,7 @@ def _rules(host: Host, robot: str, node: str) -> Iterator[Rule]:
             rule = parse_remap((remapping.text or "").strip())
             if rule is not None:
                 why = f"in the description, line {remapping.sourceline}"
-                yield Rule(robot, node, rule.source, rule.target, TOPIC, why)
+                yield Rule(robot, node, rule.source, rule.target, "", why)
 
 
 def _told(element: etree._Element, tag: str) -> str:

@@ -22,7 +22,7 @@ from multibot_rewrite.remap.records import (
     Rule,
     Table,
 )
-from multibot_rewrite.rosnames import RemapRule, parse_remap, resolve_name
+from multibot_rewrite.rosnames import RemapRule, bind, parse_remap, resolve_bound
 
 # What an action is made of (rcl_action names.c): three services and two topics.
 ACTION_PARTS = (
@@ -36,6 +36,7 @@ ACTION_PARTS = (
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 # Stands for a robot that is not there: one robot alone meets nobody.
 PROBE = "multibot_probe"
+RUN_TIME = "the name is made at run time"
 SAME = "the same name for every robot otherwise"
 Pairs = Sequence[tuple[NodeFacts, NodeTable]]
 NOTHING: Mapping[str, Pairs] = {}
@@ -58,7 +59,7 @@ def build_table(
         for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
     }
     names = {robot: list(_names(pairs)) for robot, pairs in fleet.items()}
-    problems = [*_fixed(robots, own, naming), *_meeting(names, naming)]
+    problems = [*_fixed(own, naming), *_meeting(names, naming)]
     problems += [found for robot in robots for found in _useless(fleet[robot])]
     pairs = [*shared, *(pair for robot in robots for pair in fleet[robot])]
     kept = [*_names(shared), *(name for robot in robots for name in names[robot])]
@@ -74,13 +75,15 @@ def node_table(robot: str, node: NodeFacts, naming: Naming) -> NodeTable:
     # Below a namespace of its own a relative target would not leave it.
     root = f"/{robot}/" if namespace.count("/") > 1 else ""
     rules: dict[tuple[str, str], Rule] = {}
-    for endpoint in node.endpoints:
-        for kind, source in expanded(endpoint):
-            target = target_of(source, kind, robot, naming)
-            if target and not endpoint.fixed:
-                target = f"{root}{target}" if naming.topics == NAMESPACE else target
-                rule = Rule(robot, node.name, source, target, kind, SAME)
-                rules.setdefault((kind, source), rule)
+    for endpoint in (it for it in node.endpoints if not it.fixed):
+        meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
+        for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
+            moved = wanted if wanted != source else ""
+            target = target_of(wanted, kind, robot, naming) or moved
+            if target:
+                target = f"{root}{target}" if root and naming.topics == NAMESPACE else target
+                why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
+                rules.setdefault((kind, source), Rule(robot, node.name, source, target, kind, why))
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()))
 
 
@@ -95,8 +98,13 @@ def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
 
 
 def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
-    """The graph names an endpoint is made of, each with its kind: rcl knows no actions."""
+    """The graph names an endpoint is made of, each with its kind: rcl knows no actions.
+
+    A name in ``<>`` is made at run time: there is none to begin with.
+    """
     name = endpoint.name
+    if "<" in name:
+        return
     if endpoint.kind != ACTION:
         yield endpoint.kind, name
     else:
@@ -128,25 +136,32 @@ def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
 
 def _names(pairs: Pairs) -> Iterator[Name]:
     for node, table in pairs:
-        rules = parsed(table.rules)
+        bound = bind(table.name, table.namespace, parsed(table.rules))
+        bare = bind(table.name, table.namespace, ())
         root = table.namespace.rstrip("/")
-        for endpoint in node.endpoints:
+        for endpoint in (it for it in node.endpoints if "<" not in it.name):
             kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
-            given = () if endpoint.fixed else rules
-            found = resolve_name(endpoint.name, kind, table.name, table.namespace, given)
+            found = resolve_bound(endpoint.name, kind, bare if endpoint.fixed else bound)
             yield Name(table.robot, f"{root}/{table.name}", endpoint, found)
 
 
-def _fixed(robots: Sequence[str], nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
-    """Names that need a rule which would do nothing."""
+def _fixed(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
+    """Names that need a rule which would do nothing; the same for every robot."""
     for node in nodes:
         for endpoint in node.endpoints:
-            needed = target_of(endpoint.name, endpoint.kind, PROBE, naming)
-            if endpoint.fixed and needed:
-                message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {endpoint.fixed}"
-                hint = f"set its parameter {endpoint.parameter}" if endpoint.parameter else ""
-                for robot in robots:
-                    yield Problem("MR101", WARNING, robot, node.name, message, hint)
+            reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
+            if reason and _needed(endpoint, naming):
+                message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {reason}"
+                parameter = "" if "parameter" in reason else endpoint.parameter
+                hint = f"set its parameter {parameter}" if parameter else ""
+                yield Problem("MR101", WARNING, "", node.name, message, hint)
+
+
+def _needed(endpoint: Endpoint, naming: Naming) -> bool:
+    """Would the name be every robot's? One made at run time follows a namespace if it is relative."""
+    if "<" in endpoint.name:
+        return naming.topics != NAMESPACE or endpoint.name.startswith("/")
+    return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
 
 
 def _meeting(names: dict[str, list[Name]], naming: Naming) -> Iterator[Problem]:
@@ -166,17 +181,18 @@ def _meeting(names: dict[str, list[Name]], naming: Naming) -> Iterator[Problem]:
 def _useless(pairs: Pairs) -> Iterator[Problem]:
     """Rules that match nothing their node asks for, and rules behind one that matches first."""
     for node, table in pairs:
+        bare = bind(table.name, table.namespace, ())
         asked = {pair for endpoint in node.endpoints for pair in expanded(endpoint)}
-        full = {(k, resolve_name(n, k, table.name, table.namespace, ())) for k, n in asked}
-        seen: set[tuple[str, str]] = set()
+        full = {(kind, resolve_bound(name, kind, bare)) for kind, name in asked}
+        seen: set[str] = set()
         for rule in table.rules:
-            match = resolve_name(rule.source, rule.kind, table.name, table.namespace, ())
-            if (rule.kind, match) in seen:
-                message = (
-                    f"{rule.source}:={rule.target} never counts: an earlier rule matches first"
-                )
+            match = resolve_bound(rule.source, rule.kind or TOPIC, bare)
+            kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
+            said = f"{rule.source}:={rule.target}"
+            if match in seen:
+                message = f"{said} never counts: an earlier rule matches first"
                 yield Problem("MR104", ERROR, table.robot, node.name, message, "leave it out")
-            elif (rule.kind, match) not in full:
-                message = f"{rule.source}:={rule.target} matches nothing this node asks for"
+            elif full.isdisjoint((kind, match) for kind in kinds):
+                message = f"{said} matches nothing this node asks for"
                 yield Problem("MR103", WARNING, table.robot, node.name, message, "leave it out")
-            seen.add((rule.kind, match))
+            seen.add(match)

@@ -1,0 +1,94 @@
+"""``multibot remap`` as a person meets it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+import yaml
+from robots import FIXTURES
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.remap.forms import FORMS
+
+ROVER = str(FIXTURES / "robots" / "rover.urdf")
+GZ = str(FIXTURES / "robots" / "rover_gz.urdf")
+
+
+def run(capture: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
+    code = main(["remap", *words])
+    return code, *capture.readouterr()
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
+def test_nav2_for_two_robots_has_no_error(layout: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = run(
+        capsys, ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", layout, "--format", "json"
+    )
+    assert code == 0, err
+    assert "error" not in err
+    table = json.loads(out)
+    names = {
+        robot: {name["name"] for name in table["names"] if name["robot"] == robot}
+        for robot in ("robot1", "robot2")
+    }
+    shared = names["robot1"] & names["robot2"]
+    allowed = {"/clock", "/rosout", "/parameter_events", "/diagnostics"}
+    assert shared <= allowed | ({"/tf", "/tf_static"} if layout == "frames-per-robot" else set())
+    assert len(names["robot1"]) > 100
+
+
+def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, _ = run(capsys, ROVER, "robot1", "--stack", "nav2", "--format", "ros-args")
+    for part in ("", "/_action/send_goal", "/_action/cancel_goal", "/_action/feedback"):
+        assert f"navigate_to_pose{part}:=navigate_to_pose{part}/robot1" in out, part
+
+
+@pytest.mark.parametrize("form", sorted(FORMS))
+def test_every_form_is_written_to_a_file(
+    form: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    target = tmp_path / "out"
+    words = (ROVER, "robot1", "--layout", "both", "--format", form)
+    code, out, _ = run(capsys, *words, "-o", str(target))
+    assert (code, out) == (0, "")
+    _, printed, _ = run(capsys, *words)
+    assert target.read_text() == printed != ""
+
+
+def test_the_bridge_of_a_fleet(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, err = run(capsys, GZ, "r1", "r2", "--layout", "both", "--format", "bridge")
+    assert code == 0, err
+    rows = yaml.safe_load(out)
+    assert "/clock" in {row["ros_topic_name"] for row in rows}
+    assert {row["ros_topic_name"].split("/")[1] for row in rows} == {"clock", "r1", "r2"}
+
+
+def test_the_table_is_for_people(capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = run(capsys, ROVER, "robot1", "--stack", "robot_state", "--layout", "L1")
+    assert code == 0
+    assert "/robot1/robot_state_publisher" in out
+    assert "/tf -> tf" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        pytest.param((ROVER, "robot1", "--stack", "nva2"), "nav2", id="stack"),
+        pytest.param((ROVER, "robot-1"), "robot_1", id="robot"),
+        pytest.param((ROVER, "a", "--layout", "L9"), "layout", id="layout"),
+        pytest.param(("gone.urdf", "a"), "cannot be read", id="no-file"),
+        pytest.param((ROVER, "a", "a"), "twice", id="robot-twice"),
+        pytest.param((ROVER, "a", "--format", "json", "-o", ROVER), "rover.urdf", id="onto-input"),
+    ],
+)
+def test_wrong_use_is_one_line(
+    words: tuple[str, ...], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = Path(ROVER).read_bytes()
+    code, out, err = run(capsys, *words)
+    assert (code, out) == (2, "")
+    assert message in err
+    assert err.count("\n") == 1
+    assert Path(ROVER).read_bytes() == before
