@@ -53,18 +53,44 @@ def build_table(
     ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
     """
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
-    own = [node for node in nodes if not node.shared]
-    fleet: dict[str, Pairs] = {
-        robot: [*((n, node_table(robot, n, naming)) for n in own), *plugins.get(robot, ())]
+    # Made once: another robot's differs in nothing but the robot's name.
+    own = [(node, node_table(PROBE, node, naming)) for node in nodes if not node.shared]
+    meant = list(_names(own))
+    names = {
+        robot: [*_renamed(meant, robot), *_names(plugins.get(robot, ()))]
         for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
     }
-    names = {robot: list(_names(pairs)) for robot, pairs in fleet.items()}
-    problems = [*_fixed(own, naming), *_meeting(names, naming)]
-    problems += [found for robot in robots for found in _useless(fleet[robot])]
-    pairs = [*shared, *(pair for robot in robots for pair in fleet[robot])]
+    problems = [
+        *_fixed([node for node, _ in own], naming),
+        *_useless(own),
+        *_meeting(names, naming),
+    ]
+    problems += [found for robot in robots for found in _useless(plugins.get(robot, ()))]
     kept = [*_names(shared), *(name for robot in robots for name in names[robot])]
-    tables = tuple(table for _, table in pairs)
-    return Table(naming.layout.name, tables, tuple(kept), tuple(problems))
+    tables = [table for _, table in shared]
+    for robot in robots:
+        tables += [*_copies(own, robot), *(table for _, table in plugins.get(robot, ()))]
+    return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems))
+
+
+def _renamed(names: Iterable[Name], robot: str) -> list[Name]:
+    """The probe's names as another robot has them."""
+    return [
+        Name(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
+        for _, node, endpoint, name in names
+    ]
+
+
+def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
+    """The probe's nodes as another robot has them."""
+    for _, (_, node, namespace, name, rules) in pairs:
+        own = tuple(
+            Rule(robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why)
+            for rule in rules
+        )
+        yield NodeTable(
+            robot, node, namespace.replace(PROBE, robot), name.replace(PROBE, robot), own
+        )
 
 
 def node_table(robot: str, node: NodeFacts, naming: Naming) -> NodeTable:
@@ -167,21 +193,24 @@ def _needed(endpoint: Endpoint, naming: Naming) -> bool:
 def _meeting(names: dict[str, list[Name]], naming: Naming) -> Iterator[Problem]:
     """Names of two robots that come out alike without being shared."""
     first: dict[tuple[str, str], Name] = {}
+    told = set()
+    shared = {f"/{topic}" for topic in naming.shared_topics}
     for name in (name for found in names.values() for name in found):
-        kind = SERVICE if name.endpoint.kind == SERVICE else TOPIC
-        if not name.robot or name.name.strip("/") in naming.shared_topics or name.endpoint.fixed:
+        key = ("" if name.endpoint.kind != SERVICE else SERVICE, name.name)
+        other = first.setdefault(key, name)
+        if other.robot == name.robot or name.name in shared or name.endpoint.fixed or key in told:
             continue
-        other = first.setdefault((kind, name.name), name)
-        if other.robot != name.robot:
-            message = f"{name.name} is {other.robot}'s as well, by {other.node}"
-            hint = "give one of them another name"
-            yield Problem("MR102", ERROR, other.robot, name.node, message, hint)
+        told.add(key)
+        message = f"{name.name} is another robot's as well: of {other.node} and {name.node}"
+        hint = "give each its own name, or share it: --shared-topics"
+        yield Problem("MR102", ERROR, other.robot, name.node, message, hint)
 
 
 def _useless(pairs: Pairs) -> Iterator[Problem]:
     """Rules that match nothing their node asks for, and rules behind one that matches first."""
     for node, table in pairs:
         bare = bind(table.name, table.namespace, ())
+        robot = "" if table.robot == PROBE else table.robot
         asked = {pair for endpoint in node.endpoints for pair in expanded(endpoint)}
         full = {(kind, resolve_bound(name, kind, bare)) for kind, name in asked}
         seen: set[str] = set()
@@ -191,8 +220,8 @@ def _useless(pairs: Pairs) -> Iterator[Problem]:
             said = f"{rule.source}:={rule.target}"
             if match in seen:
                 message = f"{said} never counts: an earlier rule matches first"
-                yield Problem("MR104", ERROR, table.robot, node.name, message, "leave it out")
+                yield Problem("MR104", ERROR, robot, node.name, message, "leave it out")
             elif full.isdisjoint((kind, match) for kind in kinds):
                 message = f"{said} matches nothing this node asks for"
-                yield Problem("MR103", WARNING, table.robot, node.name, message, "leave it out")
+                yield Problem("MR103", WARNING, robot, node.name, message, "leave it out")
             seen.add(match)
