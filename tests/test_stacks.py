@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.known import Library, extended, stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
-from multibot_rewrite.remap.stacks import (
-    Library,
-    built_in,
-    extended,
-    load_nodes,
-    load_stack,
-    stack_of,
-)
+from multibot_rewrite.remap.stacks import built_in, load_nodes, load_stack
+from multibot_rewrite.remap.stacks_page import page
+
+ROOT = Path(__file__).parent.parent
 
 WANTED = {
     "robot_state": {"robot_state_publisher", "joint_state_publisher"},
@@ -72,6 +71,10 @@ def test_the_type_tells_the_kind() -> None:
     assert kinds["~/joint_trajectory"] == TOPIC
     assert kinds["~/query_state"] == SERVICE
     assert kinds["~/follow_joint_trajectory"] == ACTION
+
+
+def test_the_page_of_stacks_is_current() -> None:
+    assert (ROOT / "docs" / "stacks.md").read_text() == page(built_in())
 
 
 def test_unknown_stack_is_told_with_the_nearest() -> None:

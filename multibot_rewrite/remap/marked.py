@@ -118,12 +118,12 @@ def wrong(item: Item, message: str) -> NoReturn:
     raise UsageError(f"{item.where}: {message}")
 
 
-def unknown(what: str, name: str, known: Iterable[str]) -> str:
-    """That ``name`` is not known, with the nearest and all that are."""
+def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
+    """That ``name`` is not known, with the nearest of all and the list of ``known``."""
     from difflib import get_close_matches  # only a message needs it
 
     known = sorted(known)
-    near = get_close_matches(name, known, 1, 0.4)
+    near = get_close_matches(name, [*known, *more], 1, 0.4)
     hint = f"did you mean {near[0]!r}? " if near else ""
     return f"{what} {name!r} is not known; {hint}known: {', '.join(known) or 'none'}"
 

@@ -1,0 +1,101 @@
+"""The reference page of nodes and stacks: what ``python -m multibot_rewrite.remap.stacks`` prints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.remap.known import Library, Stack
+from multibot_rewrite.remap.records import Endpoint, NodeFacts
+
+HEAD = """\
+# Nodes and stacks
+
+What known nodes ask for, and which are started together; generated from
+`multibot_rewrite/remap/nodes.yaml` and `stacks.yaml` by
+`python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
+
+A stack is named by `--stack`; a single node may be named there, too. Names are as code writes them:
+`scan` follows the namespace, `/tf` does not, `~/odom` stands below the node's name. A name in `<>`
+is made at run time, so no rule can be written before it is known: a stack says it under `names`.
+*Only if* is the condition under which an endpoint is there. *Leads to* is what the usual launch
+files make of a name by a rule of their own.
+"""
+REACH = """\
+
+## What no remap rule reaches
+
+| node | what | why |
+|---|---|---|
+"""
+HELPER = "a helper node asks for it: only a rule for the whole process counts"
+
+
+def page(library: Library) -> str:
+    """The whole page as Markdown."""
+    parts = [HEAD, "\n## Stacks\n"]
+    parts += [_stack(name, stack) for name, stack in library.stacks.items()]
+    parts.append(REACH)
+    parts += [row for node in library.nodes.values() for row in _reach(node)]
+    parts.append("\n## Nodes\n")
+    parts += [_node(node) for node in library.nodes.values()]
+    parts.append("\n## Parts\n\nEndpoints that many nodes have.\n")
+    parts += [f"\n### {name}\n{_table(found)}" for name, found in library.parts.items()]
+    return "".join(parts)
+
+
+def _stack(name: str, stack: Stack) -> str:
+    lines = [f"\n### {name}\n\n{stack.about}.\n\n"]
+    lines += [f"- all of {other}\n" for other in stack.include]
+    lines += [f"- {_member(node)}\n" for node in stack.nodes]
+    return "".join(lines)
+
+
+def _member(node: NodeFacts) -> str:
+    told = [f"`{e.name}` leads to `{e.remapped}`" for e in node.endpoints if e.remapped]
+    told += [f"only if: {node.when}"] * bool(node.when) + ["for all robots"] * node.shared
+    return f"`{node.name}`" + (f": {', '.join(dict.fromkeys(told))}" if told else "")
+
+
+def _reach(node: NodeFacts) -> Iterator[str]:
+    """The rows of what stays as it is."""
+    for text in node.fixed:
+        yield _row([f"`{node.name}`", "", _plain(text)])
+    for frame in node.frames:
+        why = f"a frame: parameter `{frame.parameter}`"
+        yield _row([f"`{node.name}`", f"`{frame.default}`", why])
+    for endpoint in node.endpoints:
+        if endpoint.fixed or endpoint.helper:
+            why = _plain(endpoint.fixed or HELPER)
+            yield _row([f"`{node.name}`", f"{endpoint.kind} `{endpoint.name}`", why])
+
+
+def _node(node: NodeFacts) -> str:
+    told = [f"package {node.package}"] * bool(node.package)
+    told += [f"in the process of {node.host}"] * bool(node.host)
+    told += ["one for all robots"] * node.shared + [node.note] * bool(node.note)
+    return f"\n### {node.name}\n\n{_plain('; '.join(told))}\n{_table(node.endpoints)}"
+
+
+def _table(endpoints: Iterable[Endpoint]) -> str:
+    rows = [_row(_cells(endpoint)) for endpoint in endpoints]
+    return (
+        f"\n| | name | type | set by | only if | note |\n|---|---|---|---|---|---|\n{''.join(rows)}"
+    )
+
+
+def _cells(endpoint: Endpoint) -> list[str]:
+    types = " or ".join(filter(None, (endpoint.type, *endpoint.also)))
+    notes = [endpoint.note] * bool(endpoint.note) + ["image_transport"] * endpoint.transport
+    notes += [f"leads to {endpoint.remapped}"] * bool(endpoint.remapped)
+    parameter = f"`{endpoint.parameter}`" if endpoint.parameter else ""
+    name = f"{endpoint.role} {endpoint.kind}", f"`{endpoint.name}`"
+    return [*name, types, parameter, _plain(endpoint.when), _plain("; ".join(notes))]
+
+
+def _row(cells: Iterable[str]) -> str:
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
+
+
+def _plain(text: str) -> str:
+    """Text outside of code: Markdown takes ``<x>`` for HTML."""
+    return text.replace("<", "\\<")
