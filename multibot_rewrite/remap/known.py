@@ -10,12 +10,15 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.marked import (
     Item,
     entries,
-    flag,
+    entries_of,
+    flag_of,
     read_marked,
     table,
+    table_of,
     unknown,
     word,
-    words,
+    word_of,
+    words_of,
     wrong,
 )
 from multibot_rewrite.remap.records import (
@@ -29,6 +32,7 @@ from multibot_rewrite.remap.records import (
     Frame,
     NodeFacts,
 )
+from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
 
 NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "fixed", *ROLES)
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
@@ -36,9 +40,9 @@ ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
 STACK_KEYS = ("about", "include", "nodes")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps")
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
-_TOKEN = r"(?:[A-Za-z0-9_]|<[^<>/]+>)+"
-_NAME = re.compile(rf"(?:~/|/)?{_TOKEN}(?:/{_TOKEN})*")
-_NODE = re.compile(rf"{_TOKEN}(?:/{_TOKEN})*")
+# What is made at run time stands for some token.
+_MADE = re.compile(r"<[^<>/]+>")
+_GIVES = {"msg": "a topic", "srv": "a service", "action": "an action"}
 Known = TypeVar("Known")
 
 
@@ -116,26 +120,26 @@ def _part(item: Item) -> tuple[Endpoint, ...]:
 
 def _node(name: str, item: Item, parts: Mapping[str, tuple[Endpoint, ...]]) -> NodeFacts:
     keys = table(item, f"node {name!r}", NODE_KEYS)
-    if not _NODE.fullmatch(name):
-        wrong(item, f"{name!r} is no node name; write tokens of letters, digits and underscores")
-    endpoints = _endpoints(keys)
-    texts = {key: word(keys[key], key) for key in ("package", "note", "host") if key in keys}
+    _check_node_name(item, name)
     return NodeFacts(
         name,
-        texts.get("package", ""),
-        (*endpoints, *_taken_over(keys, parts)),
-        "shared" in keys and flag(keys["shared"], "shared"),
-        texts.get("note", ""),
-        host=texts.get("host", ""),
-        frames=tuple(_frames(keys)),
-        fixed=words(keys["fixed"], "fixed") if "fixed" in keys else (),
+        word_of(keys, "package"),
+        (*_endpoints(keys), *_taken_over(keys, parts)),
+        flag_of(keys, "shared"),
+        word_of(keys, "note"),
+        host=word_of(keys, "host"),
+        frames=tuple(
+            Frame(parameter, word(default, f"frame {parameter}"))
+            for parameter, default in table_of(keys, "frames").items()
+        ),
+        fixed=words_of(keys, "fixed"),
     )
 
 
 def _taken_over(
     keys: Mapping[str, Item], parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> Iterator[Endpoint]:
-    for entry in entries(keys["with"], "with") if "with" in keys else ():
+    for entry in entries_of(keys, "with"):
         yield from _known(entry, "part", parts)
 
 
@@ -146,14 +150,9 @@ def _known(item: Item, what: str, known: Mapping[str, Known]) -> Known:
     return known[name]
 
 
-def _frames(keys: Mapping[str, Item]) -> Iterator[Frame]:
-    for parameter, default in table(keys["frames"], "frames").items() if "frames" in keys else ():
-        yield Frame(parameter, word(default, f"frame {parameter}"))
-
-
 def _endpoints(keys: Mapping[str, Item]) -> Iterator[Endpoint]:
     for role in ROLES:
-        for name, item in table(keys[role], role).items() if role in keys else ():
+        for name, item in table_of(keys, role).items():
             yield _endpoint(role, name, item)
 
 
@@ -161,12 +160,11 @@ def _endpoint(role: str, name: str, item: Item) -> Endpoint:
     if isinstance(item.value, str):
         return _checked(item, Endpoint(_kind(role, item.value), role, name, item.value))
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
-    texts = {key: word(keys[key], key) for key in ENDPOINT_WORDS if key in keys}
-    endpoint = Endpoint(_kind(role, texts.get("type", "")), role, name)._replace(
-        **texts,
-        also=words(keys["also"], "also") if "also" in keys else (),
-        transport="transport" in keys and flag(keys["transport"], "transport"),
-        helper="helper" in keys and flag(keys["helper"], "helper"),
+    endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
+        **{key: word_of(keys, key) for key in ENDPOINT_WORDS},
+        also=words_of(keys, "also"),
+        transport=flag_of(keys, "transport"),
+        helper=flag_of(keys, "helper"),
     )
     return _checked(item, endpoint)
 
@@ -179,24 +177,45 @@ def _kind(role: str, type_: str) -> str:
 
 def _checked(item: Item, endpoint: Endpoint) -> Endpoint:
     """The endpoint, if its name and types are such; a name not known yet is out of reach."""
-    if not _NAME.fullmatch(endpoint.name):
-        wrong(item, f"{endpoint.name!r} is no topic, service or action name; write it as in code")
+    for name in filter(None, (endpoint.name, endpoint.remapped)):
+        text = _MADE.sub("x", name)
+        fault = check_topic_name(text) or check_full_name(expand(text, "/", "node"))
+        if fault:
+            wrong(item, f"name {name!r}: {fault.reason}")
     for type_ in filter(None, (endpoint.type, *endpoint.also)):
-        if not _TYPE.fullmatch(type_):
-            wrong(item, f"{type_!r} is no type; write it like std_msgs/msg/String")
-    if "<" not in endpoint.name or endpoint.fixed:
+        _check_type(item, endpoint, type_)
+    if not _MADE.search(endpoint.name) or endpoint.fixed:
         return endpoint
     source = f"parameter {endpoint.parameter}" if endpoint.parameter else "its configuration"
     return endpoint._replace(fixed=f"the name is made at run time from {source}")
 
 
+def _check_type(item: Item, endpoint: Endpoint, type_: str) -> None:
+    found = _TYPE.fullmatch(type_)
+    if not found:
+        wrong(item, f"{type_!r} is no type; write it like std_msgs/msg/String")
+    # The parts of an action have types like nav2_msgs/action/Spin_FeedbackMessage.
+    if endpoint.kind == TOPIC and "/action/" in type_ and "_" in type_.rpartition("/")[2]:
+        return
+    if found[1] != {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}[endpoint.kind]:
+        wrong(item, f"{endpoint.role} {endpoint.name!r}: {type_} is the type of {_GIVES[found[1]]}")
+
+
+def _check_node_name(item: Item, name: str) -> None:
+    for token in name.split("/"):
+        fault = check_node_name(token)
+        if fault:
+            wrong(item, f"node name {name!r}: {fault.reason}")
+
+
 def _stack(item: Item, library: Library, stacks: Iterable[str]) -> Stack:
     keys = table(item, "a stack", STACK_KEYS)
-    includes = entries(keys["include"], "include") if "include" in keys else ()
-    include = tuple(_known(entry, "stack", {name: name for name in stacks}) for entry in includes)
-    nodes = entries(keys["nodes"], "nodes") if "nodes" in keys else ()
-    about = word(keys["about"], "about") if "about" in keys else ""
-    return Stack(about, include, tuple(_placed(entry, library) for entry in nodes))
+    known = {name: name for name in stacks}
+    return Stack(
+        word_of(keys, "about"),
+        tuple(_known(entry, "stack", known) for entry in entries_of(keys, "include")),
+        tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
+    )
 
 
 def _placed(item: Item, library: Library) -> NodeFacts:
@@ -208,46 +227,52 @@ def _placed(item: Item, library: Library) -> NodeFacts:
         wrong(item, "the entry names no node; write {node: ...}")
     node = _known(keys["node"], "node", library.nodes)
     endpoints = (*node.endpoints, *_taken_over(keys, library.parts))
-    endpoints = _remapped(_named(endpoints, keys), keys)
+    name = word_of(keys, "as", node.name)
+    _check_node_name(keys.get("as", item), name)
     return node._replace(
-        name=word(keys["as"], "as") if "as" in keys else node.name,
-        shared=flag(keys["shared"], "shared") if "shared" in keys else node.shared,
-        when=word(keys["when"], "when") if "when" in keys else node.when,
-        endpoints=endpoints,
+        name=name,
+        shared=flag_of(keys, "shared", node.shared),
+        when=word_of(keys, "when", node.when),
+        endpoints=_remapped(_named(endpoints, keys), keys),
     )
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, Item]) -> tuple[Endpoint, ...]:
     """The endpoints under the names that parameters give them."""
-    for given, item in table(keys["names"], "names").items() if "names" in keys else ():
+    for given, item in table_of(keys, "names").items():
         if not any(_has(endpoint, given) for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
-        values = words(item, f"names {given}")
+        values = [word(entry, f"names {given}") for entry in entries(item, f"names {given}")]
         endpoints = tuple(
-            new
-            for endpoint in endpoints
-            for new in (
-                [_renamed(item, endpoint, given, value) for value in values]
-                if _has(endpoint, given)
-                else [endpoint]
-            )
+            new for endpoint in endpoints for new in _renamed(item, endpoint, given, values)
         )
     return endpoints
 
 
+def _renamed(
+    item: Item, endpoint: Endpoint, given: str, values: Iterable[str]
+) -> Iterator[Endpoint]:
+    """One endpoint for each value where it has the name, itself where it has not."""
+    if not _has(endpoint, given):
+        yield endpoint
+        return
+    for value in values:
+        name = endpoint.name.replace(given, value)
+        yield _checked(item, endpoint._replace(name=name, fixed=""))
+
+
 def _has(endpoint: Endpoint, given: str) -> bool:
+    """Whether it is called so, or what is made at run time is in its name."""
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
-
-
-def _renamed(item: Item, endpoint: Endpoint, given: str, value: str) -> Endpoint:
-    return _checked(item, endpoint._replace(name=endpoint.name.replace(given, value), fixed=""))
 
 
 def _remapped(endpoints: tuple[Endpoint, ...], keys: Mapping[str, Item]) -> tuple[Endpoint, ...]:
     """The endpoints with what the usual launch file's own rules make of them."""
-    for given, item in table(keys["remaps"], "remaps").items() if "remaps" in keys else ():
+    for given, item in table_of(keys, "remaps").items():
         if all(endpoint.name != given for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
         target = word(item, f"remaps {given}")
-        endpoints = tuple(e._replace(remapped=target) if e.name == given else e for e in endpoints)
+        endpoints = tuple(
+            _checked(item, e._replace(remapped=target)) if e.name == given else e for e in endpoints
+        )
     return endpoints

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 _BOOLEAN = "tag:yaml.org,2002:bool"
 _NULL = "tag:yaml.org,2002:null"
+_LINE = "\n"
 Value: TypeAlias = "str | bool | Mapping[str, Item] | tuple[Item, ...] | None"
 
 
@@ -30,14 +31,15 @@ def read_marked(text: str, file: str) -> Item:
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         node = yaml.compose(text, Loader=loader)
+        return Item(f"{file}:1", None) if node is None else _item(node, file, frozenset())
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        place = f"{file}:{mark.line + 1}" if mark else file
-        reason = getattr(error, "problem", None) or str(error)
+        # A document that ends too early is at fault on the line after its last.
+        place = f"{file}:{min(mark.line, text.count(_LINE)) + 1}" if mark else file
+        reason = getattr(error, "problem", None) or str(error).partition("\n")[0]
         raise UsageError(f"{place}: broken YAML, correct it: {reason}") from None
     except RecursionError:
         raise UsageError(f"{file}: broken YAML, nested too deep") from None
-    return Item(f"{file}:1", None) if node is None else _item(node, file, frozenset())
 
 
 def _item(node: yaml.Node, file: str, above: frozenset[int]) -> Item:
@@ -63,13 +65,13 @@ def _truth(word: str) -> bool:
 def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[str, Item]:
     found: dict[str, Item] = {}
     for key, value in node.value:
-        name = str(key.value)
-        if name in found:
-            where = f"{file}:{key.start_mark.line + 1}"
-            raise UsageError(f"{where}: {name!r} stands here twice, leave one out")
-        item = _item(value, file, above)
+        where = f"{file}:{key.start_mark.line + 1}"
+        if not isinstance(key.value, str):
+            raise UsageError(f"{where}: a key is a mapping or a list, write a name")
+        if key.value in found:
+            raise UsageError(f"{where}: {key.value!r} stands here twice, leave one out")
         # A block value starts a line below its key; the key is what a reader looks for.
-        found[name] = item._replace(where=f"{file}:{key.start_mark.line + 1}")
+        found[key.value] = _item(value, file, above)._replace(where=where)
     return found
 
 
@@ -85,6 +87,23 @@ def table(item: Item, what: str, allowed: Sequence[str] = ()) -> Mapping[str, It
     return item.value
 
 
+def word(item: Item, what: str) -> str:
+    """A text, possibly empty."""
+    if not isinstance(item.value, str):
+        wrong(item, f"{what} is {_shape(item)}, write a text, in quotes where need be")
+    return item.value
+
+
+def table_of(keys: Mapping[str, Item], key: str) -> Mapping[str, Item]:
+    """The mapping of a key, empty where it is absent."""
+    return table(keys[key], key) if key in keys else {}
+
+
+def entries_of(keys: Mapping[str, Item], key: str) -> tuple[Item, ...]:
+    """The list of a key, empty where it is absent; a single word is a list of one."""
+    return entries(keys[key], key) if key in keys else ()
+
+
 def entries(item: Item, what: str) -> tuple[Item, ...]:
     """The entries of a list; a single word is a list of one."""
     if isinstance(item.value, str):
@@ -94,23 +113,24 @@ def entries(item: Item, what: str) -> tuple[Item, ...]:
     return item.value
 
 
-def words(item: Item, what: str) -> tuple[str, ...]:
-    """A list of words."""
-    return tuple(word(entry, what) for entry in entries(item, what))
+def words_of(keys: Mapping[str, Item], key: str) -> tuple[str, ...]:
+    """The words listed by a key, none where it is absent."""
+    return tuple(word(entry, key) for entry in entries_of(keys, key))
 
 
-def word(item: Item, what: str) -> str:
-    """A text, possibly empty."""
-    if not isinstance(item.value, str):
-        wrong(item, f"{what} is {_shape(item)}, write a text, in quotes where need be")
-    return item.value
+def word_of(keys: Mapping[str, Item], key: str, otherwise: str = "") -> str:
+    """The text of a key, ``otherwise`` where it is absent."""
+    return word(keys[key], key) if key in keys else otherwise
 
 
-def flag(item: Item, what: str) -> bool:
-    """True or false."""
-    if not isinstance(item.value, bool):
-        wrong(item, f"{what} is {_shape(item)}, write true or false")
-    return item.value
+def flag_of(keys: Mapping[str, Item], key: str, otherwise: bool = False) -> bool:
+    """True or false as a key says, ``otherwise`` where it is absent."""
+    if key not in keys:
+        return otherwise
+    value = keys[key].value
+    if not isinstance(value, bool):
+        wrong(keys[key], f"{key} is {_shape(keys[key])}, write true or false")
+    return value
 
 
 def wrong(item: Item, message: str) -> NoReturn:

@@ -28,9 +28,10 @@ def load_stack(name: str) -> tuple[NodeFacts, ...]:
 
 
 def user_stack(path: str) -> Library:
-    """The built-in nodes and stacks and those of a file, whose entries win.
+    """The built-in nodes and stacks and those of a file; ``stack_of`` takes a stack out of it.
 
-    Raises UsageError, with file and line, for whatever is wrong in it.
+    What the file says anew of a built-in node counts in the file's own stacks. Raises UsageError,
+    with file and line, for whatever is wrong in it.
     """
     try:
         with open(path, encoding="utf-8-sig") as file:
