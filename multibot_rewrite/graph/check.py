@@ -1,0 +1,44 @@
+"""Expectation and snapshot -> findings: one function a rule, all of them pure.
+
+Nothing is called missing in a view that may be incomplete: such a finding is *inconclusive*.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from multibot_rewrite.graph import frames, names
+from multibot_rewrite.graph.comparison import INCONCLUSIVE, GraphFinding, View, make_view
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.snapshot import Snapshot, incomplete
+
+Rule = Callable[[View], Iterator[GraphFinding]]
+RULES: tuple[Rule, ...] = (
+    names.missing_nodes,
+    names.missing_endpoints,
+    names.leaks,
+    names.cross_talk,
+    names.same_names,
+    names.type_clashes,
+    names.qos_clashes,
+    frames.two_parents,
+    frames.torn_trees,
+    frames.undeclared_frames,
+    frames.wrong_tf_topics,
+)
+# What an incomplete view cannot tell.
+ABSENCE = ("MG101", "MG102", "MG109", "MG203")
+
+
+def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:
+    """Everything that is wrong, in the order of the rules; empty for a healthy fleet."""
+    view = make_view(plan, graph)
+    found = [finding for rule in RULES for finding in rule(view)]
+    if not incomplete(graph):
+        return found
+    return [_softened(finding) if finding.code in ABSENCE else finding for finding in found]
+
+
+def _softened(finding: GraphFinding) -> GraphFinding:
+    cause = "the view is incomplete: see the snapshot's caveats"
+    return finding._replace(level=INCONCLUSIVE, cause=cause)
