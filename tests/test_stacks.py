@@ -13,6 +13,7 @@ from multibot_rewrite.remap.known import Library, extended, stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in, load_nodes, load_stack, user_stack
 from multibot_rewrite.remap.stacks_page import page
+from multibot_rewrite.rosnames import expand
 
 ROOT = Path(__file__).parent.parent
 
@@ -117,6 +118,40 @@ def test_what_launch_files_remap_is_kept_in_mind() -> None:
     assert leads["controller_server"] == leads["behavior_server"] == nav
     assert leads["velocity_smoother"] == nav
     assert leads["collision_monitor"] == [""]
+
+
+def leads(node: NodeFacts, asked: Endpoint) -> str:
+    """Where an endpoint leads in a system of one robot, started by the usual launch files."""
+    above, _, name = node.name.rpartition("/")
+    return expand(asked.remapped or asked.name, f"/{above}", name)
+
+
+def met(stack: str, asking: str, giving: str) -> tuple[set[str], set[str]]:
+    """Where all endpoints of two roles lead, those of one role and those of the other."""
+    found = [(e.role, leads(node, e)) for node in load_stack(stack) for e in node.endpoints]
+    one, other = ({name for role, name in found if role == wanted} for wanted in (asking, giving))
+    return {name for name in one if "<" not in name}, other
+
+
+def test_whatever_nav2_calls_is_served_by_nav2() -> None:
+    called, served = met("nav2", "calls", "serves")
+    assert called - served == {"/fromLL"}
+
+
+def test_what_nav2_hears_but_does_not_say() -> None:
+    heard, said = met("nav2", "subscribes", "publishes")
+    from_nav2 = {name for name in heard if name.startswith(("/local_", "/global_", "/cmd_vel_"))}
+    own = {name for name in from_nav2 if name.count("/") == 2 or name.startswith("/cmd_vel")}
+    assert own - said == {
+        *("/local_costmap/footprint", "/global_costmap/footprint", "/cmd_vel_teleop"),
+        *("/local_costmap/costmap_filter_info", "/global_costmap/costmap_filter_info"),
+    }
+
+
+def test_teleop_goes_through_the_mux() -> None:
+    heard, said = met("teleop", "subscribes", "publishes")
+    assert {"/joy_vel", "/key_vel"} <= heard & said
+    assert "/cmd_vel" in said - heard
 
 
 def test_frames_are_told_with_their_defaults() -> None:

@@ -37,7 +37,7 @@ def page(library: Library) -> str:
     parts.append(REACH)
     parts += [row for node in library.nodes.values() for row in _reach(node)]
     parts.append("\n## Nodes\n")
-    parts += [_node(node) for node in library.nodes.values()]
+    parts += [_node(node, library) for node in library.nodes.values()]
     parts.append("\n## Parts\n\nEndpoints that many nodes have.\n")
     parts += [f"\n### {name}\n{_table(found)}" for name, found in library.parts.items()]
     return "".join(parts)
@@ -69,11 +69,16 @@ def _reach(node: NodeFacts) -> Iterator[str]:
             yield _row([f"`{node.name}`", f"{endpoint.kind} `{endpoint.name}`", why])
 
 
-def _node(node: NodeFacts) -> str:
+def _node(node: NodeFacts, library: Library) -> str:
     told = [f"package {node.package}"] * bool(node.package)
     told += [f"in the process of {node.host}"] * bool(node.host)
     told += ["one for all robots"] * node.shared + [node.note] * bool(node.note)
-    return f"\n### {node.name}\n\n{_plain('; '.join(told))}\n{_table(node.endpoints)}"
+    # A part is told by its name; its own table says the rest.
+    parts = {name: found for name, found in library.parts.items() if {*found} <= {*node.endpoints}}
+    told += [f"with {', '.join(parts)}"] * bool(parts)
+    folded = {endpoint for found in parts.values() for endpoint in found}
+    own = [endpoint for endpoint in node.endpoints if endpoint not in folded]
+    return f"\n### {node.name}\n\n{_plain('; '.join(told))}\n{_table(own) if own else ''}"
 
 
 def _table(endpoints: Iterable[Endpoint]) -> str:
