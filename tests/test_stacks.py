@@ -167,6 +167,14 @@ def test_a_node_is_a_stack_of_its_own() -> None:
     assert load_stack("rplidar_node") == (load_nodes()["rplidar_node"],)
 
 
+def test_the_example_of_the_page_is_read() -> None:
+    text = page(built_in()).partition("```yaml\n")[2].partition("```")[0]
+    nodes = {node.name: node for node in stack_of(extra(text), "cell")}
+    assert {"move_group", "gripper_driver", "table_to_base", "twist_mux"} <= nodes.keys()
+    assert endpoint(nodes["gripper_driver"], "publishes", "/gripper/image").transport
+    assert endpoint(nodes["twist_mux"], "subscribes", "pad_vel").fixed == ""
+
+
 def test_unknown_stack_is_told_with_the_nearest() -> None:
     with pytest.raises(UsageError, match=r"stack 'nav' is not known; did you mean 'nav2'\? known:"):
         load_stack("nav")

@@ -19,6 +19,28 @@ A stack is named by `--stack`; a single node may be named there, too. Names are 
 is made at run time, so no rule can be written before it is known: a stack says it under `names`.
 *Only if* is the condition under which an endpoint is there. *Leads to* is what the usual launch
 files make of a name by a rule of their own.
+
+A file of your own adds nodes and stacks in the same shape, for example:
+
+```yaml
+nodes:
+  gripper_driver:
+    package: acme_gripper
+    with: [diagnostics]
+    publishes:
+      joint_states: sensor_msgs/msg/JointState
+      /gripper/image: {type: sensor_msgs/msg/Image, transport: true, when: it has a camera}
+    serves:
+      ~/close: std_srvs/srv/Trigger
+stacks:
+  cell:
+    about: An arm with our gripper
+    include: [robot_state, moveit]
+    nodes:
+      - gripper_driver
+      - {node: static_transform_publisher, as: table_to_base}
+      - {node: twist_mux, names: {<topics.*.topic>: [nav_vel, pad_vel]}, remaps: {cmd_vel_out: cmd_vel}}
+```
 """
 REACH = """\
 
