@@ -33,6 +33,7 @@ WANTED = {
     "moveit": {"move_group"},
     "teleop": {"joy_node", "teleop_twist_joy_node", "teleop_twist_keyboard", "twist_mux"},
     "perception": {"pointcloud_to_laserscan", "depthimage_to_laserscan"},
+    "image_proc": {"debayer_node", "rectify_mono_node", "rectify_color_node"},
     "bridge": {"ros_gz_bridge"},
     "rviz": {"rviz2"},
     "static_tf": {"static_transform_publisher"},
