@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from multibot_rewrite.graph import frames, names
 from multibot_rewrite.graph.comparison import INCONCLUSIVE, GraphFinding, View, make_view
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import Snapshot, incomplete
+from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
 Rule = Callable[[View], Iterator[GraphFinding]]
 RULES: tuple[Rule, ...] = (
@@ -26,6 +26,7 @@ RULES: tuple[Rule, ...] = (
     frames.undeclared_frames,
     frames.wrong_tf_topics,
 )
+WAITED_FOR = "expected-not-seen"
 # What an incomplete view cannot tell.
 ABSENCE = ("MG101", "MG102", "MG109", "MG203")
 
@@ -34,9 +35,15 @@ def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:
     """Everything that is wrong, in the order of the rules; empty for a healthy fleet."""
     view = make_view(plan, graph)
     found = [finding for rule in RULES for finding in rule(view)]
-    if not incomplete(graph):
+    if not doubts(graph):
         return found
     return [_softened(finding) if finding.code in ABSENCE else finding for finding in found]
+
+
+def doubts(graph: Snapshot) -> tuple[Caveat, ...]:
+    """Why something may be missing in the view. What was waited for and did not come is no doubt:
+    where nothing changed any more it is the answer."""
+    return tuple(caveat for caveat in incomplete(graph) if caveat.code != WAITED_FOR)
 
 
 def _softened(finding: GraphFinding) -> GraphFinding:

@@ -304,14 +304,13 @@ def _listen(
     }
     if not topics:
         return [], []
-    try:
-        from tf2_msgs.msg import TFMessage
-    except ImportError:
+    message_type, reason = _tf_type()
+    if message_type is None:
         names = surroundings.listed(sorted({name for name, _ in topics}))
-        text = f"the frames on {names} were not read: tf2_msgs is not installed"
-        return [], [Caveat("frames-not-read", False, f"{text}; install it or source ROS 2")]
+        text = f"the frames on {names} were not read: {reason}; install tf2_msgs or source ROS 2"
+        return [], [Caveat("frames-not-read", False, text)]
     heard: dict[tuple[str, bool], set[gather.Heard]] = {topic: set() for topic in topics}
-    with _subscribed(eye, heard, TFMessage) as spin_once:
+    with _subscribed(eye, heard, message_type) as spin_once:
         began = time.monotonic()
         while not eye.stop.is_set():
             spin_once()
@@ -319,6 +318,19 @@ def _listen(
             if passed > TF_SECONDS[1] or (passed > TF_SECONDS[0] and all(heard.values())):
                 break
     return [it for edges in heard.values() for it in edges], []
+
+
+def _tf_type() -> tuple[Any, str]:
+    """The message type of tf, or None and why it cannot be had."""
+    try:
+        from rclpy.type_support import check_for_type_support
+        from tf2_msgs.msg import TFMessage
+
+        # Half installed, it fails only where it is used.
+        check_for_type_support(TFMessage)
+    except Exception as error:
+        return None, str(error)
+    return TFMessage, ""
 
 
 @contextmanager

@@ -1,0 +1,72 @@
+"""What the commands about a fleet have in common: its options, its table, its problems."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+from multibot_rewrite.cli.output import say
+from multibot_rewrite.cli.process import PROGRAM
+from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS, Naming, make_naming
+from multibot_rewrite.remap.plugins import plugin_nodes
+from multibot_rewrite.remap.records import Problem, Table
+from multibot_rewrite.remap.stacks import load_stack
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rewriting.collect import Inventory, collect
+from multibot_rewrite.rewriting.document import read_document
+
+
+class Fleet(NamedTuple):
+    """A fleet's table, and what each robot's rewritten description holds."""
+
+    table: Table
+    inventories: dict[str, Inventory]
+    naming: Naming
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say which robots, nodes and layout."""
+    names = ", ".join(f"{layout.name} ({layout.short})" for layout in LAYOUTS)
+    shared = ",".join(SHARED_TOPICS)
+    parser.add_argument("input", metavar="INPUT", help="the robot's description, not rewritten")
+    parser.add_argument("robots", nargs="+", metavar="ROBOT", help="names of the robots")
+    parser.add_argument(
+        "--stack", action="append", default=[], metavar="NAME", help="nodes that every robot runs"
+    )
+    parser.add_argument("--layout", default="postfix", metavar="NAME", help=f"one of {names}")
+    parser.add_argument("--affix", default="postfix", metavar="SIDE", help="postfix or prefix")
+    parser.add_argument("--topics", metavar="HOW", help="postfix, prefix or namespace")
+    parser.add_argument(
+        "--shared-topics", default=shared, metavar="A,B", help="default: %(default)s"
+    )
+
+
+def build(options: argparse.Namespace) -> Fleet:
+    """Rewrite the description for each robot and make the fleet's table."""
+    policy: dict[str, Any] = {
+        "layout": options.layout,
+        "affix": options.affix,
+        "topics": options.topics,
+        "shared_topics": options.shared_topics.split(","),
+    }
+    nodes = dict.fromkeys(node for stack in options.stack for node in load_stack(stack))
+    naming = make_naming(**policy)
+    vocabulary = configured_vocabulary(options.input)
+    tree = builtin_tree(vocabulary)
+    inventories = {
+        one.robot: collect(read_document(one.data, options.input), tree)
+        for one in rewrite_all(options.input, options.robots, vocabulary=vocabulary, **policy)
+    }
+    plugins = {robot: list(plugin_nodes(found, robot)) for robot, found in inventories.items()}
+    return Fleet(build_table(options.robots, list(nodes), naming, plugins), inventories, naming)
+
+
+def tell(problems: Iterable[Problem]) -> None:
+    """A line each to standard error."""
+    for problem in problems:
+        where = f"{problem.robot}: {problem.node}" if problem.robot else problem.node
+        hint = f" ({problem.hint})" if problem.hint else ""
+        say(f"{where}: {problem.level}: {problem.code} {problem.message}{hint}", PROGRAM)
