@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -286,6 +287,15 @@ def test_expected_nodes_that_are_absent_are_named() -> None:
     (caveat,) = view_caveats([GraphNode("/a", "")], [end("/a", "/x")], CALM, QUIET, ["/a", "/b"])
     assert (caveat.code, caveat.incomplete) == ("expected-not-seen", True)
     assert "/b;" in caveat.message
+
+
+def test_every_caveat_is_documented() -> None:
+    root = Path(__file__).parent.parent
+    source = "".join(file.read_text() for file in (root / "multibot_rewrite/graph").glob("*.py"))
+    page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
+    assert set(re.findall(r'Caveat\(\s*"([\w-]+)"', source)) == set(
+        re.findall(r"`([a-z]+-[\w-]+)`", page)
+    )
 
 
 def test_a_long_list_is_cut() -> None:
