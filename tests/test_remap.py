@@ -205,6 +205,23 @@ def test_what_the_stack_renames_itself_is_led_where_the_stack_wants_it() -> None
         assert found == {"cmd_vel": name}
 
 
+def test_a_private_service_of_another_node_follows_that_node() -> None:
+    manager = NodeFacts("manager", "manager", (Endpoint(SERVICE, CALLS, "driver/get_parameters"),))
+    found = table("L4", (DRIVER, manager))
+    assert leads(found, "robot1", "manager_robot1") == {
+        "driver/get_parameters": "/driver_robot1/get_parameters"
+    }
+    served = leads(found, "robot1", "driver_robot1")["~/get_parameters"]
+    assert served == "/driver_robot1/get_parameters"
+
+
+def test_a_topic_and_a_service_of_one_name_share_a_rule() -> None:
+    ends = (Endpoint(TOPIC, SUBSCRIBES, "set_pose"), Endpoint(SERVICE, SERVES, "/set_pose"))
+    found = table("L4", (NodeFacts("ekf", "robot_localization", ends),))
+    assert rules(found, "robot1", "ekf") == {"set_pose": "set_pose/robot1"}
+    assert found.problems == ()
+
+
 def plugin(*given: tuple[str, str]) -> dict[str, list[tuple[NodeFacts, NodeTable]]]:
     """A plugin with /scan in each robot's description, with these rules."""
     facts = NodeFacts("lidar", "lidar", (Endpoint(TOPIC, PUBLISHES, "/scan"),))

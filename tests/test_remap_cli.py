@@ -92,3 +92,20 @@ def test_wrong_use_is_one_line(
     assert message in err
     assert err.count("\n") == 1
     assert Path(ROVER).read_bytes() == before
+
+
+def test_nodes_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    own = tmp_path / "own.yaml"
+    own.write_text(
+        "nodes:\n"
+        "  painter:\n"
+        "    package: acme\n"
+        "    publishes: {/paint: std_msgs/msg/String}\n"
+        "stacks:\n"
+        "  shop:\n"
+        "    nodes: [painter]\n"
+    )
+    words = (ROVER, "robot1", "--nodes", str(own), "--stack", "shop", "--layout", "L2")
+    code, out, err = run(capsys, *words)
+    assert code == 0, err
+    assert "/paint -> paint" in out

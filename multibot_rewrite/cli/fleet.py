@@ -11,9 +11,10 @@ from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import builtin_tree, rewrite_all
 from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS, Naming, make_naming
+from multibot_rewrite.remap.known import stack_of
 from multibot_rewrite.remap.plugins import plugin_nodes
 from multibot_rewrite.remap.records import Problem, Table
-from multibot_rewrite.remap.stacks import load_stack
+from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
@@ -36,6 +37,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--stack", action="append", default=[], metavar="NAME", help="nodes that every robot runs"
     )
+    parser.add_argument("--nodes", metavar="FILE", help="nodes and stacks of your own, as YAML")
     parser.add_argument("--layout", default="postfix", metavar="NAME", help=f"one of {names}")
     parser.add_argument("--affix", default="postfix", metavar="SIDE", help="postfix or prefix")
     parser.add_argument("--topics", metavar="HOW", help="postfix, prefix or namespace")
@@ -52,7 +54,8 @@ def build(options: argparse.Namespace) -> Fleet:
         "topics": options.topics,
         "shared_topics": options.shared_topics.split(","),
     }
-    nodes = dict.fromkeys(node for stack in options.stack for node in load_stack(stack))
+    library = user_stack(options.nodes) if options.nodes else built_in()
+    nodes = dict.fromkeys(node for stack in options.stack for node in stack_of(library, stack))
     naming = make_naming(**policy)
     vocabulary = configured_vocabulary(options.input)
     tree = builtin_tree(vocabulary)

@@ -9,7 +9,10 @@ from multibot_rewrite.graph.comparison import GraphFinding, View, nearest, owner
 from multibot_rewrite.graph.expectation import ALWAYS, Wanted
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.model import ERROR
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+
+
+SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
 
 
 def missing_nodes(view: View) -> Iterator[GraphFinding]:
@@ -37,7 +40,7 @@ def missing_endpoints(view: View) -> Iterator[GraphFinding]:
         robot = view.robot_of.get(wanted.node)
         if robot is None or wanted.node not in seen or _has(view, wanted):
             continue
-        message = f"expected it {wanted.role} {wanted.kind} {wanted.name}, it does not"
+        message = f"it should {SHOULD[wanted.role]} {wanted.kind} {wanted.name}, and does not"
         cause = _why_missing(view, wanted)
         yield GraphFinding("MG102", ERROR, robot, wanted.node, message, cause)
 

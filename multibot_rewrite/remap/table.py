@@ -22,7 +22,7 @@ from multibot_rewrite.remap.records import (
     Rule,
     Table,
 )
-from multibot_rewrite.rosnames import RemapRule, bind, parse_remap, resolve_bound
+from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 # What an action is made of (rcl_action names.c): three services and two topics.
 ACTION_PARTS = (
@@ -54,7 +54,8 @@ def build_table(
     """
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's differs in nothing but the robot's name.
-    own = [(node, node_table(PROBE, node, naming)) for node in nodes if not node.shared]
+    names_of = frozenset(node.name for node in nodes if not node.shared)
+    own = [(node, node_table(PROBE, node, naming, names_of)) for node in nodes if not node.shared]
     meant = list(_names(own))
     names = {
         robot: [*_renamed(meant, robot), *_names(plugins.get(robot, ()))]
@@ -93,23 +94,30 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
         )
 
 
-def node_table(robot: str, node: NodeFacts, naming: Naming) -> NodeTable:
-    """Namespace, name and rules of one robot's node; a node for all robots stays as it is."""
+def node_table(
+    robot: str, node: NodeFacts, naming: Naming, others: frozenset[str] = frozenset()
+) -> NodeTable:
+    """Namespace, name and rules of one robot's node; a node for all robots stays as it is.
+
+    ``others`` are the names of the robot's nodes: what stands below one of them follows its name.
+    """
     if node.shared:
         return NodeTable("", node.name, "/", node.name, ())
     namespace, name = placed(robot, node.name, naming)
     # Below a namespace of its own a relative target would not leave it.
     root = f"/{robot}/" if namespace.count("/") > 1 else ""
-    rules: dict[tuple[str, str], Rule] = {}
+    rules: dict[str, Rule] = {}
     for endpoint in (it for it in node.endpoints if not it.fixed):
         meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
         for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
             moved = wanted if wanted != source else ""
-            target = target_of(wanted, kind, robot, naming) or moved
+            target = _below(wanted, robot, naming, others)
+            target = target or target_of(wanted, kind, robot, naming) or moved
             if target:
                 target = f"{root}{target}" if root and naming.topics == NAMESPACE else target
                 why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
-                rules.setdefault((kind, source), Rule(robot, node.name, source, target, kind, why))
+                match = expand(source, namespace, name)
+                rules.setdefault(match, Rule(robot, node.name, source, target, "", why))
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()))
 
 
@@ -154,6 +162,16 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
     return there.spell(name, robot) if there else ""
 
 
+def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:
+    """A name below another of the robot's nodes, such as its private services, where that node has
+    a name of its own for each robot; else an empty string."""
+    head, slash, rest = name.strip("/").partition("/")
+    if naming.topics == NAMESPACE or not slash or head not in nodes:
+        return ""
+    lead = "/" if name.startswith("/") else ""
+    return f"{lead}{placed(robot, head, naming)[1]}/{rest}"
+
+
 def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
     """The rules as rcl reads them."""
     found = (parse_remap(f"{rule.source}:={rule.target}") for rule in rules)
@@ -176,7 +194,7 @@ def _fixed(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
     for node in nodes:
         for endpoint in node.endpoints:
             reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
-            if reason and _needed(endpoint, naming):
+            if reason and not endpoint.when and _needed(endpoint, naming):
                 message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {reason}"
                 parameter = "" if "parameter" in reason else endpoint.parameter
                 hint = f"set its parameter {parameter}" if parameter else ""
