@@ -6,6 +6,7 @@ Run by ``test_rcl_agreement`` in a process of its own; it needs rclpy and an RMW
 from __future__ import annotations
 
 import json
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -91,5 +92,8 @@ def context(rules: list[str]) -> Iterator[Context]:
 
 
 if __name__ == "__main__":
+    # Fast DDS logs to stdout: the answers get a way out of their own.
+    out = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
     for line in sys.stdin:
-        print(json.dumps(answer(json.loads(line))), flush=True)
+        print(json.dumps(answer(json.loads(line))), file=out, flush=True)

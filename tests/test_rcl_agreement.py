@@ -82,7 +82,8 @@ NAMESPACE_TARGETS = ("/r", "/q", "/q/s", "/", "/q/", "/q" * 123)
 
 def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
     """What rcl says to each case. One process answers all; it ends when its stdin does."""
-    here = {"ROS_DOMAIN_ID": "181", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    domain = str(150 + os.getpid() % 50)
+    here = {"ROS_DOMAIN_ID": domain, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     done = subprocess.run(
         [sys.executable, str(CHILD)],
         input="".join(f"{json.dumps(case)}\n" for case in cases),

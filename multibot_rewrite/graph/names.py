@@ -11,7 +11,6 @@ from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
-
 SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
 
 
