@@ -83,7 +83,12 @@ NAMESPACE_TARGETS = ("/r", "/q", "/q/s", "/", "/q/", "/q" * 123)
 def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
     """What rcl says to each case. One process answers all; it ends when its stdin does."""
     domain = str(150 + os.getpid() % 50)
-    here = {"ROS_DOMAIN_ID": domain, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+    here = {
+        "ROS_DOMAIN_ID": domain,
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+        # Shared memory may hang where several runs start hundreds of participants at once.
+        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
+    }
     done = subprocess.run(
         [sys.executable, str(CHILD)],
         input="".join(f"{json.dumps(case)}\n" for case in cases),
