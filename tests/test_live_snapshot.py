@@ -199,7 +199,7 @@ def test_actions_are_told(seen: Snapshot, has_tf: bool) -> None:
 def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     if not fleet:
         pytest.skip("tf2_msgs was not built for this run, so it cannot be taken away")
-    result = multibot(0, "--expect", "/robot1/state")
+    result = multibot(0, "--expect", "/robot1/state", "/robot2/state")
     assert "the frames on /robot1/tf, /robot2/tf, /tf_static were not read" in result.stderr
     assert result.stdout.splitlines()[2].split()[:3] == ["node", "process", "publishes"]
     assert "/robot2/state" in result.stdout

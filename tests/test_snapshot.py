@@ -21,6 +21,7 @@ from multibot_rewrite.graph.environment import (
     view_caveats,
 )
 from multibot_rewrite.graph.gather import (
+    Changes,
     Heard,
     frames,
     merged,
@@ -311,19 +312,20 @@ def test_a_long_list_is_cut() -> None:
 @pytest.mark.parametrize(
     ("now", "changed_", "seen", "wanted", "why"),
     [
-        (0.2, 0.1, {"/a", "/b"}, ["/a"], EXPECTED),
-        (0.2, 0.1, {"/a"}, ["/a", "/b"], ""),
-        (3.4, 0.0, {"/a"}, [], ""),
-        (3.5, 0.0, {"/a"}, [], QUIET),
-        (5.0, 2.0, {"/a"}, ["/b"], ""),
-        (9.0, 8.0, {"/a"}, ["/b"], TIMEOUT),
-        (9.0, 5.5, set(), [], QUIET),
+        (0.5, (0.4, 0.2), {"/a", "/b"}, ["/a"], EXPECTED),
+        (0.5, (0.4, 0.3), {"/a", "/b"}, ["/a"], ""),
+        (0.5, (0.2, 0.1), {"/a"}, ["/a", "/b"], ""),
+        (3.4, (0.0, 0.0), {"/a"}, [], ""),
+        (3.5, (0.0, 0.0), {"/a"}, [], QUIET),
+        (5.0, (2.0, 0.0), {"/a"}, ["/b"], ""),
+        (9.0, (8.0, 0.0), {"/a"}, ["/b"], TIMEOUT),
+        (9.0, (5.5, 0.0), set(), [], QUIET),
     ],
 )
 def test_when_the_looking_ends(
-    now: float, changed_: float, seen: set[str], wanted: list[str], why: str
+    now: float, changed_: tuple[float, float], seen: set[str], wanted: list[str], why: str
 ) -> None:
-    assert settled(now, changed_, seen, wanted, 9.0) == why
+    assert settled(now, Changes(*changed_), seen, wanted, 9.0) == why
 
 
 TOPICS = {

@@ -18,6 +18,8 @@ from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: less quiet than that says nothing.
 QUIET_SECONDS = 3.5
+# The endpoints of one participant come in a burst.
+BURST_SECONDS = 0.3
 TF_TYPE = "tf2_msgs/msg/TFMessage"
 # Almost every node publishes one of these, so few questions tell who shares a process.
 COMMON_TOPICS = ("/parameter_events", "/rosout")
@@ -32,16 +34,28 @@ class Heard(NamedTuple):
     child: str
 
 
+class Changes(NamedTuple):
+    """When the view last changed, all of it and that of the expected nodes; in seconds."""
+
+    all: float
+    expected: float
+
+
 def settled(
-    now: float, changed: float, seen: Collection[str], expected: Collection[str], timeout: float
+    now: float,
+    changed: Changes,
+    seen: Collection[str],
+    expected: Collection[str],
+    timeout: float,
 ) -> str:
     """Why to stop looking, or an empty string; times are seconds since the looking began.
 
-    ``changed`` is when the view last changed; ``seen`` are the nodes with endpoints.
+    ``seen`` are the nodes with endpoints.
     """
-    if expected and set(expected) <= set(seen):
+    there = expected and set(expected) <= set(seen)
+    if there and now - changed.expected >= BURST_SECONDS:
         return EXPECTED
-    if now - changed >= QUIET_SECONDS:
+    if now - changed.all >= QUIET_SECONDS:
         return QUIET
     return TIMEOUT if now >= timeout else ""
 

@@ -115,14 +115,14 @@ def look(request: Request, stop: threading.Event) -> Snapshot | None:
 
 
 def _taken(eye: _Eye, request: Request) -> tuple[list[str], list[GraphEndpoint]]:
-    """Names and endpoints, again while endpoints have no owner yet and there is time."""
+    """Names and endpoints, again for a while where they have not found one another."""
+    limit = min(request.timeout, time.monotonic() - eye.started + gather.QUIET_SECONDS)
     while True:
         names = _names(eye.node)
         endpoints = _endpoints(eye.node, names, request)
-        unowned = any(UNKNOWN_NODE in end.node for end in endpoints)
-        if not unowned or time.monotonic() - eye.started >= request.timeout:
-            return names, endpoints
-        if eye.stop.wait(POLL_SECONDS):
+        owners = {end.node for end in endpoints}
+        whole = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
+        if whole or time.monotonic() - eye.started >= limit or eye.stop.wait(POLL_SECONDS):
             return names, endpoints
 
 
@@ -155,13 +155,17 @@ def _opened(stop: threading.Event) -> Iterator[_Eye]:
 def _settle(eye: _Eye, request: Request) -> str:
     """Wait until the graph is settled; why it is, empty where the looking was stopped."""
     before: object = None
-    changed = 0.0
+    expected_before: object = None
+    changed = gather.Changes(0.0, 0.0)
     while not eye.stop.wait(POLL_SECONDS):
         names = _names(eye.node)
         ends = sorted(_by_node(eye.node, names, _QUESTIONS[:4]))
+        expected = [end for end in ends if end.node in request.expected]
         now = time.monotonic() - eye.started
         if (names, ends) != before:
-            before, changed = (names, ends), now
+            before, changed = (names, ends), changed._replace(all=now)
+        if expected != expected_before:
+            expected_before, changed = expected, changed._replace(expected=now)
         seen = {end.node for end in ends}
         why = gather.settled(now, changed, seen, request.expected, request.timeout)
         if why:
