@@ -34,10 +34,11 @@ SEPARATORS = {
     "service": "/",
     "namespace": "/",
 }
-# What a ROS 2 name can hold: a node name is one token, a topic a path of tokens.
+# What a ROS 2 name can hold: a node name is one token, a topic a path of tokens; no remap rule can
+# hold two underscores in a row (rcl lexer.c).
 ROS_SEPARATORS = {
-    "node": ("_", "__"),
-    **dict.fromkeys(("stem", "topic", "subtopic", "service"), ("/", "_", "__")),
+    "node": ("_",),
+    **dict.fromkeys(("stem", "topic", "subtopic", "service"), ("/", "_")),
     "namespace": ("/",),
 }
 FRAME_KINDS = frozenset({"link", "frame"})

@@ -33,7 +33,7 @@ OPTIONAL_WHEELS = ("example-robot-data",)
 ROBOT = "robot1"
 BARE_LAYOUTS = ("L1", "tf-per-robot")
 LAYOUTS = (*BARE_LAYOUTS, "L2", "frames-per-robot", "L3", "both", "L4", "postfix")
-SEPARATORS = {"link": "/ _ __ - .", "joint": "/ _ __ - .", "topic": "/ _ __"}
+SEPARATORS = {"link": "/ _ __ - .", "joint": "/ _ __ - .", "topic": "/ _"}
 Options = Mapping[str, object]
 
 # ---------------------------------------------------------------- real files

@@ -199,6 +199,8 @@ def _token_problem(name: str) -> str:
     for place, letter in enumerate(name, 1):
         if letter not in _TOKEN:
             return f"character {place}, {letter!r}, is not a letter, a digit or an underscore"
+    if "__" in name:
+        return "it has two underscores in a row, which no remap rule can hold"
     return ""
 
 
