@@ -99,3 +99,18 @@ def test_a_robot_that_was_not_started(plan: Path) -> None:
     code, out, err = check(plan, 3, drive("robot1"))
     assert code == 1, out + err
     assert "robot2: error: MG109" in out
+
+
+def test_an_offer_below_what_is_asked_for(plan: Path) -> None:
+    speaker, listener = drive("robot1"), drive("robot2")
+    speaker[0]["publishers"] = [["odom", "String", "best_effort"]]
+    pilot = [{"name": "pilot", "namespace": "robot1", "subscriptions": [["odom", "String"]]}]
+    code, out, _ = check(plan, 4, speaker, listener, pilot)
+    assert code == 1
+    assert "/robot1/pilot: error: MG107 /robot1/odom: /robot1/drive offers BEST_EFFORT" in out
+
+
+def test_two_nodes_of_one_name_in_two_processes(plan: Path) -> None:
+    code, out, _ = check(plan, 5, drive("robot1"), drive("robot2"), drive("robot1"))
+    assert code == 1
+    assert "/robot1/drive: error: MG105 2 nodes have this name" in out
