@@ -67,8 +67,8 @@ class NodeFacts(NamedTuple):
 class Rule(NamedTuple):
     """One remap rule of one robot's node, as rcl takes it: ``source:=target``.
 
-    ``node`` is the stack's name of it, without the robot; ``kind`` is that of the name it is for, empty where
-    only the rule is known; ``why`` says what would go wrong without it.
+    ``node`` is the stack's name of it, without the robot; ``kind`` is that of the name it is for,
+    empty where only the rule is known; ``why`` says what would go wrong without it.
     """
 
     robot: str
