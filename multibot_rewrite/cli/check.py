@@ -12,7 +12,6 @@ from multibot_rewrite.graph import comparison
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.child import RosUnusable, observe
 from multibot_rewrite.graph.environment import settings
-from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.request import Request
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
@@ -43,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     """Compare, print a line for each finding, sum up."""
     plan = from_yaml(read_file(options.plan), options.plan)
     try:
-        graph = _graph(options, plan)
+        graph = _graph(options)
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return NO_ROS
@@ -70,10 +69,10 @@ def _code(found: list[comparison.GraphFinding], graph: Snapshot) -> int:
     return INCONCLUSIVE if doubts(graph) else DONE
 
 
-def _graph(options: argparse.Namespace, plan: Expectation) -> Snapshot:
+def _graph(options: argparse.Namespace) -> Snapshot:
     if options.snapshot:
         return from_json(read_file(options.snapshot), options.snapshot)
     environ = dict(os.environ)
     settings(environ)
-    nodes = tuple(node for robot in plan.robots for node in robot.nodes)
-    return observe(Request(options.timeout, nodes, ()), environ)
+    # Not only until the planned nodes are there: a twin or a leak may come after them.
+    return observe(Request(options.timeout), environ)
