@@ -17,15 +17,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from multibot_rewrite.graph import ask, gather
 from multibot_rewrite.graph import environment as surroundings
-from multibot_rewrite.graph import gather
 from multibot_rewrite.graph.request import ENDED, NO_RCLPY, Request, from_text
 from multibot_rewrite.graph.snapshot import (
     UNKNOWN_NODE,
     Caveat,
     Environment,
     GraphEndpoint,
-    Qos,
     Snapshot,
     to_json,
 )
@@ -34,9 +33,6 @@ from multibot_rewrite.remap.records import (
     CALLS,
     PUBLISHES,
     SERVES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
 )
 
 if TYPE_CHECKING:
@@ -47,8 +43,6 @@ if TYPE_CHECKING:
 POLL_SECONDS = 0.1
 # tf comes ten times a second or more; a shared topic of 100 robots took 1.3 s to be heard whole.
 TF_SECONDS = (1.5, 3.0)
-# rmw's word for no limit: the largest 64 bit number of nanoseconds.
-_ENDLESS = 2**63 - 1
 
 
 class _Eye(NamedTuple):
@@ -69,7 +63,7 @@ def main(arguments: Sequence[str]) -> int:
     threading.Thread(target=_wait_for_end, args=(stop,), daemon=True).start()
     try:
         import rclpy  # noqa: F401
-    except Exception as error:
+    except (ImportError, OSError) as error:  # OSError: a shared library that does not load
         sys.stderr.write(f"{type(error).__name__}: {error}\n")
         return NO_RCLPY
     snapshot = look(from_text(arguments[0]), stop)
@@ -118,8 +112,9 @@ def _taken(eye: _Eye, request: Request) -> tuple[list[str], list[GraphEndpoint]]
     """Names and endpoints, again for a while where they have not found one another."""
     limit = min(request.timeout, time.monotonic() - eye.started + gather.QUIET_SECONDS)
     while True:
-        names = _names(eye.node)
-        endpoints = _endpoints(eye.node, names, request)
+        names = ask.names_in(eye.node)
+        found = list(ask.by_node(eye.node, names, (*ask.QUESTIONS, *_ACTIONS), _gone()))
+        endpoints = ask.endpoints_of(eye.node, names, found, request.topics)
         owners = {end.node for end in endpoints}
         whole = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
         if whole or time.monotonic() - eye.started >= limit or eye.stop.wait(POLL_SECONDS):
@@ -158,8 +153,8 @@ def _settle(eye: _Eye, request: Request) -> str:
     expected_before: object = None
     changed = gather.Changes(0.0, 0.0)
     while not eye.stop.wait(POLL_SECONDS):
-        names = _names(eye.node)
-        ends = sorted(_by_node(eye.node, names, _QUESTIONS[:4]))
+        names = ask.names_in(eye.node)
+        ends = sorted(ask.by_node(eye.node, names, ask.QUESTIONS, _gone()))
         expected = [end for end in ends if end.node in request.expected]
         now = time.monotonic() - eye.started
         if (names, ends) != before:
@@ -171,19 +166,6 @@ def _settle(eye: _Eye, request: Request) -> str:
         if why:
             return why
     return ""
-
-
-def _names(node: Node) -> list[str]:
-    """Full names of all nodes but the looking one, duplicates kept."""
-    there = (_full(name, space) for name, space in node.get_node_names_and_namespaces())
-    return sorted(name for name in there if name != node.get_fully_qualified_name())
-
-
-def _full(name: str, namespace: str) -> str:
-    if name == UNKNOWN_NODE:
-        # Its namespace is a word of that kind, too, without a slash.
-        return f"/{name}"
-    return f"{namespace.rstrip('/')}/{name}"
 
 
 def _action_servers(node: Node, name: str, space: str) -> Any:
@@ -198,103 +180,17 @@ def _action_clients(node: Node, name: str, space: str) -> Any:
     return get_action_client_names_and_types_by_node(node, name, space)
 
 
-# The first four are enough to see whether anything changes.
-_QUESTIONS: tuple[tuple[str, str, Any], ...] = (
-    (TOPIC, PUBLISHES, lambda node, *who: node.get_publisher_names_and_types_by_node(*who)),
-    (TOPIC, SUBSCRIBES, lambda node, *who: node.get_subscriber_names_and_types_by_node(*who)),
-    (SERVICE, SERVES, lambda node, *who: node.get_service_names_and_types_by_node(*who)),
-    (SERVICE, CALLS, lambda node, *who: node.get_client_names_and_types_by_node(*who)),
+_ACTIONS: tuple[ask.Question, ...] = (
     (ACTION, SERVES, _action_servers),
     (ACTION, CALLS, _action_clients),
 )
 
 
-def _by_node(
-    node: Node, names: Iterable[str], questions: Iterable[tuple[str, str, Any]]
-) -> Iterator[GraphEndpoint]:
-    """What each node has; of two nodes with one name rcl shows the first."""
+def _gone() -> type[Exception]:
     from rclpy.node import NodeNameNonExistentError
 
-    for name in sorted(set(names)):
-        space, _, own = name.rpartition("/")
-        # It went away between two questions.
-        with suppress(NodeNameNonExistentError):
-            for kind, role, ask in questions:
-                for thing, types in ask(node, own, space or "/"):
-                    for type_ in types:
-                        yield GraphEndpoint(kind, role, thing, type_, "", name, None, "")
-
-
-def _endpoints(node: Node, names: list[str], request: Request) -> list[GraphEndpoint]:
-    """What all nodes have, with QoS and process where it is worth asking by topic."""
-    by_node = list(_by_node(node, names, _QUESTIONS))
-    topics = dict(node.get_topic_names_and_types())
-    wanted = gather.topics_to_ask(names, by_node, topics, request.topics)
-    endpoints = gather.merged(by_node, {topic: _by_topic(node, topic) for topic in wanted})
-    known = gather.processes(endpoints)
-    homeless = {end.node: end for end in by_node if end.node not in known and end.kind != ACTION}
-    return [*endpoints, *_replaced(node, endpoints, homeless)] if homeless else endpoints
-
-
-def _replaced(
-    node: Node, endpoints: list[GraphEndpoint], homeless: Mapping[str, GraphEndpoint]
-) -> Iterator[GraphEndpoint]:
-    """One endpoint of each node without a known process, again and with its process.
-
-    Takes what it tells anew out of ``endpoints``.
-    """
-    for name, end in homeless.items():
-        told = _by_topic(node, end.name) if end.kind == TOPIC else _by_service(node, end)
-        for better in told:
-            if better.node == name and better.role == end.role and end in endpoints:
-                endpoints.remove(end)
-                yield better
-
-
-def _by_topic(node: Node, topic: str) -> list[GraphEndpoint]:
-    own = node.get_fully_qualified_name()
-    found = [_told(TOPIC, PUBLISHES, topic, it) for it in node.get_publishers_info_by_topic(topic)]
-    found += [
-        _told(TOPIC, SUBSCRIBES, topic, it) for it in node.get_subscriptions_info_by_topic(topic)
-    ]
-    return [end for end in found if end.node != own]
-
-
-def _by_service(node: Node, end: GraphEndpoint) -> list[GraphEndpoint]:
-    """The endpoint behind a service as DDS has it: a server reads requests, a client writes."""
-    asking = "publishers" if end.role == CALLS else "subscriptions"
-    question = getattr(node, f"get_{asking}_info_by_topic")
-    infos = question(f"rq{end.name}Request", no_mangle=True)
-    found = (_told(SERVICE, end.role, end.name, info) for info in infos)
-    # The type and hash told are those of the request alone.
-    return [it._replace(type=end.type, type_hash="") for it in found]
-
-
-def _told(kind: str, role: str, name: str, info: Any) -> GraphEndpoint:
-    hash_ = str(info.topic_type_hash) if info.topic_type_hash.version > 0 else ""
-    # The first 12 bytes of a DDS gid are its participant.
-    process = bytes(info.endpoint_gid[:12]).hex()
-    owner = _full(info.node_name, info.node_namespace)
-    qos = _qos(info.qos_profile)
-    return GraphEndpoint(kind, role, name, info.topic_type, hash_, owner, qos, process)
-
-
-def _qos(profile: Any) -> Qos:
-    return Qos(
-        profile.history.name,
-        profile.depth,
-        profile.reliability.name,
-        profile.durability.name,
-        _seconds(profile.deadline),
-        _seconds(profile.lifespan),
-        profile.liveliness.name,
-        _seconds(profile.liveliness_lease_duration),
-    )
-
-
-def _seconds(duration: Any) -> float:
-    count = duration.nanoseconds
-    return float("inf") if count >= _ENDLESS or count == 0 else count / 1e9
+    gone: type[Exception] = NodeNameNonExistentError
+    return gone
 
 
 def _listen(
@@ -326,13 +222,17 @@ def _listen(
 
 def _tf_type() -> tuple[Any, str]:
     """The message type of tf, or None and why it cannot be had."""
+    from rclpy.exceptions import NoTypeSupportImportedException
+    from rclpy.type_support import check_for_type_support
+    from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
+
+    broken = (ImportError, AttributeError, NoTypeSupportImportedException, UnsupportedTypeSupport)
     try:
-        from rclpy.type_support import check_for_type_support
         from tf2_msgs.msg import TFMessage
 
         # Half installed, it fails only where it is used.
         check_for_type_support(TFMessage)
-    except Exception as error:
+    except broken as error:
         return None, str(error)
     return TFMessage, ""
 

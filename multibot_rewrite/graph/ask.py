@@ -1,0 +1,142 @@
+"""What a node of rclpy is asked about the graph, and its answers as records.
+
+The node is handed in: rclpy itself is imported in ``graph.ros`` alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
+from typing import Any
+
+from multibot_rewrite.graph import gather
+from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
+from multibot_rewrite.remap.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+)
+
+# Kind and role of the answer, and how a node is asked: (node, name, namespace) -> names and types.
+Question = tuple[str, str, Callable[..., Any]]
+# rmw's word for no limit: the largest 64 bit number of nanoseconds.
+_ENDLESS = 2**63 - 1
+
+
+def names_in(node: Any) -> list[str]:
+    """Full names of all nodes but the looking one, duplicates kept."""
+    there = (_full(name, space) for name, space in node.get_node_names_and_namespaces())
+    return sorted(name for name in there if name != node.get_fully_qualified_name())
+
+
+def _full(name: str, namespace: str) -> str:
+    if name == UNKNOWN_NODE:
+        # Its namespace is a word of that kind, too, without a slash.
+        return f"/{name}"
+    return f"{namespace.rstrip('/')}/{name}"
+
+
+# Enough to see whether anything changes.
+QUESTIONS: tuple[Question, ...] = (
+    (TOPIC, PUBLISHES, lambda node, *who: node.get_publisher_names_and_types_by_node(*who)),
+    (TOPIC, SUBSCRIBES, lambda node, *who: node.get_subscriber_names_and_types_by_node(*who)),
+    (SERVICE, SERVES, lambda node, *who: node.get_service_names_and_types_by_node(*who)),
+    (SERVICE, CALLS, lambda node, *who: node.get_client_names_and_types_by_node(*who)),
+)
+
+
+def by_node(
+    node: Any, names: Iterable[str], questions: Iterable[Question], gone: type[Exception]
+) -> Iterator[GraphEndpoint]:
+    """What each node has; of two nodes with one name rcl shows the first.
+
+    ``gone`` is what ``node`` raises for a node that is not there.
+    """
+    for name in sorted(set(names)):
+        space, _, own = name.rpartition("/")
+        # It went away between two questions.
+        with suppress(gone):
+            for kind, role, ask in questions:
+                for thing, types in ask(node, own, space or "/"):
+                    for type_ in types:
+                        yield GraphEndpoint(kind, role, thing, type_, "", name, None, "")
+
+
+def endpoints_of(
+    node: Any, names: list[str], found: list[GraphEndpoint], asked: Collection[str]
+) -> list[GraphEndpoint]:
+    """``found`` by node, with QoS and process where it is worth asking by topic.
+
+    ``asked`` are topics whose QoS is wanted in any case.
+    """
+    topics = dict(node.get_topic_names_and_types())
+    wanted = gather.topics_to_ask(names, found, topics, asked)
+    endpoints = gather.merged(found, {topic: _by_topic(node, topic) for topic in wanted})
+    known = gather.processes(endpoints)
+    homeless = {end.node: end for end in found if end.node not in known and end.kind != ACTION}
+    return [*endpoints, *_replaced(node, endpoints, homeless)] if homeless else endpoints
+
+
+def _replaced(
+    node: Any, endpoints: list[GraphEndpoint], homeless: Mapping[str, GraphEndpoint]
+) -> Iterator[GraphEndpoint]:
+    """One endpoint of each node without a known process, again and with its process.
+
+    Takes what it tells anew out of ``endpoints``.
+    """
+    for name, end in homeless.items():
+        told = _by_topic(node, end.name) if end.kind == TOPIC else _by_service(node, end)
+        for better in told:
+            if better.node == name and better.role == end.role and end in endpoints:
+                endpoints.remove(end)
+                yield better
+
+
+def _by_topic(node: Any, topic: str) -> list[GraphEndpoint]:
+    own = node.get_fully_qualified_name()
+    found = [_told(TOPIC, PUBLISHES, topic, it) for it in node.get_publishers_info_by_topic(topic)]
+    found += [
+        _told(TOPIC, SUBSCRIBES, topic, it) for it in node.get_subscriptions_info_by_topic(topic)
+    ]
+    return [end for end in found if end.node != own]
+
+
+def _by_service(node: Any, end: GraphEndpoint) -> list[GraphEndpoint]:
+    """The endpoint behind a service as DDS has it: a server reads requests, a client writes."""
+    asking = "publishers" if end.role == CALLS else "subscriptions"
+    question = getattr(node, f"get_{asking}_info_by_topic")
+    infos = question(f"rq{end.name}Request", no_mangle=True)
+    found = (_told(SERVICE, end.role, end.name, info) for info in infos)
+    # The type and hash told are those of the request alone.
+    return [it._replace(type=end.type, type_hash="") for it in found]
+
+
+def _told(kind: str, role: str, name: str, info: Any) -> GraphEndpoint:
+    hash_ = str(info.topic_type_hash) if info.topic_type_hash.version > 0 else ""
+    # The first 12 bytes of a DDS gid are its participant.
+    process = bytes(info.endpoint_gid[:12]).hex()
+    owner = _full(info.node_name, info.node_namespace)
+    qos = _qos(info.qos_profile)
+    return GraphEndpoint(kind, role, name, info.topic_type, hash_, owner, qos, process)
+
+
+def _qos(profile: Any) -> Qos:
+    return Qos(
+        profile.history.name,
+        profile.depth,
+        profile.reliability.name,
+        profile.durability.name,
+        _seconds(profile.deadline),
+        _seconds(profile.lifespan),
+        profile.liveliness.name,
+        _seconds(profile.liveliness_lease_duration),
+    )
+
+
+def _seconds(duration: Any) -> float:
+    count = duration.nanoseconds
+    return float("inf") if count >= _ENDLESS or count == 0 else count / 1e9
