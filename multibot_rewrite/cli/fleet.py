@@ -6,10 +6,13 @@ import argparse
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from multibot_rewrite.cli.output import say
-from multibot_rewrite.cli.process import PROGRAM
+from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.output import print_bytes, say
+from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS, Naming, make_naming
 from multibot_rewrite.remap.known import stack_of
 from multibot_rewrite.remap.plugins import plugin_nodes
@@ -41,13 +44,16 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--layout", default="postfix", metavar="NAME", help=f"one of {names}")
     parser.add_argument("--affix", default="postfix", metavar="SIDE", help="postfix or prefix")
     parser.add_argument("--topics", metavar="HOW", help="postfix, prefix or namespace")
+    parser.add_argument("-o", "--output", metavar="FILE", help="write it there")
     parser.add_argument(
         "--shared-topics", default=shared, metavar="A,B", help="default: %(default)s"
     )
 
 
 def build(options: argparse.Namespace) -> Fleet:
-    """Rewrite the description for each robot and make the fleet's table."""
+    """Rewrite the description for each robot, make the fleet's table and say what is wrong with it."""
+    if options.output:
+        check_target(options.output, [options.input], "--output")
     policy: dict[str, Any] = {
         "layout": options.layout,
         "affix": options.affix,
@@ -64,11 +70,25 @@ def build(options: argparse.Namespace) -> Fleet:
         for one in rewrite_all(options.input, options.robots, vocabulary=vocabulary, **policy)
     }
     plugins = {robot: list(plugin_nodes(found, robot)) for robot, found in inventories.items()}
-    return Fleet(build_table(options.robots, list(nodes), naming, plugins), inventories, naming)
+    table = build_table(options.robots, list(nodes), naming, plugins)
+    _tell(table.problems)
+    return Fleet(table, inventories, naming)
 
 
-def tell(problems: Iterable[Problem]) -> None:
-    """A line each to standard error."""
+def deliver(options: argparse.Namespace, text: str) -> None:
+    """Write what was made where the options say."""
+    if options.output:
+        write_all([(options.output, text.encode())])
+    else:
+        print_bytes(text.encode())
+
+
+def verdict(made: Fleet) -> int:
+    """The exit code: did the table have an error?"""
+    return STOPPED if any(problem.level == ERROR for problem in made.table.problems) else DONE
+
+
+def _tell(problems: Iterable[Problem]) -> None:
     for problem in problems:
         where = f"{problem.robot}: {problem.node}" if problem.robot else problem.node
         hint = f" ({problem.hint})" if problem.hint else ""

@@ -6,12 +6,9 @@ import argparse
 from collections.abc import Iterator
 
 from multibot_rewrite.cli import fleet
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import print_bytes, say
-from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.output import say
+from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.tables import Grid, print_report
-from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.model import ERROR
 from multibot_rewrite.remap.bridge import as_yaml, bridge
 from multibot_rewrite.remap.forms import EVERY_ROBOT, FORMS
 from multibot_rewrite.remap.records import Table
@@ -35,22 +32,18 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--format", metavar="FORM", choices=("table", *FORMS, BRIDGE), default="table",
         help=f"table (default), {', '.join(FORMS)}, or {BRIDGE} (ros_gz_bridge)",
     )  # fmt: skip
-    parser.add_argument("-o", "--output", metavar="FILE", help="write it there")
 
 
 def run(options: argparse.Namespace) -> int:
     """Build the table, say what is wrong with it, print it."""
-    if options.output:
-        check_target(options.output, [options.input], "--output")
     made = fleet.build(options)
-    fleet.tell(made.table.problems)
     if options.format == "table":
         print_report(_parts(made.table))
     elif options.format == BRIDGE:
-        _write(options, _bridge(made))
+        fleet.deliver(options, _bridge(made))
     else:
-        _write(options, FORMS[options.format](made.table))
-    return STOPPED if any(problem.level == ERROR for problem in made.table.problems) else DONE
+        fleet.deliver(options, FORMS[options.format](made.table))
+    return fleet.verdict(made)
 
 
 def _bridge(made: fleet.Fleet) -> str:
@@ -59,13 +52,6 @@ def _bridge(made: fleet.Fleet) -> str:
         message = f"line {item.line}: {item.what} has no topic, its default hangs on the world"
         say(f"{item.robot}: warning: {message} (write the element)", PROGRAM)
     return as_yaml(carried)
-
-
-def _write(options: argparse.Namespace, text: str) -> None:
-    if not options.output:
-        print_bytes(text.encode())
-        return
-    write_all([(options.output, text.encode())])
 
 
 def _parts(table: Table) -> Iterator[str | Grid]:
