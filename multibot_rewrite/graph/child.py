@@ -1,4 +1,4 @@
-"""Looking at the graph from a process that cannot be taken down by rcl: the looking is a child."""
+"""Speaking to the graph from a process that cannot be taken down by rcl: the speaking is a child."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ import sys
 import tempfile
 import threading
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from typing import IO
+from contextlib import contextmanager, suppress
+from typing import IO, NamedTuple
 
 from multibot_rewrite.graph.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
@@ -18,6 +18,7 @@ INSTALL = (
     "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, with Python 3.10 to 3.12,"
     " pip install 'multibot_rewrite[ros]'"
 )
+LOOK, PLAY = "multibot_rewrite.graph.look", "multibot_rewrite.graph.play"
 # For import and start, for the dear questions in a fleet of 500 nodes, and for tf.
 SLACK_SECONDS = 45.0
 _PATIENCE = 3.0
@@ -27,52 +28,99 @@ class RosUnusable(MultibotError):
     """There is no rclpy, or it does not start; the message says why and what to do."""
 
 
+class Child(NamedTuple):
+    """A process of ours that speaks to the graph, and what it says besides its messages."""
+
+    process: subprocess.Popen[bytes]
+    errors: IO[bytes]
+    environ: Mapping[str, str]
+
+    def next(self) -> bytes | None:
+        """Its next message, or None where it ended well; raises RosUnusable where it did not."""
+        assert self.process.stdout is not None
+        length = self.process.stdout.readline()
+        data = self.process.stdout.read(int(length)) if length else b""
+        if length and len(data) == int(length):
+            return data
+        code = self.process.wait()
+        if code == 0:
+            return None
+        self.errors.seek(0)
+        said = self.errors.read().decode("utf-8", "replace")
+        raise RosUnusable(_explained(code, said, self.environ))
+
+
 def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
     """A snapshot of the graph that ``environ`` leads to; raises RosUnusable.
 
     No process is left behind, whatever ends this call.
     """
-    command = [sys.executable, "-m", "multibot_rewrite.graph.ros", to_text(request)]
-    with tempfile.TemporaryFile() as errors:
-        with _running(command, environ, errors, request.timeout + SLACK_SECONDS) as child:
-            assert child.stdout is not None
-            data = child.stdout.read()
-            code = child.wait()
-        if code == 0:
-            return from_json(data, "the view of the graph")
-        errors.seek(0)
-        raise RosUnusable(_explained(code, errors.read().decode("utf-8", "replace"), environ))
+    limit = request.timeout + SLACK_SECONDS
+    with running(LOOK, to_text(request), environ, limit) as child:
+        data = child.next()
+    assert data is not None
+    return from_json(data, "the view of the graph")
+
+
+def watch(request: Request, environ: Mapping[str, str]) -> Iterator[Snapshot]:
+    """Snapshots of the graph for ``request.timeout`` seconds, one whenever something changed.
+
+    Raises RosUnusable. No process is left behind once the iterator is closed.
+    """
+    order = to_text(request._replace(watch=True))
+    with running(LOOK, order, environ) as child:
+        end = threading.Timer(request.timeout, child.process.terminate)
+        end.daemon = True
+        end.start()
+        while (data := child.next()) is not None:
+            yield from_json(data, "the view of the graph")
+        end.cancel()
 
 
 @contextmanager
-def _running(
-    command: list[str], environ: Mapping[str, str], errors: IO[bytes], seconds: float
-) -> Iterator[subprocess.Popen[bytes]]:
-    """The child, which ends with the block and after ``seconds`` at the latest."""
+def running(
+    module: str, order: str, environ: Mapping[str, str], seconds: float | None = None
+) -> Iterator[Child]:
+    """The child, told its order; ends with the block, and after ``seconds`` at the latest."""
+    command = [sys.executable, "-m", module]
     pipe = subprocess.PIPE
-    child = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environ)
-    limit = threading.Timer(seconds, child.kill)
-    limit.daemon = True
-    limit.start()
-    try:
-        yield child
-    finally:
-        limit.cancel()
-        _end(child)
-
-
-def _end(child: subprocess.Popen[bytes]) -> None:
-    """Ask, insist, force: a clean end takes it out of everybody's view at once."""
-    assert child.stdin is not None and child.stdout is not None
-    child.stdin.close()
-    for insist in (child.terminate, child.kill):
+    with tempfile.TemporaryFile() as errors:
+        process = subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=errors, env=environ)
+        limit = threading.Timer(seconds or threading.TIMEOUT_MAX, process.kill)
+        limit.daemon = True
+        limit.start()
         try:
-            child.wait(_PATIENCE)
+            _tell(process, order)
+            yield Child(process, errors, environ)
+        finally:
+            limit.cancel()
+            _end(process)
+
+
+def _tell(process: subprocess.Popen[bytes], order: str) -> None:
+    assert process.stdin is not None
+    try:
+        process.stdin.write(f"{order}\n".encode())
+        process.stdin.flush()
+    except BrokenPipeError:
+        # It ended before it read: its exit code says why.
+        return
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Ask, insist, force: a clean end takes it out of everybody's view at once."""
+    assert process.stdin is not None and process.stdout is not None
+    # What was not sent to a process that is gone does not matter.
+    with suppress(BrokenPipeError):
+        process.stdin.close()
+    for insist in (process.terminate, process.kill):
+        try:
+            process.wait(_PATIENCE)
             break
         except subprocess.TimeoutExpired:
             insist()
-    child.wait()
-    child.stdout.close()
+    process.wait()
+    process.stdout.close()
 
 
 def _explained(code: int, said: str, environ: Mapping[str, str]) -> str:

@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import (
+    CHANGING,
     TIMEOUT,
     UNKNOWN_NODE,
     Caveat,
@@ -128,6 +129,8 @@ def view_caveats(
     if settled == TIMEOUT:
         text = "the graph was still changing when time was up; give a longer --timeout"
         yield Caveat("not-settled", True, text)
+    if settled == CHANGING:
+        yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:
         where = f"domain {asked.domain}, range {asked.range}"
         text = f"no node was seen ({where}); is it the robots' ROS_DOMAIN_ID and discovery range?"

@@ -18,9 +18,10 @@ from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: less quiet than that says nothing.
 QUIET_SECONDS = 3.5
-# The endpoints of one participant come in a burst.
-BURST_SECONDS = 0.3
-TF_TYPE = "tf2_msgs/msg/TFMessage"
+# The endpoints of one participant come in a burst; a busy machine may pause in it.
+BURST_SECONDS = 0.5
+# The second stands in for the first in a rehearsal on a machine without tf2_msgs.
+TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
 # Almost every node publishes one of these, so few questions tell who shares a process.
 COMMON_TOPICS = ("/parameter_events", "/rosout")
 
@@ -81,7 +82,7 @@ def topics_to_ask(
     return sorted(
         topic
         for topic, types in topics.items()
-        if len(sides[topic]) != 1 or topic in wanted or TF_TYPE in types
+        if len(sides[topic]) != 1 or topic in wanted or not set(TF_TYPES).isdisjoint(types)
     )
 
 

@@ -16,8 +16,9 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
 SCHEMA = 1
-# Why the looking ended: everything expected was there, nothing changed any more, time was up.
-EXPECTED, QUIET, TIMEOUT = "expected", "quiet", "timeout"
+# Why the looking ended: everything expected was there, nothing changed any more, time was up; or
+# it did not end, the graph being watched.
+EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
 # What rmw says of an endpoint whose participant has not told its nodes yet.
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
 
@@ -93,7 +94,7 @@ class Environment(NamedTuple):
     """How the graph was looked at, and how far that can be trusted.
 
     ``participants`` counts the DDS participants seen, the looking one not. ``settled`` is
-    ``EXPECTED``, ``QUIET`` or ``TIMEOUT``, reached after ``seconds``.
+    ``EXPECTED``, ``QUIET``, ``TIMEOUT`` or ``CHANGING``, reached after ``seconds``.
     """
 
     domain: int
@@ -120,7 +121,7 @@ class Snapshot(NamedTuple):
 _WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
     (GraphEndpoint, "kind"): KINDS,
     (GraphEndpoint, "role"): ROLES,
-    (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT),
+    (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
 }
 _FULL_NAMES = {
     (GraphNode, "name"),

@@ -1,0 +1,204 @@
+"""Looking at the live graph: ``python -m multibot_rewrite.graph.look``, a child of the command.
+
+It tells one snapshot when the graph is settled or, watching, one whenever something changed.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import Any, NamedTuple
+
+from multibot_rewrite.graph import ask, gather, ros
+from multibot_rewrite.graph import environment as surroundings
+from multibot_rewrite.graph.ears import Ears, Take
+from multibot_rewrite.graph.request import ENDED, Request, from_text
+from multibot_rewrite.graph.snapshot import (
+    CHANGING,
+    QUIET,
+    UNKNOWN_NODE,
+    Environment,
+    GraphEndpoint,
+    Snapshot,
+    to_json,
+)
+from multibot_rewrite.graph.worker import Tell, work
+from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
+
+# 10 looks a second cost less than a tenth of a core with 100 robots.
+POLL_SECONDS = 0.1
+# tf comes ten times a second or more; a shared topic of 100 robots took 1.3 s to be heard whole.
+TF_SECONDS = (1.5, 3.0)
+# Who watches is told this soon, since more may be told later,
+GLANCE_SECONDS = 0.15
+# and no later than this, however long the graph goes on changing.
+PATIENCE_SECONDS = 1.0
+
+
+class _Eye(NamedTuple):
+    """An open view of the graph; ``stop`` is set when somebody wants the looking to end."""
+
+    session: ros.Session
+    node: Any
+    request: Request
+    stop: threading.Event
+    started: float
+
+    def now(self) -> float:
+        """Seconds since the looking began."""
+        return time.monotonic() - self.started
+
+
+def main(order: str, stop: threading.Event, tell: Tell) -> int:
+    """Look as ``order`` says; returns the exit code."""
+    request = from_text(order)
+    with _opened(request, stop) as eye:
+        if request.watch:
+            for snapshot in watch(eye):
+                tell(to_json(snapshot))
+            return 0
+        snapshot = look(eye)
+    if stop.is_set():
+        return ENDED
+    tell(to_json(snapshot))
+    return 0
+
+
+@contextmanager
+def _opened(request: Request, stop: threading.Event) -> Iterator[_Eye]:
+    with ros.opened() as session:
+        node = ros.add_node(session, f"_multibot_snapshot_{os.getpid()}")
+        yield _Eye(session, node, request, stop, time.monotonic())
+
+
+def look(eye: _Eye) -> Snapshot:
+    """A snapshot, once the graph is settled; of no use where ``stop`` was set meanwhile."""
+    why = _settle(eye)
+    seconds = eye.now()
+    names, endpoints = _taken(eye)
+    ears = Ears(partial(_subscribe, eye))
+    ears.attend(endpoints, eye.request.stand_ins)
+    while not eye.stop.is_set() and ears.waiting(*TF_SECONDS):
+        ros.spin(eye.session, POLL_SECONDS)
+    return _snapshot(eye, names, endpoints, ears, (why, seconds))
+
+
+def watch(eye: _Eye) -> Iterator[Snapshot]:
+    """A snapshot whenever something changed, and one when nothing did for a while."""
+    ears = Ears(partial(_subscribe, eye))
+    before: object = None
+    told: object = None
+    changed = told_at = 0.0
+    while not eye.stop.is_set():
+        ros.spin(eye.session, POLL_SECONDS)
+        state = (*_overview(eye), ears.edges())
+        now = eye.now()
+        if state != before:
+            before, changed = state, now
+        quiet = now - changed >= gather.QUIET_SECONDS
+        due = now - changed >= GLANCE_SECONDS or now - told_at >= PATIENCE_SECONDS
+        if due and told != (state, quiet):
+            told, told_at = (state, quiet), now
+            names, endpoints = _view(eye)
+            ears.attend(endpoints, eye.request.stand_ins)
+            yield _snapshot(eye, names, endpoints, ears, (QUIET if quiet else CHANGING, now))
+
+
+def _overview(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
+    """The nodes and what each has: enough to see whether anything changed."""
+    names = ask.names_in(eye.node)
+    return names, sorted(ask.by_node(eye.node, names, ask.QUESTIONS, ros.gone()))
+
+
+def _settle(eye: _Eye) -> str:
+    """Wait until the graph is settled; why it is, empty where the looking was stopped."""
+    request = eye.request
+    before: object = None
+    expected_before: object = None
+    changed = gather.Changes(0.0, 0.0)
+    while not eye.stop.wait(POLL_SECONDS):
+        names, ends = _overview(eye)
+        expected = [end for end in ends if end.node in request.expected]
+        now = eye.now()
+        if (names, ends) != before:
+            before, changed = (names, ends), changed._replace(all=now)
+        if expected != expected_before:
+            expected_before, changed = expected, changed._replace(expected=now)
+        seen = {end.node for end in ends}
+        why = gather.settled(now, changed, seen, request.expected, request.timeout)
+        if why:
+            return why
+    return ""
+
+
+def _taken(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
+    """Names and endpoints, again for a while where they have not found one another."""
+    limit = min(eye.request.timeout, eye.now() + gather.QUIET_SECONDS)
+    while True:
+        names, endpoints = _view(eye)
+        owners = {end.node for end in endpoints}
+        whole = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
+        if whole or eye.now() >= limit or eye.stop.wait(POLL_SECONDS):
+            return names, endpoints
+
+
+def _view(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
+    """Names and endpoints, with QoS and process where they are worth asking for."""
+    names = ask.names_in(eye.node)
+    found = list(ask.by_node(eye.node, names, (*ask.QUESTIONS, *_ACTIONS), ros.gone()))
+    return names, ask.endpoints_of(eye.node, names, found, eye.request.topics)
+
+
+_ACTIONS: tuple[ask.Question, ...] = (
+    (ACTION, SERVES, ros.action_servers),
+    (ACTION, CALLS, ros.action_clients),
+)
+
+
+def _subscribe(
+    eye: _Eye, topic: str, word: str, latched: bool, take: Take
+) -> Callable[[], None] | str:
+    """A subscription for the ears: what ends it, or why the type cannot be had."""
+    type_, reason = ros.type_of(word)
+    return ros.subscribe(eye.node, type_, topic, latched, take) if type_ else reason
+
+
+def _snapshot(
+    eye: _Eye,
+    names: list[str],
+    endpoints: list[GraphEndpoint],
+    ears: Ears,
+    settled: tuple[str, float],
+) -> Snapshot:
+    groups = gather.processes(endpoints)
+    nodes = gather.placed_nodes(names, groups)
+    placed = tuple(gather.placed_endpoints(endpoints, groups))
+    asked = surroundings.settings(os.environ)
+    why, seconds = settled
+    caveats = [
+        *surroundings.setting_caveats(os.environ),
+        *surroundings.view_caveats(nodes, placed, asked, why, eye.request.expected),
+        *ears.caveats(),
+    ]
+    around = Environment(
+        eye.session.context.get_domain_id(),
+        asked.range,
+        asked.static_peers,
+        ros.middleware(),
+        asked.discovery_server,
+        asked.super_client,
+        surroundings.participants(placed),
+        why,
+        round(seconds, 2),
+        tuple(caveats),
+    )
+    return Snapshot(tuple(nodes), placed, tuple(gather.frames(ears.edges(), placed)), around)
+
+
+if __name__ == "__main__":
+    sys.exit(work(main))
