@@ -3,76 +3,83 @@
 from __future__ import annotations
 
 import argparse
-import os
+from collections.abc import Sequence
+from math import inf
 
+from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.snapshot import INCONCLUSIVE, NO_ROS
-from multibot_rewrite.graph import comparison
+from multibot_rewrite.cli.watch import WORDS, follow
 from multibot_rewrite.graph.check import check, doubts
-from multibot_rewrite.graph.child import RosUnusable, observe
-from multibot_rewrite.graph.environment import settings
+from multibot_rewrite.graph.child import RosUnusable, observe, watch
+from multibot_rewrite.graph.comparison import GraphFinding
+from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.request import Request
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
-from multibot_rewrite.model import ERROR
+from multibot_rewrite.graph.watching import Verdict, final, judge
 from multibot_rewrite.sources import read_file
 
 ABOUT = "is the running system what was planned?"
 MORE = """\
 examples:
   multibot check plan.yaml                         the graph that runs now
+  multibot check plan.yaml --watch                 show every change until Ctrl-C
   multibot check plan.yaml --snapshot graph.json   one that was written before; needs no ROS
 exit codes: 0 as planned; 1 something is wrong; 2 wrong use or unreadable input; 3 inconclusive: the
-view may be incomplete; 4 rclpy or its RMW is missing or does not start
+view may be incomplete; 4 rclpy or its RMW is missing or does not start. With --watch it is the
+worst that was seen; what was not there yet before everything was does not count
 """
+CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     parser.epilog = MORE
     parser.add_argument("plan", metavar="PLAN", help="what multibot plan wrote")
-    parser.add_argument("--snapshot", metavar="FILE", help="what multibot snapshot wrote")
-    parser.add_argument(
-        "--timeout", type=float, default=15.0, metavar="S", help="look S seconds (default: 15)"
+    seen = parser.add_mutually_exclusive_group()
+    seen.add_argument("--snapshot", metavar="FILE", help="what multibot snapshot wrote")
+    seen.add_argument(
+        "--watch", action="store_true", help="show every change until Ctrl-C or --timeout"
     )
+    live.options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
-    """Compare, print a line for each finding, sum up."""
+    """Compare, print a line for each finding, sum up; returns the exit code."""
     plan = from_yaml(read_file(options.plan), options.plan)
     try:
-        graph = _graph(options)
+        return _watch(options, plan) if options.watch else _check(options, plan)
     except RosUnusable as error:
         say(str(error), PROGRAM)
-        return NO_ROS
+        return live.NO_ROS
+
+
+def _check(options: argparse.Namespace, plan: Expectation) -> int:
+    graph = _graph(options)
     found = check(plan, graph)
     for finding in found:
         print(finding)
     for caveat in doubts(graph):
         say(f"incomplete: {caveat.message}", PROGRAM)
-    code = _code(found, graph)
-    say(f"{len(plan.robots)} robots, {len(found)} findings: {VERDICTS[code]}", PROGRAM)
-    return code
+    return _conclude(plan, found, judge(found, graph))
 
 
-VERDICTS = {
-    DONE: "as planned",
-    STOPPED: "not as planned",
-    INCONCLUSIVE: "inconclusive, the view may be incomplete",
-}
-
-
-def _code(found: list[comparison.GraphFinding], graph: Snapshot) -> int:
-    if any(finding.level == ERROR for finding in found):
-        return STOPPED
-    return INCONCLUSIVE if doubts(graph) else DONE
+def _conclude(plan: Expectation, found: Sequence[GraphFinding], verdict: Verdict) -> int:
+    say(f"{len(plan.robots)} robots, {len(found)} findings: {WORDS[verdict]}", PROGRAM)
+    return CODES[verdict]
 
 
 def _graph(options: argparse.Namespace) -> Snapshot:
     if options.snapshot:
         return from_json(read_file(options.snapshot), options.snapshot)
-    environ = dict(os.environ)
-    settings(environ)
     # Not only until the planned nodes are there: a twin or a leak may come after them.
-    return observe(Request(options.timeout), environ)
+    return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
+
+
+def _watch(options: argparse.Namespace, plan: Expectation) -> int:
+    last = follow(plan, watch(Request(options.timeout or inf), live.environ(options.domain)))
+    if last is None:
+        say("ended before anything was seen", PROGRAM)
+        return live.INCONCLUSIVE
+    return _conclude(plan, last.found, final(last))

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import argparse
-import math
-import os
 from collections import Counter
 from collections.abc import Iterator
 
+from multibot_rewrite.cli import live
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, print_report
 from multibot_rewrite.graph.child import RosUnusable, observe
-from multibot_rewrite.graph.environment import MAX_DOMAIN, settings
 from multibot_rewrite.graph.request import Request
 from multibot_rewrite.graph.snapshot import QUIET, Snapshot, incomplete, to_json
 from multibot_rewrite.remap.records import (
@@ -27,7 +25,6 @@ from multibot_rewrite.remap.records import (
 )
 
 ABOUT = "what runs in the ROS graph now: nodes, endpoints, tf, environment"
-INCONCLUSIVE, NO_ROS = 3, 4
 MORE = """\
 The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.
 exit codes: 0 done; 2 wrong use; 3 something may be missing in the view, which is written all the
@@ -49,57 +46,38 @@ def options(parser: argparse.ArgumentParser) -> None:
         "-o", dest="output", metavar="FILE", help="write JSON (- is standard output)"
     )
     parser.add_argument(
-        "--timeout", type=_seconds, default=15.0, metavar="S", help="look S seconds (default: 15)"
+        "--expect",
+        nargs="+",
+        type=live.full_name,
+        default=[],
+        metavar="NODE",
+        help="/robot1/node ...",
     )
     parser.add_argument(
-        "--expect", nargs="+", type=_full_name, default=[], metavar="NODE", help="/robot1/node ..."
+        "--topic",
+        nargs="+",
+        type=live.full_name,
+        default=[],
+        metavar="TOPIC",
+        help="tell its QoS too",
     )
-    parser.add_argument(
-        "--topic", nargs="+", type=_full_name, default=[], metavar="TOPIC", help="tell its QoS too"
-    )
-    parser.add_argument(
-        "--domain", type=_domain, metavar="N", help="instead of ROS_DOMAIN_ID, 0 to 232"
-    )
-
-
-def _seconds(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0 < value <= 3600:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a time, give seconds up to 3600")
-    return value
-
-
-def _full_name(text: str) -> str:
-    if not text.startswith("/"):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a full name, give for example /{text}")
-    return text
-
-
-def _domain(text: str) -> int:
-    if not text.isdecimal() or int(text) > MAX_DOMAIN:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a domain, give 0 to {MAX_DOMAIN}")
-    return int(text)
+    live.options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
     """Look, tell, say what is to be known about the view; returns the exit code."""
-    environ = dict(os.environ)
-    if options.domain is not None:
-        environ["ROS_DOMAIN_ID"] = str(options.domain)
-    settings(environ)
-    request = Request(options.timeout, tuple(options.expect), tuple(options.topic))
+    request = Request(
+        options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
+    )
     try:
-        snapshot = observe(request, environ)
+        snapshot = observe(request, live.environ(options.domain))
     except RosUnusable as error:
         say(str(error), PROGRAM)
-        return NO_ROS
+        return live.NO_ROS
     _deliver(snapshot, options.output)
     for caveat in snapshot.environment.caveats:
         say(f"{'incomplete' if caveat.incomplete else 'note'}: {caveat.message}", PROGRAM)
-    return INCONCLUSIVE if incomplete(snapshot) else DONE
+    return live.INCONCLUSIVE if incomplete(snapshot) else DONE
 
 
 def _deliver(snapshot: Snapshot, output: str | None) -> None:

@@ -11,6 +11,7 @@ from multibot_rewrite.cli.output import print_bytes
 
 if TYPE_CHECKING:
     from rich.table import Table
+    from rich.text import Text
 
 NUMBERS = ("count", "files", "rows")
 # Wider than any line: what is read by a program or from a file is not folded.
@@ -35,16 +36,22 @@ def print_report(parts: Iterable[str | Grid]) -> None:
 def render(parts: Iterable[str | Grid], terminal: bool, width: int | None = None) -> str:
     """The report as text; ``width`` is for a terminal, whose own it is if not given."""
     from rich.console import Console
-    from rich.text import Text
 
     console = Console(
         file=io.StringIO(), force_terminal=terminal, width=width if terminal else ENDLESS
     )
     with console.capture() as capture:
         for part in parts:
-            # Text, because brackets in a str would be read as markup.
-            console.print(_table(part) if isinstance(part, Grid) else Text(part))
+            console.print(renderable(part))
     return "".join(f"{line.rstrip()}\n" for line in capture.get().splitlines())
+
+
+def renderable(part: str | Grid) -> Table | Text:
+    """A part of a report as Rich prints it."""
+    from rich.text import Text
+
+    # Text, because brackets in a str would be read as markup.
+    return _table(part) if isinstance(part, Grid) else Text(part)
 
 
 def _table(grid: Grid) -> Table:

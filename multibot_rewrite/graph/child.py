@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple
 
@@ -62,14 +62,15 @@ def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
     return from_json(data, "the view of the graph")
 
 
-def watch(request: Request, environ: Mapping[str, str]) -> Iterator[Snapshot]:
+def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, None, None]:
     """Snapshots of the graph for ``request.timeout`` seconds, one whenever something changed.
 
     Raises RosUnusable. No process is left behind once the iterator is closed.
     """
     order = to_text(request._replace(watch=True))
     with running(LOOK, order, environ) as child:
-        end = threading.Timer(request.timeout, child.process.terminate)
+        seconds = min(request.timeout, threading.TIMEOUT_MAX)
+        end = threading.Timer(seconds, child.process.terminate)
         end.daemon = True
         end.start()
         while (data := child.next()) is not None:

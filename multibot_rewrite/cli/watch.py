@@ -1,0 +1,104 @@
+"""``multibot check --watch``: the comparison kept live, as a screen or as lines."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Generator, Iterator
+from contextlib import ExitStack, closing, contextmanager
+
+from multibot_rewrite.cli.tables import Grid, renderable
+from multibot_rewrite.graph.comparison import GraphFinding
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
+from multibot_rewrite.graph.watching import Moment, Verdict, next_moment
+
+WORDS = {
+    Verdict.PLANNED: "as planned",
+    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
+    Verdict.WRONG: "not as planned",
+}
+# As many findings as a screen holds beside the robots.
+_SHOWN = 15
+Show = Callable[[Moment], None]
+
+
+def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> Moment | None:
+    """Show every change until the snapshots end or the user ends it; the last state."""
+    moment: Moment | None = None
+    with ExitStack() as stack:
+        stack.enter_context(closing(snapshots))
+        show = stack.enter_context(_screen()) if sys.stdout.isatty() else _print_lines
+        try:
+            for graph in snapshots:
+                moment = next_moment(plan, graph, moment)
+                show(moment)
+        except KeyboardInterrupt:
+            # The usual way to end it.
+            return moment
+    return moment
+
+
+def _print_lines(moment: Moment) -> None:
+    """What changed, for a log: findings come with + and go with -."""
+    at = f"{moment.graph.environment.seconds:7.1f} s"
+    if moment.whole:
+        for sign, findings in (("+", moment.appeared), ("-", moment.solved)):
+            for finding in findings:
+                print(f"{at}  {sign} {finding}")
+    print(f"{at}  {_headline(moment)}", flush=True)
+
+
+@contextmanager
+def _screen() -> Iterator[Show]:
+    """A screen that is drawn anew at every change."""
+    from rich.console import Group
+    from rich.live import Live
+
+    with Live(auto_refresh=False) as live:
+        yield lambda moment: live.update(Group(*map(renderable, _parts(moment))), refresh=True)
+
+
+def _parts(moment: Moment) -> Iterator[str | Grid]:
+    yield _headline(moment)
+    yield ""
+    per_robot = {robot.robot: 0 for robot in moment.robots}
+    for finding in moment.found:
+        per_robot[finding.robot] = per_robot.get(finding.robot, 0) + 1
+    rows = [
+        (it.robot, _of(it.nodes), _of(it.names), str(per_robot[it.robot])) for it in moment.robots
+    ]
+    # Those with findings first: a screen does not hold a hundred.
+    rows.sort(key=lambda row: row[3] == "0")
+    yield Grid(("robot", "nodes", "names", "findings"), rows[:_SHOWN])
+    yield from _more(len(rows), "robots")
+    yield ""
+    yield from map(str, _worst_first(moment.found)[:_SHOWN])
+    yield from _more(len(moment.found), "findings")
+
+
+def _worst_first(found: tuple[GraphFinding, ...]) -> list[GraphFinding]:
+    return sorted(found, key=lambda finding: finding.level != "error")
+
+
+def _more(count: int, what: str) -> Iterator[str]:
+    if count > _SHOWN:
+        yield f"and {count - _SHOWN} more {what}"
+
+
+def _headline(moment: Moment) -> str:
+    """One line: how much is there, and what it comes to."""
+    nodes = _of(_sum(it.nodes for it in moment.robots))
+    names = _of(_sum(it.names for it in moment.robots))
+    moving = moment.graph.environment.settled == CHANGING
+    found = len(moment.found)
+    said = "still changing" if moving else WORDS[moment.verdict]
+    return f"{nodes} nodes, {names} names, {found} finding{'s' * (found != 1)}: {said}"
+
+
+def _sum(pairs: Iterator[tuple[int, int]]) -> tuple[int, int]:
+    seen, planned = zip((0, 0), *pairs, strict=True)
+    return sum(seen), sum(planned)
+
+
+def _of(pair: tuple[int, int]) -> str:
+    return f"{pair[0]}/{pair[1]}"
