@@ -9,7 +9,7 @@ from functools import partial
 from typing import NamedTuple
 
 from multibot_rewrite import __version__
-from multibot_rewrite.cli import check, coverage, plan, remap, snapshot, vocabulary
+from multibot_rewrite.cli import check, coverage, learn, plan, remap, snapshot, vocabulary
 from multibot_rewrite.cli.process import PROGRAM, Parser, guarded
 
 
@@ -25,6 +25,7 @@ class Command(NamedTuple):
 COMMANDS = (
     Command("check", check.ABOUT, check.options, check.run),
     Command("coverage", coverage.ABOUT, coverage.options, coverage.run),
+    Command("learn", learn.ABOUT, learn.options, learn.run),
     Command("plan", plan.ABOUT, plan.options, plan.run),
     Command("remap", remap.ABOUT, remap.options, remap.run),
     Command("snapshot", snapshot.ABOUT, snapshot.options, snapshot.run),
