@@ -42,7 +42,7 @@ def test_nav2_for_two_robots_has_no_error(layout: str, capsys: pytest.CaptureFix
 def test_a_postfix_names_six_rules_for_an_action(capsys: pytest.CaptureFixture[str]) -> None:
     _, out, _ = run(capsys, ROVER, "robot1", "--stack", "nav2", "--format", "ros-args")
     for part in ("", "/_action/send_goal", "/_action/cancel_goal", "/_action/feedback"):
-        assert f"navigate_to_pose{part}:=navigate_to_pose{part}/robot1" in out, part
+        assert f"navigate_to_pose{part}:=navigate_to_pose/robot1{part}" in out, part
 
 
 @pytest.mark.parametrize("form", sorted(FORMS))

@@ -56,16 +56,20 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace, plan: Expectation) -> int:
-    graph = _graph(options)
+    return conclude(options, plan, _graph(options))
+
+
+def conclude(options: argparse.Namespace, plan: Expectation, graph: Snapshot) -> int:
+    """Compare, print a line for each finding, draw what is asked for; the exit code."""
     found = check(plan, graph)
     for finding in found:
         print(finding)
     for caveat in doubts(graph):
         say(f"incomplete: {caveat.message}", PROGRAM)
-    return _conclude(plan, found, judge(found, graph))
+    return _sum_up(plan, found, judge(found, graph))
 
 
-def _conclude(plan: Expectation, found: Sequence[GraphFinding], verdict: Verdict) -> int:
+def _sum_up(plan: Expectation, found: Sequence[GraphFinding], verdict: Verdict) -> int:
     say(f"{len(plan.robots)} robots, {len(found)} findings: {WORDS[verdict]}", PROGRAM)
     return CODES[verdict]
 
@@ -82,4 +86,4 @@ def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     if last is None:
         say("ended before anything was seen", PROGRAM)
         return live.INCONCLUSIVE
-    return _conclude(plan, last.found, final(last))
+    return _sum_up(plan, last.found, final(last))

@@ -11,6 +11,8 @@ from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.graph.expectation import Expectation, expect
+from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import builtin_tree, rewrite_all
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS, Naming, make_naming
@@ -24,11 +26,13 @@ from multibot_rewrite.rewriting.document import read_document
 
 
 class Fleet(NamedTuple):
-    """A fleet's table, and what each robot's rewritten description holds."""
+    """A fleet's table, what each robot's rewritten description holds, and the transforms that each
+    robot's nodes send."""
 
     table: Table
     inventories: dict[str, Inventory]
     naming: Naming
+    edges: Edges
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -50,8 +54,11 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def build(options: argparse.Namespace) -> Fleet:
-    """Rewrite the description for each robot, make the fleet's table and say what is wrong with it."""
+def build(options: argparse.Namespace, also: str = "") -> Fleet:
+    """Rewrite the description for each robot, make the fleet's table and say what is wrong with it.
+
+    ``also`` is a node that every robot runs, too.
+    """
     if options.output:
         check_target(options.output, [options.input], "--output")
     policy: dict[str, Any] = {
@@ -61,7 +68,8 @@ def build(options: argparse.Namespace) -> Fleet:
         "shared_topics": options.shared_topics.split(","),
     }
     library = user_stack(options.nodes) if options.nodes else built_in()
-    nodes = dict.fromkeys(node for stack in options.stack for node in stack_of(library, stack))
+    stacks = [*options.stack, *filter(None, [also])]
+    nodes = tuple(dict.fromkeys(node for stack in stacks for node in stack_of(library, stack)))
     naming = make_naming(**policy)
     vocabulary = configured_vocabulary(options.input)
     tree = builtin_tree(vocabulary)
@@ -70,9 +78,26 @@ def build(options: argparse.Namespace) -> Fleet:
         for one in rewrite_all(options.input, options.robots, vocabulary=vocabulary, **policy)
     }
     plugins = {robot: list(plugin_nodes(found, robot)) for robot, found in inventories.items()}
-    table = build_table(options.robots, list(nodes), naming, plugins)
+    table = build_table(options.robots, nodes, naming, plugins)
     _tell(table.problems)
-    return Fleet(table, inventories, naming)
+    edges: dict[tuple[str, str], list[Edge]] = {}
+    for robot, found in inventories.items():
+        own = [facts for facts, _ in plugins[robot]]
+        edges |= edges_of(robot, found, nodes, own, naming)
+    return Fleet(table, inventories, naming, edges)
+
+
+def expected(made: Fleet) -> Expectation:
+    """What the graph of the fleet is to look like."""
+    frames = {
+        robot: frames_of(found, _sent(made, robot), made.naming)
+        for robot, found in made.inventories.items()
+    }
+    return expect(made.table, made.naming, frames)
+
+
+def _sent(made: Fleet, robot: str) -> list[Edge]:
+    return [edge for (owner, _), edges in made.edges.items() if owner == robot for edge in edges]
 
 
 def deliver(options: argparse.Namespace, text: str) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.cli import fleet
-from multibot_rewrite.graph.expectation import expect
 from multibot_rewrite.graph.plan_file import to_yaml
 
 ABOUT = "what the graph of a fleet is to look like"
@@ -25,9 +24,5 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Make the plan and write it."""
     made = fleet.build(options)
-    frames = {
-        robot: [*found.declared["link"], *found.declared["frame"]]
-        for robot, found in made.inventories.items()
-    }
-    fleet.deliver(options, to_yaml(expect(made.table, made.naming, frames)))
+    fleet.deliver(options, to_yaml(fleet.expected(made)))
     return fleet.verdict(made)

@@ -18,12 +18,17 @@ def ros_args(table: Table) -> str:
 
 
 def _ros_args(node: NodeTable) -> str:
+    line = shlex.join(arguments(node)) or "(no rule)"
+    return f"# {node.robot or EVERY_ROBOT}: {node.node}\n{line}\n"
+
+
+def arguments(node: NodeTable) -> list[str]:
+    """What follows the node's executable on a command line; empty where nothing has to."""
     words = [f"{rule.source}:={rule.target}" for rule in node.rules]
     placed = [f"__ns:={node.namespace}"] if node.namespace != "/" else []
     named = [f"__node:={node.name}"] if node.name != node.node.rpartition("/")[2] else []
     given = [text for word in (*placed, *named, *words) for text in ("-r", word)]
-    line = shlex.join(["--ros-args", *given]) if given else "(no rule)"
-    return f"# {node.robot or EVERY_ROBOT}: {node.node}\n{line}\n"
+    return ["--ros-args", *given] if given else []
 
 
 def launch(table: Table) -> str:

@@ -34,7 +34,7 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
 
-NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "fixed", *ROLES)
+NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "sends", "fixed", *ROLES)
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
 ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
 STACK_KEYS = ("about", "include", "nodes")
@@ -121,6 +121,10 @@ def _part(item: Item) -> tuple[Endpoint, ...]:
 def _node(name: str, item: Item, parts: Mapping[str, tuple[Endpoint, ...]]) -> NodeFacts:
     keys = table(item, f"node {name!r}", NODE_KEYS)
     _check_node_name(item, name)
+    frames = tuple(
+        Frame(parameter, word(default, f"frame {parameter}"))
+        for parameter, default in table_of(keys, "frames").items()
+    )
     return NodeFacts(
         name,
         word_of(keys, "package"),
@@ -128,12 +132,19 @@ def _node(name: str, item: Item, parts: Mapping[str, tuple[Endpoint, ...]]) -> N
         flag_of(keys, "shared"),
         word_of(keys, "note"),
         host=word_of(keys, "host"),
-        frames=tuple(
-            Frame(parameter, word(default, f"frame {parameter}"))
-            for parameter, default in table_of(keys, "frames").items()
-        ),
+        frames=frames,
         fixed=words_of(keys, "fixed"),
+        sends=tuple(_sends(keys, frames)),
     )
+
+
+def _sends(keys: Mapping[str, Item], frames: Iterable[Frame]) -> Iterator[tuple[str, str]]:
+    """The transforms a node sends, as the parameters that hold their frames."""
+    known = {frame.parameter: frame.parameter for frame in frames}
+    for parent, item in table_of(keys, "sends").items():
+        if parent not in known:
+            wrong(item, unknown("frame", parent, known))
+        yield parent, _known(item, "frame", known)
 
 
 def _taken_over(

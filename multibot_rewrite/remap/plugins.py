@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from lxml import etree
 
@@ -15,6 +15,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     Endpoint,
+    Frame,
     NodeFacts,
     NodeTable,
     Rule,
@@ -36,7 +37,14 @@ def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, 
         rules = tuple(_rules(host, robot, name))
         # The vocabulary does not list what a plugin publishes below its own name; the file does.
         private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
-        facts = NodeFacts(name, rewriter.names[0], (*_endpoints(inventory, host), *private))
+        frames = tuple(_frames(inventory, host))
+        facts = NodeFacts(
+            name,
+            rewriter.names[0],
+            (*_endpoints(inventory, host), *private),
+            frames=frames,
+            sends=tuple(_sends(rewriter, frames, inventory.declared["link"])),
+        )
         namespace = "/" + _told(host.element, "namespace").strip("/")
         yield facts, NodeTable(robot, name, namespace, name, rules)
 
@@ -65,6 +73,24 @@ def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
         if _sets_topic(claim) and host.element in claim.element.iterancestors():
             kind = SERVICE if claim.site.kinds[0] == SERVICE else TOPIC
             yield Endpoint(kind, "", claim.value, parameter=claim.site.path)
+
+
+def _frames(inventory: Inventory, host: Host) -> Iterator[Frame]:
+    """The frames that its parameters name, as the description spells them."""
+    for claim in inventory.claims:
+        named = claim.site.kinds[0] == "frame" and claim.site.form == "whole"
+        if named and host.element in claim.element.iterancestors():
+            yield Frame(claim.site.path, claim.value)
+
+
+def _sends(
+    rewriter: Rewriter, frames: tuple[Frame, ...], links: Container[str]
+) -> Iterator[tuple[str, str]]:
+    """What a plugin that publishes tf sends: from a frame of its own to a link, as odometry is."""
+    own = [frame.parameter for frame in frames if frame.default not in links]
+    base = [frame.parameter for frame in frames if frame.default in links]
+    if "/tf" in rewriter.publishes and own and base:
+        yield own[0], base[0]
 
 
 def _sets_topic(claim: Claim) -> bool:

@@ -50,7 +50,8 @@ class NodeFacts(NamedTuple):
     A name with slashes is a node in a namespace of its own below the robot's, as costmaps are.
     ``shared`` tells that one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
-    always. ``frames`` and ``fixed`` are what no rule reaches beside the endpoints.
+    always. ``frames`` and ``fixed`` are what no rule reaches beside the endpoints. ``sends`` are the
+    transforms it sends, as the parameters that hold parent and child.
     """
 
     name: str
@@ -62,6 +63,7 @@ class NodeFacts(NamedTuple):
     when: str = ""
     frames: tuple[Frame, ...] = ()
     fixed: tuple[str, ...] = ()
+    sends: tuple[tuple[str, str], ...] = ()
 
 
 class Rule(NamedTuple):

@@ -158,8 +158,19 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
         return ""
     if naming.topics == NAMESPACE:
         return bare if name.startswith("/") else ""
-    there = affix(naming, "service" if kind == SERVICE else TOPIC, name)
-    return there.spell(name, robot) if there else ""
+    base, rest = _family(name)
+    there = affix(naming, SERVICE if kind == SERVICE and not rest else TOPIC, base)
+    return there.spell(base, robot) + rest if there else ""
+
+
+def _family(name: str) -> tuple[str, str]:
+    """The name that is spelled, and what others look for below it: an action's parts and an image's
+    transports are found from the one name alone."""
+    base, action, part = name.partition("/_action/")
+    if action:
+        return base, action + part
+    base, _, last = name.rpartition("/")
+    return (base, f"/{last}") if base and last in TRANSPORTS else (name, "")
 
 
 def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:

@@ -1,0 +1,99 @@
+"""``multibot rehearse``: the plan of a fleet tried on a real graph, without robot or simulator."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+
+from multibot_rewrite.cli import fleet, live
+from multibot_rewrite.cli.check import conclude
+from multibot_rewrite.cli.output import say
+from multibot_rewrite.cli.process import DONE, PROGRAM
+from multibot_rewrite.graph.child import PLAY, RosUnusable, observe, running
+from multibot_rewrite.graph.rehearsal import (
+    Actor,
+    as_played,
+    cast,
+    dealt,
+    to_order,
+)
+from multibot_rewrite.graph.request import Request, to_text
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+
+ABOUT = "try a fleet's plan on a real graph, without robot or simulator"
+MORE = """\
+Starts the nodes of each robot's plugins and stack with the names of their code and hands rcl the
+rules of multibot remap; then looks at the graph as multibot check does. A type that is not installed
+has a stand-in. robot_state_publisher is added where no stack has it.
+examples:
+  multibot rehearse rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot
+  multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules    what would happen otherwise
+exit codes: 0 as planned; 1 something leaks or is missing; 2 wrong use or unreadable input; 3
+inconclusive; 4 rclpy or its RMW is missing or does not start
+"""
+# Below the ports that a system gives away by itself.
+_DOMAINS = 100
+
+
+def options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.epilog = MORE
+    fleet.options(parser)
+    live.options(parser)
+    parser.add_argument(
+        "--without-rules", action="store_true", help="give rcl no rules but namespace and node name"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Play, look, compare, sum up; returns the exit code."""
+    made = fleet.build(options, also=STATE_PUBLISHER)
+    actors = list(cast(made.table, made.edges, not options.without_rules))
+    environ = stage(options.domain)
+    try:
+        with _playing(dealt(actors), environ) as replaced:
+            say(f"{len(actors)} nodes in domain {environ['ROS_DOMAIN_ID']}", PROGRAM)
+            limit = options.timeout or live.LOOK_SECONDS
+            graph = observe(Request(limit, stand_ins=True), environ)
+    except RosUnusable as error:
+        say(str(error), PROGRAM)
+        return live.NO_ROS
+    _tell(replaced)
+    code = conclude(options, as_played(fleet.expected(made), replaced), graph)
+    return code if code != DONE else fleet.verdict(made)
+
+
+def stage(domain: int | None) -> dict[str, str]:
+    """An environment where nobody else is: this machine only, a domain that is hardly used."""
+    environ = {k: v for k, v in os.environ.items() if k not in _ELSEWHERE}
+    own = 1 + os.getpid() % _DOMAINS if domain is None else domain
+    return {**environ, "ROS_DOMAIN_ID": str(own), "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+
+
+_ELSEWHERE = ("ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "ROS_LOCALHOST_ONLY")
+
+
+@contextmanager
+def _playing(hands: list[list[Actor]], environ: dict[str, str]) -> Iterator[dict[str, str]]:
+    """The actors on the graph, and which types stand in for which."""
+    with ExitStack() as stack:
+        children = [
+            stack.enter_context(running(PLAY, to_text(to_order(hand)), environ)) for hand in hands
+        ]
+        replaced: dict[str, str] = {}
+        for child in children:
+            replaced |= json.loads(child.next() or b"{}")
+        yield replaced
+
+
+def _tell(replaced: dict[str, str]) -> None:
+    if replaced:
+        few = ", ".join(sorted(replaced)[:3])
+        text = f"{len(replaced)} types are not installed here and had a stand-in: {few}"
+        say(
+            f"note: {text}{', ...' * (len(replaced) > 3)}; their names are proved all the same",
+            PROGRAM,
+        )

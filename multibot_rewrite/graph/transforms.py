@@ -1,0 +1,74 @@
+"""Which frames a robot has and which of its nodes sends them: its description, odometry, map."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.naming import Naming, affix
+from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.rewriting.collect import Inventory
+
+STATE_PUBLISHER = "robot_state_publisher"
+
+
+class Edge(NamedTuple):
+    """A transform that a node sends."""
+
+    parent: str
+    child: str
+    static: bool
+
+
+Edges = Mapping[tuple[str, str], Sequence[Edge]]
+
+
+def edges_of(
+    robot: str,
+    inventory: Inventory,
+    facts: Iterable[NodeFacts],
+    plugins: Iterable[NodeFacts],
+    naming: Naming,
+) -> dict[tuple[str, str], list[Edge]]:
+    """What a robot's nodes send, by robot and node: its description, and odometry and map."""
+    tree = list(description_edges(inventory))
+    children = {edge.child for edge in tree}
+    root = next((link for link in inventory.declared["link"] if link not in children), "")
+    result = {(robot, node.name): [*_sent(node, "")] for node in plugins}
+    for node in facts:
+        spelled = [
+            frame._replace(default=_spelled(frame.default, robot, naming)) for frame in node.frames
+        ]
+        own = [*_sent(node._replace(frames=tuple(spelled)), root)]
+        result[robot, node.name] = tree if node.package == STATE_PUBLISHER else own
+    return result
+
+
+def description_edges(inventory: Inventory) -> Iterator[Edge]:
+    """What robot_state_publisher sends for the joints of a description."""
+    for joint in inventory.document.root.iter("joint"):
+        ends = [joint.find(tag) for tag in ("parent", "child")]
+        names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
+        if len(names) == 2:
+            yield Edge(names[0], names[1], joint.get("type") == "fixed")
+
+
+def _spelled(frame: str, robot: str, naming: Naming) -> str:
+    there = affix(naming, "frame", frame)
+    return there.spell(frame, robot) if there else frame
+
+
+def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:
+    """What a node's parameters name; its base is ``root``, where one is given."""
+    values = {frame.parameter: frame.default for frame in node.frames}
+    for parent, child in node.sends:
+        base = root and "odom" not in child
+        yield Edge(values[parent], root if base else values[child], False)
+
+
+def frames_of(inventory: Inventory, sent: Iterable[Edge], naming: Naming) -> tuple[str, ...]:
+    """A robot's own frames: what its description declares, and what its nodes send besides."""
+    declared = (*inventory.declared["link"], *inventory.declared["frame"])
+    ends = (frame for edge in sent for frame in edge[:2])
+    frames = dict.fromkeys((*declared, *ends))
+    return tuple(frame for frame in frames if frame not in naming.shared_frames)
