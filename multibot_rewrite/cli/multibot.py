@@ -9,7 +9,7 @@ from functools import partial
 from typing import NamedTuple
 
 from multibot_rewrite import __version__
-from multibot_rewrite.cli import check, coverage, learn, plan, remap, snapshot, vocabulary
+from multibot_rewrite.cli import check, coverage, learn, plan, rehearse, remap, snapshot, vocabulary
 from multibot_rewrite.cli.process import PROGRAM, Parser, guarded
 
 
@@ -27,6 +27,7 @@ COMMANDS = (
     Command("coverage", coverage.ABOUT, coverage.options, coverage.run),
     Command("learn", learn.ABOUT, learn.options, learn.run),
     Command("plan", plan.ABOUT, plan.options, plan.run),
+    Command("rehearse", rehearse.ABOUT, rehearse.options, rehearse.run),
     Command("remap", remap.ABOUT, remap.options, remap.run),
     Command("snapshot", snapshot.ABOUT, snapshot.options, snapshot.run),
     Command("vocabulary", vocabulary.ABOUT, vocabulary.options, vocabulary.run),

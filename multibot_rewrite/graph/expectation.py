@@ -73,7 +73,7 @@ def _wanted(names: Iterable[Name]) -> Iterator[Wanted]:
     """Endpoints that are there whatever the parameters say."""
     for name in names:
         asked = name.endpoint
-        if not asked.when and asked.role and name.name not in ALWAYS:
+        if not (asked.when or asked.helper) and asked.role and name.name not in ALWAYS:
             yield Wanted(name.node, asked.kind, asked.role, name.name, asked.type, asked.name)
 
 
