@@ -6,7 +6,7 @@ from collections.abc import Container, Iterator
 
 from lxml import etree
 
-from multibot_rewrite.model import Claim
+from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import TOPIC_KINDS
 from multibot_rewrite.remap.records import (
     PUBLISHES,
@@ -76,11 +76,21 @@ def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
 
 
 def _frames(inventory: Inventory, host: Host) -> Iterator[Frame]:
-    """The frames that its parameters name, as the description spells them."""
-    for claim in inventory.claims:
-        named = claim.site.kinds[0] == "frame" and claim.site.form == "whole"
-        if named and host.element in claim.element.iterancestors():
-            yield Frame(claim.site.path, claim.value)
+    """The frames that its parameters name, as the description spells them, or their defaults."""
+    told = {
+        claim.site.path: claim.value
+        for claim in inventory.claims
+        if _is_frame(claim.site) and host.element in claim.element.iterancestors()
+    }
+    assert host.node.rewriter is not None
+    for site in filter(_is_frame, host.node.rewriter.sites):
+        value = told.get(site.path, site.default)
+        if value:
+            yield Frame(site.path, value)
+
+
+def _is_frame(site: Site) -> bool:
+    return site.form == "whole" and site.kinds[:1] == ("frame",)
 
 
 def _sends(
