@@ -10,6 +10,7 @@ from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.cli import fleet, live
 from multibot_rewrite.cli.check import conclude
+from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.graph.child import PLAY, RosUnusable, observe, running
@@ -21,13 +22,14 @@ from multibot_rewrite.graph.rehearsal import (
     to_order,
 )
 from multibot_rewrite.graph.request import Request, to_text
+from multibot_rewrite.graph.snapshot import to_json
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 
 ABOUT = "try a fleet's plan on a real graph, without robot or simulator"
 MORE = """\
 Starts the nodes of each robot's plugins and stack with the names of their code and hands rcl the
 rules of multibot remap; then looks at the graph as multibot check does. A type that is not installed
-has a stand-in. robot_state_publisher is added where no stack has it.
+has a stand-in. robot_state_publisher is added where no stack has it. -o writes the snapshot.
 examples:
   multibot rehearse rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot
   multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules    what would happen otherwise
@@ -61,6 +63,8 @@ def run(options: argparse.Namespace) -> int:
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+    if options.output:
+        write_all([(options.output, to_json(graph))])
     _tell(replaced)
     code = conclude(options, as_played(fleet.expected(made), replaced), graph)
     return code if code != DONE else fleet.verdict(made)
