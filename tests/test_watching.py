@@ -1,0 +1,102 @@
+"""What ``check --watch`` says of one view after the other, and the worst it remembers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import pytest
+from test_graph_check import environment, healthy, moved, plan, without_node
+
+from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
+from multibot_rewrite.graph.watching import Moment, There, Verdict, final, next_moment
+from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+
+ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
+
+
+def moving(graph: Snapshot) -> Snapshot:
+    """The graph while it changes."""
+    around = environment(Caveat("not-settled", True, "the graph is still changing"))
+    return graph._replace(environment=around._replace(settled=CHANGING))
+
+
+def half() -> Snapshot:
+    """robot2 is not there."""
+    graph = healthy()
+    for node in ROBOT2:
+        graph = without_node(graph, node)
+    frames = tuple(frame for frame in graph.frames if "robot2" not in frame.child)
+    return graph._replace(frames=frames)
+
+
+def clash() -> Snapshot:
+    """Somebody publishes another type on a robot's topic."""
+    graph = healthy()
+    end = GraphEndpoint(
+        TOPIC, PUBLISHES, "/robot1/cmd_vel", "std_msgs/msg/Empty", "", "/robot1/driver", None, ""
+    )
+    return graph._replace(endpoints=(*graph.endpoints, end))
+
+
+def watched(graphs: Iterable[Snapshot]) -> list[Moment]:
+    moments: list[Moment] = []
+    for graph in graphs:
+        moments.append(next_moment(plan(), graph, moments[-1] if moments else None))
+    return moments
+
+
+def test_a_fleet_that_comes_up_and_stays_is_as_planned() -> None:
+    nothing = moving(healthy()._replace(nodes=(), endpoints=(), frames=()))
+    moments = watched([nothing, moving(half()), half(), moving(healthy()), healthy()])
+    assert [moment.whole for moment in moments] == [False, False, False, True, True]
+    assert moments[2].verdict == Verdict.WRONG
+    assert final(moments[-1]) == Verdict.PLANNED
+
+
+def test_what_is_not_there_at_the_end_counts() -> None:
+    assert final(watched([moving(half()), half()])[-1]) == Verdict.WRONG
+
+
+def test_what_went_away_is_remembered() -> None:
+    moments = watched([healthy(), moving(half()), half(), moving(healthy()), healthy()])
+    assert moments[-1].verdict == Verdict.PLANNED
+    assert final(moments[-1]) == Verdict.WRONG
+
+
+def test_a_short_gap_is_not_the_worst() -> None:
+    moments = watched([healthy(), moving(half()), moving(healthy()), healthy()])
+    assert final(moments[-1]) == Verdict.PLANNED
+
+
+def test_a_fault_counts_while_the_fleet_comes_up() -> None:
+    moments = watched([moving(clash()), moving(healthy()), healthy()])
+    assert final(moments[-1]) == Verdict.WRONG
+
+
+def test_an_ended_watch_that_never_settled_is_inconclusive() -> None:
+    assert final(watched([moving(healthy())])[-1]) == Verdict.INCONCLUSIVE
+
+
+def test_changes_come_and_go() -> None:
+    graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
+    first, second, third = watched([healthy(), graph, healthy()])
+    assert (first.appeared, first.solved) == ((), ())
+    assert {finding.code for finding in second.appeared} >= {"MG102", "MG103"}
+    assert second.solved == ()
+    assert (third.appeared, set(third.solved)) == ((), set(second.appeared))
+
+
+@pytest.mark.parametrize(
+    ("graph", "robot2"), [(healthy(), ((2, 2), (5, 5))), (half(), ((0, 2), (0, 5)))]
+)
+def test_how_much_of_a_robot_is_there(
+    graph: Snapshot, robot2: tuple[tuple[int, int], tuple[int, int]]
+) -> None:
+    (moment,) = watched([graph])
+    assert moment.robots == (There("robot1", (2, 2), (5, 5)), There("robot2", *robot2))
+
+
+def test_an_unplanned_node_is_not_counted() -> None:
+    graph = healthy()._replace(nodes=(*healthy().nodes, GraphNode("/robot1/other", "")))
+    (moment,) = watched([graph])
+    assert moment.robots[0].nodes == (2, 2)
