@@ -79,13 +79,17 @@ def healthy(layout: str = "L2") -> Snapshot:
         edge
         for robot in wanted.robots
         for edge in (
-            Frame(robot.frames[0], f"odom/{robot.name}", robot.tf, False, ()),
+            Frame(robot.frames[0], odom(layout, robot.name), robot.tf, False, ()),
             Frame(
                 robot.frames[1], robot.frames[0], f"{robot.tf}".replace("tf", "tf_static"), True, ()
             ),
         )
     ]
     return Snapshot(tuple(nodes), tuple(endpoints), tuple(edges), environment())
+
+
+def odom(layout: str, robot: str) -> str:
+    return "odom" if layout == "L1" else f"odom/{robot}"
 
 
 def environment(*caveats: Caveat) -> Environment:
@@ -131,7 +135,10 @@ def test_a_node_started_without_its_namespace_is_told_so() -> None:
     graph = graph._replace(nodes=(*graph.nodes, GraphNode("/driver", "x")))
     (found,) = check(plan(), graph)
     assert found.code == "MG101"
-    assert found.cause == "/driver is there: it was started without the robot's namespace"
+    assert found.cause == (
+        "/driver is there: it was started without the robot's namespace; give namespace='robot1' "
+        "in the launch file, or --ros-args -r __ns:=/robot1"
+    )
 
 
 def test_a_silent_robot_is_one_finding() -> None:
@@ -150,13 +157,16 @@ def test_why_we_never_get_cmd_vel() -> None:
     ]
     assert "/robot1/cmd_vel" in found[0].message
     assert found[0].cause == (
-        "it subscribes /cmd_vel instead: its rule /cmd_vel:=... did not reach it"
+        "it subscribes /cmd_vel instead: its rule /cmd_vel:=cmd_vel did not reach it; give "
+        "--ros-args -r /cmd_vel:=cmd_vel, or remappings=[('/cmd_vel', 'cmd_vel')]"
     )
 
 
 def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
     found = check(plan(), moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
-    assert found[0].cause == "it publishes /robot1/joint_state instead"
+    assert found[0].cause == (
+        "it publishes /robot1/joint_state instead: a rule or parameter spells it otherwise"
+    )
 
 
 def test_one_robot_listening_to_another() -> None:
@@ -181,7 +191,7 @@ def test_two_types_of_one_topic() -> None:
     other = first._replace(type="std_msgs/msg/String", node="/robot1/driver")
     (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, other)))
     assert found.code == "MG106"
-    assert "sensor_msgs/msg/JointState and std_msgs/msg/String" in found.message
+    assert "/robot1/driver subscribes std_msgs/msg/String" in found.message
 
 
 def qos(reliability: str, durability: str = "VOLATILE") -> Qos:

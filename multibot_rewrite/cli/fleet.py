@@ -11,14 +11,14 @@ from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.graph.expectation import Expectation, expect
+from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
 from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import builtin_tree, rewrite_all
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS, Naming, make_naming
 from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes
-from multibot_rewrite.remap.records import Problem, Table
+from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
+from multibot_rewrite.remap.records import NodeFacts, Problem, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.rewriting.collect import Inventory, collect
@@ -27,12 +27,15 @@ from multibot_rewrite.rewriting.document import read_document
 
 class Fleet(NamedTuple):
     """A fleet's table, what each robot's rewritten description holds, and the transforms that each
-    robot's nodes send."""
+    robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
+    (``file:line``) a plugin's node comes from."""
 
     table: Table
     inventories: dict[str, Inventory]
     naming: Naming
     edges: Edges
+    facts: tuple[NodeFacts, ...]
+    sources: dict[str, str]
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -73,9 +76,9 @@ def build(options: argparse.Namespace, also: str = "") -> Fleet:
     naming = make_naming(**policy)
     vocabulary = configured_vocabulary(options.input)
     tree = builtin_tree(vocabulary)
+    rewritten = list(rewrite_all(options.input, options.robots, vocabulary=vocabulary, **policy))
     inventories = {
-        one.robot: collect(read_document(one.data, options.input), tree)
-        for one in rewrite_all(options.input, options.robots, vocabulary=vocabulary, **policy)
+        one.robot: collect(read_document(one.data, options.input), tree) for one in rewritten
     }
     plugins = {robot: list(plugin_nodes(found, robot)) for robot, found in inventories.items()}
     table = build_table(options.robots, nodes, naming, plugins)
@@ -84,7 +87,13 @@ def build(options: argparse.Namespace, also: str = "") -> Fleet:
     for robot, found in inventories.items():
         own = [facts for facts, _ in plugins[robot]]
         edges |= edges_of(robot, found, nodes, own, naming)
-    return Fleet(table, inventories, naming, edges)
+    places = plugin_places(rewritten[0].template.inventory)
+    sources = {
+        f"{node.namespace.rstrip('/')}/{node.name}": place
+        for found in plugins.values()
+        for (_, node), place in zip(found, places, strict=True)
+    }
+    return Fleet(table, inventories, naming, edges, nodes, sources)
 
 
 def expected(made: Fleet) -> Expectation:
@@ -93,7 +102,8 @@ def expected(made: Fleet) -> Expectation:
         robot: frames_of(found, _sent(made, robot), made.naming)
         for robot, found in made.inventories.items()
     }
-    return expect(made.table, made.naming, frames)
+    named = {robot: named_frames(found) for robot, found in made.inventories.items()}
+    return expect(made.table, made.naming, frames, made.facts, named, made.sources)
 
 
 def _sent(made: Fleet, robot: str) -> list[Edge]:

@@ -7,28 +7,34 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from multibot_rewrite.graph import frames, names
+from multibot_rewrite.graph import ends, frames, names, nodes
 from multibot_rewrite.graph.comparison import INCONCLUSIVE, GraphFinding, View, make_view
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
 Rule = Callable[[View], Iterator[GraphFinding]]
 RULES: tuple[Rule, ...] = (
-    names.missing_nodes,
+    nodes.missing_nodes,
     names.missing_endpoints,
     names.leaks,
+    names.deaf_listeners,
     names.cross_talk,
-    names.same_names,
-    names.type_clashes,
-    names.qos_clashes,
+    nodes.same_names,
+    ends.type_clashes,
+    ends.qos_clashes,
+    nodes.unexpected_nodes,
+    names.captured_topics,
+    names.unheard,
     frames.two_parents,
+    frames.colliding_frames,
     frames.torn_trees,
     frames.undeclared_frames,
     frames.wrong_tf_topics,
+    frames.bare_frames,
 )
 WAITED_FOR = "expected-not-seen"
 # What an incomplete view cannot tell.
-ABSENCE = ("MG101", "MG102", "MG109", "MG203")
+ABSENCE = ("MG101", "MG102", "MG109", "MG110", "MG111", "MG203", "MG207")
 
 
 def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:

@@ -2,21 +2,40 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterable
-from difflib import get_close_matches
+import re
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping
+from fnmatch import translate
+from functools import lru_cache
 from typing import NamedTuple
 
-from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.likeness import stand_ins
+from multibot_rewrite.graph.owners import Owners, frame_owners, name_owners
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.graph.trees import TfTree, tf_trees
 
 INCONCLUSIVE = "inconclusive"
+# Nodes that come and go beside any fleet; no plan names them. Without a slash: in any namespace.
+IGNORED = (
+    # The tools' own: hidden ones, ros2 CLI, launch, tf listeners, spawners, containers.
+    "_*", "launch_ros_*", "transform_listener_impl_*", "spawner_*", "spawn_entity*", "*_container",
+    "static_transform_publisher_*", "*_rclcpp_node", "*_service_client",
+    # What people look with, drive with and record with.
+    "rqt_*", "rviz*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_*", "tf2_*", "view_frames",
+    "teleop_*", "*_teleop", "joy*",
+    # The world of all robots.
+    "gazebo*", "gz_*", "ign_*", "ros_gz_*", "*_bridge",
+)  # fmt: skip
+# An endpoint: node, kind, role, name.
+End = tuple[str, str, str, str]
 
 
 class GraphFinding(NamedTuple):
-    """Something wrong in the graph: what was expected, what is seen, and the likely cause.
+    """Something wrong in the graph: what was expected, what is seen, the likely cause and remedy.
 
-    ``level`` is ``error``, ``warning`` or ``inconclusive``.
+    ``level`` is ``error``, ``warning`` or ``inconclusive``. ``about`` are the topics, services,
+    actions or frames that it is about, as far as it is not about a node or a robot as a whole.
     """
 
     code: str
@@ -25,6 +44,7 @@ class GraphFinding(NamedTuple):
     node: str
     message: str
     cause: str
+    about: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         cause = f" ({self.cause})" if self.cause else ""
@@ -33,39 +53,111 @@ class GraphFinding(NamedTuple):
 
 
 class View(NamedTuple):
-    """A snapshot beside the plan, with the look-ups that several rules need."""
+    """A snapshot beside the plan, with the look-ups that several rules need.
+
+    ``types`` has the type of every endpoint seen, ``planned`` all endpoints of the plan.
+    ``unplanned`` are nodes that the plan does not have and nobody ignores; ``stand_ins`` those of
+    them that stand where a planned node is missed (missed -> seen). ``places`` tell where in its
+    description a node comes from.
+    """
 
     plan: Expectation
     graph: Snapshot
     by_node: dict[str, list[GraphEndpoint]]
     by_name: dict[str, list[GraphEndpoint]]
     robot_of: dict[str, str]
+    owners: Owners
+    frame_owners: Owners
+    types: Mapping[End, str]
+    planned: Mapping[End, Wanted]
+    seen: Mapping[str, int]
+    unplanned: tuple[str, ...]
+    stand_ins: Mapping[str, str]
+    places: Mapping[str, str]
+    trees: tuple[TfTree, ...]
+    robots: Mapping[str, WantedRobot]
+    frames_of: Mapping[str, frozenset[str]]
 
 
 def make_view(plan: Expectation, graph: Snapshot) -> View:
     """The look-ups, made once."""
     by_node: dict[str, list[GraphEndpoint]] = defaultdict(list)
     by_name: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    types: dict[End, str] = {}
     for endpoint in graph.endpoints:
         by_node[endpoint.node].append(endpoint)
         by_name[endpoint.name].append(endpoint)
+        types[endpoint.node, endpoint.kind, endpoint.role, endpoint.name] = endpoint.type
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
-    return View(plan, graph, by_node, by_name, robot_of)
+    seen = Counter(node.name for node in graph.nodes)
+    owners = owners_of(plan)
+    unplanned = tuple(_unplanned(plan, seen, robot_of))
+    missing = {node: robot for node, robot in robot_of.items() if node not in seen}
+    return View(
+        plan,
+        graph,
+        by_node,
+        by_name,
+        robot_of,
+        owners,
+        frame_owners(plan),
+        types,
+        {(w.node, w.kind, w.role, w.name): w for w in plan.endpoints},
+        seen,
+        unplanned,
+        stand_ins(missing, unplanned, owners),
+        dict(plan.sources),
+        tf_trees(graph.frames, plan.robots, owners),
+        {robot.name: robot for robot in plan.robots},
+        {robot.name: frozenset((*robot.frames, *robot.other_frames)) for robot in plan.robots},
+    )
+
+
+def _unplanned(
+    plan: Expectation, seen: Iterable[str], robot_of: Mapping[str, str]
+) -> Iterable[str]:
+    left = [node for node in seen if node not in robot_of and node not in plan.shared_nodes]
+    return (node for node in left if not ignored(node, plan.ignored_nodes))
+
+
+def ignored(node: str, more: tuple[str, ...] = ()) -> bool:
+    """Whether a node is one that no plan names; ``more`` are patterns beside the usual ones."""
+    full, last = _patterns(more)
+    return bool(last.fullmatch(node.rpartition("/")[2]) or full.fullmatch(node))
+
+
+@lru_cache(maxsize=8)
+def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
+    every = (*IGNORED, *more)
+    sides = ([p for p in every if "/" in p], [p for p in every if "/" not in p])
+    # An empty alternative would be any pattern's match of nothing, which no node is.
+    full, last = (re.compile("|".join(map(translate, side))) for side in sides)
+    return full, last
+
+
+class _Same:
+    """A plan that equals nothing but itself: comparing all of it would cost more than it saves."""
+
+    def __init__(self, plan: Expectation) -> None:
+        self.plan = plan
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.plan is self.plan
+
+    def __hash__(self) -> int:
+        return id(self.plan)
+
+
+@lru_cache(maxsize=2)
+def _owners(same: _Same) -> Owners:
+    return name_owners(same.plan)
+
+
+def owners_of(plan: Expectation) -> Owners:
+    """Whose the names of a plan are; made once for a plan."""
+    return _owners(_Same(plan))
 
 
 def owner(name: str, plan: Expectation) -> str:
-    """The robot whose name stands in a graph name: a segment, or one end of a segment."""
-    segments = name.strip("/").split("/")
-    names = sorted((robot.name for robot in plan.robots), key=len, reverse=True)
-    for robot in names:
-        if robot in segments:
-            return robot
-    for robot in names:
-        if any(s.endswith(f"_{robot}") or s.startswith(f"{robot}_") for s in segments):
-            return robot
-    return ""
-
-
-def nearest(name: str, known: Iterable[str]) -> str:
-    """The known name most like ``name``, or an empty string."""
-    return next(iter(get_close_matches(name, list(known), 1, 0.6)), "")
+    """The robot whose name stands in a graph name, or that it is planned for; empty for none."""
+    return owners_of(plan).of(name)

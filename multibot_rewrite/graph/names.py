@@ -1,137 +1,233 @@
-"""Rules about nodes and names: is all of it there, does it leak, do its ends meet."""
+"""Rules about a node's names: is each there, does it leak, is somebody on the other side."""
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.graph.comparison import GraphFinding, View, nearest, owner
+from multibot_rewrite.graph.causes import how_to_give, no_rule, plugin, unremapped
+from multibot_rewrite.graph.comparison import GraphFinding, View
 from multibot_rewrite.graph.expectation import ALWAYS, Wanted
+from multibot_rewrite.graph.likeness import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.model import ERROR
+from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
-
-
-def missing_nodes(view: View) -> Iterator[GraphFinding]:
-    """A planned node that is not there."""
-    seen = {node.name for node in view.graph.nodes}
-    for robot in view.plan.robots:
-        if seen.isdisjoint(robot.nodes) and robot.nodes:
-            message = f"none of the {len(robot.nodes)} nodes of {robot.name} is there"
-            yield GraphFinding("MG109", ERROR, robot.name, "", message, "is the robot started?")
-            continue
-        for node in (node for node in robot.nodes if node not in seen):
-            bare = f"/{node.rpartition('/')[2]}"
-            near = bare if bare in seen and bare != node else nearest(node, seen)
-            cause = f"{near} is there" if near else "is it started?"
-            if near == bare:
-                cause += ": it was started without the robot's namespace"
-            message = f"expected node {node}, it is not there"
-            yield GraphFinding("MG101", ERROR, robot.name, node, message, cause)
+# Every node with use_sim_time hears the clock, whatever is called shared.
+EVERYWHERE = (*ALWAYS, "/clock")
+# What tf2 listens with beside a node; rules for the node alone do not reach it.
+LISTENER = "transform_listener_impl_"
+# Publishers by their name without a robot's.
+Strays = dict[str, list[GraphEndpoint]]
 
 
 def missing_endpoints(view: View) -> Iterator[GraphFinding]:
     """A planned name that its node does not have, though the node is there."""
-    seen = {node.name for node in view.graph.nodes}
-    for wanted in view.plan.endpoints:
+    for end, wanted in view.planned.items():
         robot = view.robot_of.get(wanted.node)
-        if robot is None or wanted.node not in seen or _has(view, wanted):
+        if robot is None or wanted.node not in view.seen or end in view.types:
             continue
         message = f"it should {SHOULD[wanted.role]} {wanted.kind} {wanted.name}, and does not"
-        cause = _why_missing(view, wanted)
-        yield GraphFinding("MG102", ERROR, robot, wanted.node, message, cause)
+        cause = _why_missing(view, wanted, robot)
+        yield GraphFinding("MG102", ERROR, robot, wanted.node, message, cause, (wanted.name,))
 
 
-def _has(view: View, wanted: Wanted) -> bool:
-    key = (wanted.kind, wanted.role, wanted.name)
-    return any((e.kind, e.role, e.name) == key for e in view.by_node.get(wanted.node, ()))
-
-
-def _why_missing(view: View, wanted: Wanted) -> str:
+def _why_missing(view: View, wanted: Wanted, robot: str) -> str:
     """The first user question: we never get the topic /robot1/cmd_vel, why?"""
-    others = [
-        e.name
-        for e in view.by_node.get(wanted.node, ())
-        if (e.kind, e.role) == (wanted.kind, wanted.role)
-    ]
+    instead = _instead(view, wanted, robot)
+    if not instead:
+        managed = (wanted.node, SERVES, "service", f"{wanted.node}/get_state") in view.planned
+        state = f"; is it configured? ros2 lifecycle get {wanted.node}" if managed else ""
+        return f"it has no name like it: switched off by a parameter?{state}"
+    said = f"it {wanted.role} {instead} instead"
+    if instead in _as_asked(view, wanted, robot):
+        return f"{said}: {no_rule(view, wanted)}{how_to_give(view, wanted)}"
+    if _captured(wanted.node, instead, wanted.name):
+        return f"{said}: {_absolute(wanted.name)}"
+    other = view.owners.of(instead)
+    if other and other != robot:
+        return f"{said}, which is {other}'s: a rule or parameter names the wrong robot"
+    return f"{said}: a rule or parameter spells it otherwise"
+
+
+def _as_asked(view: View, wanted: Wanted, robot: str) -> tuple[str, ...]:
+    """Where it is if no rule and no namespace reach it."""
     bare = f"/{wanted.asked.strip('/').removeprefix('~/')}"
-    if bare in others:
-        return f"it {wanted.role} {bare} instead: its rule {wanted.asked}:=... did not reach it"
-    near = nearest(wanted.name, others)
-    return f"it {wanted.role} {near} instead" if near else "no name of it comes near"
+    names = (unremapped(wanted), bare, view.owners.bare(wanted.name, robot))
+    return tuple(name for name in names if name not in ("", "/", wanted.name))
+
+
+def _instead(view: View, wanted: Wanted, robot: str) -> str:
+    """What the node has in place of a planned name, or an empty string."""
+    others = _unplanned_names(view, wanted)
+    likely = [name for name in _as_asked(view, wanted, robot) if name in others]
+    likely += [name for name in others if _captured(wanted.node, name, wanted.name)]
+    if likely:
+        return likely[0]
+    bare = {view.owners.bare(name, view.owners.of(name) or robot): name for name in others}
+    meant = view.owners.bare(wanted.name, robot)
+    return bare.get(meant, "") or bare.get(similar(meant, bare), "")
+
+
+def _unplanned_names(view: View, wanted: Wanted) -> list[str]:
+    node, kind, role = wanted.node, wanted.kind, wanted.role
+    return [
+        e.name
+        for e in view.by_node.get(node, ())
+        if (e.kind, e.role) == (kind, role) and (node, kind, role, e.name) not in view.planned
+    ]
 
 
 def leaks(view: View) -> Iterator[GraphFinding]:
     """A robot's node with a name that is no robot's and not shared: every robot would meet there."""
-    shared = {*view.plan.shared_topics, *ALWAYS}
+    shared = {*view.plan.shared_topics, *EVERYWHERE}
+    meant = _meant_otherwise(view)
     for node, robot in view.robot_of.items():
-        for name in dict.fromkeys(e.name for e in view.by_node.get(node, ())):
-            if name in shared or owner(name, view.plan):
+        for name in dict.fromkeys(e.name for e in _own_idea(view, node)):
+            if name in shared or view.owners.of(name):
                 continue
             message = f"{name} is not {robot}'s own: the same node of another robot has it too"
-            cause = "an absolute name, or a rule that did not reach the node"
-            yield GraphFinding("MG103", ERROR, robot, node, message, cause)
+            cause = _why_leaked(view, node, name, meant.get((node, name)))
+            yield GraphFinding("MG103", ERROR, robot, node, message, cause, (name,))
+
+
+def _own_idea(view: View, node: str) -> Iterator[GraphEndpoint]:
+    """A node's endpoints that nobody planned; the parts of an action are seen in the action."""
+    for end in view.by_node.get(node, ()):
+        if (node, end.kind, end.role, end.name) not in view.planned and "/_" not in end.name:
+            yield end
+
+
+def _meant_otherwise(view: View) -> dict[tuple[str, str], Wanted]:
+    """The planned endpoints that are missing, by the names they have without a rule."""
+    return {
+        (wanted.node, name): wanted
+        for end, wanted in view.planned.items()
+        if end not in view.types and wanted.node in view.robot_of
+        for name in _as_asked(view, wanted, view.robot_of[wanted.node])
+    }
+
+
+def _why_leaked(view: View, node: str, name: str, meant: Wanted | None) -> str:
+    if meant:
+        return no_rule(view, meant)
+    which, place = plugin(view, node)
+    if which:
+        return f"{which} has no namespace or rule for it: see {place}"
+    robot = view.robot_of[node]
+    target = f"{name}/{robot}" if view.owners.last else f"/{robot}{name}"
+    return f"an absolute name in its code or parameters: give --ros-args -r {name}:={target}"
+
+
+def deaf_listeners(view: View) -> Iterator[GraphFinding]:
+    """A tf listener in a robot's namespace that hears a tf topic which is not the robot's."""
+    home = {robot.name: robot.tf for robot in view.plan.robots}
+    for node in view.seen:
+        robot = view.owners.of(node) if f"/{LISTENER}" in node else ""
+        if robot and home[robot] != "/tf" and (node, TOPIC, SUBSCRIBES, "/tf") in view.types:
+            message = f"/tf is what this tf listener hears, {robot}'s is on {home[robot]}"
+            cause = "give the rule /tf:=tf to its whole process (--ros-args), not to one node of it"
+            yield GraphFinding("MG103", ERROR, robot, node, message, cause, ("/tf",))
 
 
 def cross_talk(view: View) -> Iterator[GraphFinding]:
     """A robot's node that speaks or listens under another robot's name."""
     for node, robot in view.robot_of.items():
-        for endpoint in view.by_node.get(node, ()):
-            other = owner(endpoint.name, view.plan)
+        for end in _own_idea(view, node):
+            other = view.owners.of(end.name)
             if other and other != robot:
-                message = f"it {endpoint.role} {endpoint.name}, which is {other}'s"
+                message = f"it {end.role} {end.name}, which is {other}'s"
                 cause = f"a rule or parameter of {robot} names {other}"
-                yield GraphFinding("MG104", ERROR, robot, node, message, cause)
+                yield GraphFinding("MG104", ERROR, robot, node, message, cause, (end.name,))
 
 
-def same_names(view: View) -> Iterator[GraphFinding]:
-    """Two nodes of one name: half of the tools see one of them only."""
-    for node, times in Counter(node.name for node in view.graph.nodes).items():
-        if times > 1:
-            robot = view.robot_of.get(node, "")
-            message = f"{times} nodes have this name"
-            cause = "started twice, or two robots without a namespace; a dead one stays for 20 s"
-            yield GraphFinding("MG105", ERROR, robot, node, message, cause)
+def captured_topics(view: View) -> Iterator[GraphFinding]:
+    """A relative topic below a node's own namespace, as a costmap's sensors: nobody is there."""
+    spoken = _spoken(view)
+    known = spoken | {wanted.name for wanted in view.planned.values()}
+    for node, robot in view.robot_of.items():
+        below = view.owners.bare(node, robot).count("/") > 1
+        for end in _own_idea(view, node) if below else ():
+            if (end.kind, end.role) != (TOPIC, SUBSCRIBES) or end.name in spoken:
+                continue
+            above = (n for n in _above(node, end.name) if view.owners.of(n) == robot)
+            meant = next((name for name in above if name in known), "")
+            if not meant:
+                continue
+            message = f"it subscribes {end.name}, where nobody publishes; {meant} is meant"
+            about = (end.name, meant)
+            yield GraphFinding("MG110", ERROR, robot, node, message, _absolute(meant), about)
 
 
-def type_clashes(view: View) -> Iterator[GraphFinding]:
-    """A topic or service with more than one type: its ends never meet."""
-    for name, endpoints in view.by_name.items():
-        types = sorted({endpoint.type for endpoint in endpoints if endpoint.type})
-        if len(types) > 1:
-            first = endpoints[0]
-            message = f"{first.kind} {name} has the types {' and '.join(types)}"
-            who = view.robot_of.get(first.node, "")
-            yield GraphFinding(
-                "MG106", ERROR, who, first.node, message, "two nodes mean different things"
-            )
+def _absolute(meant: str) -> str:
+    return f"a relative name falls below the node's own namespace: write {meant} in its parameters"
 
 
-def qos_clashes(view: View) -> Iterator[GraphFinding]:
-    """A publisher that offers less than a subscription asks for: no message ever arrives."""
-    for name, endpoints in view.by_name.items():
-        told: set[tuple[str, str, tuple[str, str]]] = set()
-        for giver in (e for e in endpoints if (e.kind, e.role) == (TOPIC, PUBLISHES)):
-            for taker in (e for e in endpoints if (e.kind, e.role) == (TOPIC, SUBSCRIBES)):
-                reason = _less(giver, taker)
-                if reason and (giver.node, taker.node, reason) not in told:
-                    told.add((giver.node, taker.node, reason))
-                    offered, wanted = reason
-                    message = f"{name}: {giver.node} offers {offered}, {taker.node} wants {wanted}"
-                    robot = view.robot_of.get(taker.node, "")
-                    yield GraphFinding(
-                        "MG107", ERROR, robot, taker.node, message, "set the QoS of one"
-                    )
+def _spoken(view: View) -> set[str]:
+    """The topics that somebody publishes."""
+    return {e.name for e in view.graph.endpoints if (e.kind, e.role) == (TOPIC, PUBLISHES)}
 
 
-def _less(giver: GraphEndpoint, taker: GraphEndpoint) -> tuple[str, str] | None:
-    """What is offered and what is asked for where they cannot connect (DDS request-offered rules)."""
-    if giver.qos is None or taker.qos is None:
-        return None
-    pairs = (
-        (giver.qos.reliability, taker.qos.reliability, "BEST_EFFORT", "RELIABLE"),
-        (giver.qos.durability, taker.qos.durability, "VOLATILE", "TRANSIENT_LOCAL"),
-    )
-    return next(((low, high) for a, b, low, high in pairs if (a, b) == (low, high)), None)
+def _above(node: str, name: str) -> Iterator[str]:
+    """A name that stands right below a node's namespace, in the namespaces above it."""
+    namespace = node.rpartition("/")[0]
+    while namespace and name.startswith(f"{namespace}/"):
+        rest = name.removeprefix(namespace)
+        namespace = namespace.rpartition("/")[0]
+        yield namespace + rest
+        name = namespace + rest
+
+
+def _captured(node: str, name: str, meant: str) -> bool:
+    return meant in _above(node, name)
+
+
+def unheard(view: View) -> Iterator[GraphFinding]:
+    """A planned subscription without any publisher, while one nearly of its name is there."""
+    spoken = _spoken(view)
+    makers: dict[str, list[str]] = defaultdict(list)
+    for wanted in view.planned.values():
+        if (wanted.kind, wanted.role) == (TOPIC, PUBLISHES):
+            makers[wanted.name].append(wanted.node)
+    strays = _strays(view)
+    told = set(spoken)
+    for end in view.planned:
+        node, kind, role, name = end
+        robot = view.robot_of.get(node, "")
+        if name in told or (kind, role) != (TOPIC, SUBSCRIBES) or end not in view.types:
+            continue
+        # What a node that is there does not publish is told of that node.
+        if not robot or any(maker in view.seen for maker in makers.get(name, ())):
+            continue
+        bare = view.owners.bare(name, robot)
+        twin = _twin(bare, strays[robot], strays[""], name in makers)
+        if twin:
+            told.add(name)
+            message = f"nobody publishes {name}; {twin.node} publishes {twin.name}"
+            cause = f"give {twin.node} the rule {twin.name}:={name}, if it is meant for {robot}"
+            yield GraphFinding("MG111", WARNING, robot, node, message, cause, (name, twin.name))
+
+
+def _strays(view: View) -> Mapping[str, Strays]:
+    """Publishers nobody planned, by the robot of their node."""
+    found: dict[str, Strays] = defaultdict(dict)
+    told = set(view.stand_ins.values())
+    for end in view.graph.endpoints:
+        if (end.kind, end.role) != (TOPIC, PUBLISHES) or end.name in EVERYWHERE:
+            continue
+        if (end.node, TOPIC, PUBLISHES, end.name) in view.planned or end.node in told:
+            continue
+        bare = view.owners.bare(end.name, view.owners.of(end.name))
+        found[view.owners.of(end.node)].setdefault(bare, []).append(end)
+    return found
+
+
+def _twin(bare: str, own: Strays, nobodys: Strays, planned: bool) -> GraphEndpoint | None:
+    """Who publishes what was meant: the bare name; where the plan has a publisher, one like it."""
+    same = [*own.get(bare, ()), *nobodys.get(bare, ())]
+    exact = next((end for end in same if end.name == bare), None)
+    if exact or not planned:
+        return exact
+    near = own.get(similar(bare, own), ())
+    return next(iter((*same, *near)), None)

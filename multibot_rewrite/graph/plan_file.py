@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
@@ -12,33 +13,52 @@ from multibot_rewrite.remap.records import KINDS, ROLES
 HEAD = """\
 # What the graph of this fleet is to look like. Endpoints: [role, kind, name, type, name in the code].
 # Take out what is not started, add what is: `multibot check` compares exactly this.
+# optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes: patterns
+# of nodes that may come and go, beside the usual tools. sources: where a node's description starts it.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
+# May be left out.
+MORE_KEYS = ("ignored_nodes", "sources")
+MORE_ROBOT_KEYS = ("other_frames", "optional")
 FIELDS = 5
+# Between the types an endpoint may have.
+OR = " | "
 
 
 def to_yaml(plan: Expectation) -> str:
     """The file's text."""
     import yaml
 
-    data = {key: _plain(getattr(plan, key)) for key in KEYS[:-1]}
-    data["robots"] = {robot.name: _robot(plan, robot) for robot in plan.robots}
-    text = yaml.safe_dump(data, sort_keys=False, width=120, default_flow_style=None)
+    rows: dict[str, list[list[str]]] = defaultdict(list)
+    for wanted in plan.endpoints:
+        types = OR.join((wanted.type, *wanted.also))
+        rows[wanted.node].append([wanted.role, wanted.kind, wanted.name, types, wanted.asked])
+    data = {key: _plain(getattr(plan, key)) for key in (*KEYS[:-1], "ignored_nodes")}
+    data["robots"] = {robot.name: _robot(robot, rows) for robot in plan.robots}
+    if plan.sources:
+        data["sources"] = dict(plan.sources)
+    text = yaml.dump(
+        data, Dumper=_fast("SafeDumper"), sort_keys=False, width=120, default_flow_style=None
+    )
     return HEAD + str(text)
+
+
+def _fast(name: str) -> Any:
+    """PyYAML's class of this name, the one in C where there is one: ten times as fast."""
+    import yaml
+
+    return getattr(yaml, f"C{name}", None) or getattr(yaml, name)
 
 
 def _plain(value: object) -> object:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _robot(plan: Expectation, robot: WantedRobot) -> dict[str, object]:
-    nodes: dict[str, list[list[str]]] = {node: [] for node in robot.nodes}
-    for wanted in plan.endpoints:
-        if wanted.node in nodes:
-            node, kind, role, *rest = wanted
-            nodes[node].append([role, kind, *rest])
-    return {"tf": robot.tf, "frames": list(robot.frames), "nodes": nodes}
+def _robot(robot: WantedRobot, rows: Mapping[str, list[list[str]]]) -> dict[str, object]:
+    given = {key: list(getattr(robot, key)) for key in MORE_ROBOT_KEYS if getattr(robot, key)}
+    nodes = {node: rows.get(node, []) for node in robot.nodes}
+    return {"tf": robot.tf, "frames": list(robot.frames), **given, "nodes": nodes}
 
 
 def from_yaml(data: bytes, file: str) -> Expectation:
@@ -46,38 +66,67 @@ def from_yaml(data: bytes, file: str) -> Expectation:
     import yaml
 
     try:
-        value = yaml.safe_load(data)
+        value = yaml.load(data, Loader=_fast("SafeLoader"))
     except (yaml.YAMLError, UnicodeDecodeError) as error:
         reason = " ".join(str(error).split())
         raise InputError(f"{file}: not YAML: {reason}") from None
-    top = _mapping(value, KEYS, file, "the plan")
-    lists = {key: _texts(top[key], f"{file}: {key}") for key in KEYS[1:4]}
-    robots, endpoints = [], []
+    top = _mapping(value, KEYS, file, "the plan", MORE_KEYS)
+    nodes, topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[1:4])
+    robots: list[WantedRobot] = []
+    endpoints: list[Wanted] = []
     for name, given in _mapping(top["robots"], (), file, "robots").items():
-        place = f"robots.{name}"
-        robot = _mapping(given, ROBOT_KEYS, file, place)
-        nodes = _mapping(robot["nodes"] or {}, (), file, f"{place}.nodes")
-        frames = _texts(robot["frames"], f"{file}: {place}.frames")
-        robots.append(WantedRobot(str(name), tuple(nodes), frames, str(robot["tf"])))
-        for node, rows in nodes.items():
-            where = f"{file}: {place}.nodes.{node}"
-            endpoints += [_wanted(node, row, f"{where}[{at}]") for at, row in enumerate(rows or ())]
+        robot, ends = _read_robot(str(name), given, file)
+        robots.append(robot)
+        endpoints += ends
     return Expectation(
         str(top["layout"]),
         tuple(robots),
-        lists["shared_nodes"],
-        lists["shared_topics"],
-        lists["shared_frames"],
+        nodes,
+        topics,
+        frames,
         tuple(endpoints),
+        _texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
+        tuple(_sources(top.get("sources", {}), file)),
     )
 
 
-def _mapping(value: object, keys: tuple[str, ...], file: str, what: str) -> Mapping[str, Any]:
+def _read_robot(name: str, given: object, file: str) -> tuple[WantedRobot, list[Wanted]]:
+    place = f"robots.{name}"
+    robot = _mapping(given, ROBOT_KEYS, file, place, MORE_ROBOT_KEYS)
+    nodes = _mapping(robot["nodes"] or {}, (), file, f"{place}.nodes")
+    keys = ("frames", *MORE_ROBOT_KEYS)
+    frames, *more = (_texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys)
+    endpoints = [
+        _wanted(node, row, f"{file}: {place}.nodes.{node}[{at}]")
+        for node, rows in nodes.items()
+        for at, row in enumerate(_rows(rows, f"{file}: {place}.nodes.{node}"))
+    ]
+    return WantedRobot(name, tuple(nodes), frames, str(robot["tf"]), *more), endpoints
+
+
+def _rows(value: object, place: str) -> Sequence[object]:
+    if value is not None and not isinstance(value, list):
+        raise InputError(f"{place} is no list; write [] for a node without endpoints of note")
+    return value or []
+
+
+def _sources(value: object, file: str) -> Iterator[tuple[str, str]]:
+    for node, place in _mapping(value or {}, (), file, "sources").items():
+        if not isinstance(place, str):
+            raise InputError(f"{file}: sources.{node}: write file:line")
+        yield str(node), place
+
+
+def _mapping(
+    value: object, keys: tuple[str, ...], file: str, what: str, more: tuple[str, ...] = ()
+) -> Mapping[str, Any]:
+    """``value`` with all of ``keys``, and of ``more`` what it likes; with any, if there are none."""
     if not isinstance(value, dict):
         raise InputError(f"{file}: {what} is no mapping; write it as multibot plan does")
-    wrong = [key for key in keys if key not in value] + [k for k in value if keys and k not in keys]
+    wrong = [key for key in keys if key not in value]
+    wrong += [key for key in value if keys and key not in (*keys, *more)]
     if wrong:
-        known = ", ".join(keys)
+        known = ", ".join((*keys, *more))
         raise InputError(f"{file}: {what}: key {wrong[0]!r} is missing or unknown; it has {known}")
     return value
 
@@ -97,4 +146,5 @@ def _wanted(node: str, row: object, place: str) -> Wanted:
         raise InputError(f"{place}: {role!r} {kind!r}: role and kind are of {allowed}")
     if not name.startswith("/"):
         raise InputError(f"{place}: {name!r} is no full name, it starts with /")
-    return Wanted(node, kind, role, name, type_, asked)
+    type_, *also = type_.split(OR)
+    return Wanted(node, kind, role, name, type_, asked, tuple(also))

@@ -21,6 +21,7 @@ from multibot_rewrite.remap.records import (
     Rule,
 )
 from multibot_rewrite.rewriting.collect import Host, Inventory
+from multibot_rewrite.rewriting.document import locate
 from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.vocabulary import Rewriter
 
@@ -29,10 +30,7 @@ ROS_NODE = "ros/remapping"
 
 def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
     """Each ROS 2 plugin of ``robot``'s rewritten description: what it asks for, what it is told."""
-    for host in inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is None or all(site.path != ROS_NODE for site in rewriter.sites):
-            continue
+    for host, rewriter in _ros_nodes(inventory):
         name = _node_name(host.element, rewriter)
         rules = tuple(_rules(host, robot, name))
         # The vocabulary does not list what a plugin publishes below its own name; the file does.
@@ -47,6 +45,23 @@ def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, 
         )
         namespace = "/" + _told(host.element, "namespace").strip("/")
         yield facts, NodeTable(robot, name, namespace, name, rules)
+
+
+def plugin_places(inventory: Inventory) -> list[str]:
+    """Where the plugins stand that ``plugin_nodes`` tells of, in its order, as ``file:line``.
+
+    A rewrite keeps the order of elements, so those of the source are those of its results.
+    """
+    document = inventory.document
+    lines = (locate(document.source, host.start)[0] for host, _ in _ros_nodes(inventory))
+    return [f"{document.file}:{line}" for line in lines]
+
+
+def _ros_nodes(inventory: Inventory) -> Iterator[tuple[Host, Rewriter]]:
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is not None and any(site.path == ROS_NODE for site in rewriter.sites):
+            yield host, rewriter
 
 
 def _node_name(plugin: etree._Element, rewriter: Rewriter) -> str:

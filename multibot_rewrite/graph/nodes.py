@@ -1,0 +1,89 @@
+"""Rules about nodes: is each there, once, and is it planned."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.graph.causes import not_named, plugin, some
+from multibot_rewrite.graph.comparison import GraphFinding, View, ignored
+from multibot_rewrite.graph.expectation import ALWAYS, WantedRobot
+from multibot_rewrite.model import ERROR, WARNING
+
+
+def missing_nodes(view: View) -> Iterator[GraphFinding]:
+    """A planned node that is not there."""
+    for robot in view.plan.robots:
+        missing = [node for node in robot.nodes if node not in view.seen]
+        if missing and len(missing) == len(robot.nodes):
+            yield _silent(view, robot)
+            continue
+        for node in missing:
+            stand_in = view.stand_ins.get(node, "")
+            if node in robot.optional and not stand_in:
+                continue
+            cause = not_named(view, node, stand_in) if stand_in else _not_started(view, node)
+            message = f"expected node {node}, it is not there"
+            yield GraphFinding("MG101", ERROR, robot.name, node, message, cause)
+    for node in view.plan.shared_nodes:
+        if node not in view.seen and not ignored(node, view.plan.ignored_nodes):
+            message = f"expected node {node} for all robots, it is not there"
+            yield GraphFinding("MG101", WARNING, "", node, message, "is it started?")
+
+
+def _not_started(view: View, node: str) -> str:
+    which, place = plugin(view, node)
+    if which:
+        return f"is it started? {which} is in the description: see {place}; does the world load it?"
+    return "is it started? did it end with an error?"
+
+
+def _silent(view: View, robot: WantedRobot) -> GraphFinding:
+    message = f"none of the {len(robot.nodes)} nodes of {robot.name} is there"
+    there = [view.stand_ins[node] for node in robot.nodes if node in view.stand_ins]
+    cause = "is the robot started? in this ROS_DOMAIN_ID?"
+    if there:
+        cause = f"{some(there)} there: was it started without its namespace or name?"
+    return GraphFinding("MG109", ERROR, robot.name, "", message, cause)
+
+
+def same_names(view: View) -> Iterator[GraphFinding]:
+    """Two nodes of one name: half of the tools see one of them only."""
+    for node, times in view.seen.items():
+        if times == 1 or ignored(node, view.plan.ignored_nodes):
+            continue
+        robot = view.robot_of.get(node, "")
+        meant = [missing for missing, there in view.stand_ins.items() if there == node]
+        cause = "started twice, or two robots without a namespace; a dead one stays for 20 s"
+        if len(meant) > 1:
+            cause = f"{some(meant)} are missing: both were started without their robot's name"
+        yield GraphFinding("MG105", ERROR, robot, node, f"{times} nodes have this name", cause)
+
+
+def unexpected_nodes(view: View) -> Iterator[GraphFinding]:
+    """A node that the plan does not have, though it has the robot's other ones."""
+    told = set(view.stand_ins.values())
+    planned = {robot.name for robot in view.plan.robots if robot.nodes}
+    bare = {view.owners.bare(node, robot): node for node, robot in view.robot_of.items()}
+    for node in view.unplanned if planned else ():
+        robot = view.owners.of(node)
+        if node in told or (robot and robot not in planned):
+            continue
+        if robot:
+            message = f"it is {robot}'s and not in the plan{_strays(view, node, robot)}"
+            cause = (
+                "put it in the plan: a node of a stack (--stack, --nodes), or a line of the file"
+            )
+        else:
+            message = "it is no robot's, and not one of shared_nodes in the plan"
+            cause = "add it there if it serves all robots; else it lacks its robot's namespace"
+        if node in bare:
+            cause = f"{bare[node]} is there as well: one more, started without a robot's name?"
+        yield GraphFinding("MG108", WARNING, robot, node, message, cause)
+
+
+def _strays(view: View, node: str, robot: str) -> str:
+    """What it has under no robot's name or another's: with that it may disturb the others."""
+    shared = {*view.plan.shared_topics, *ALWAYS}
+    names = dict.fromkeys(e.name for e in view.by_node.get(node, ()) if "/_" not in e.name)
+    astray = [name for name in names if name not in shared and view.owners.of(name) != robot]
+    return f"; it has {some(astray)}, not {robot}'s own" if astray else ""

@@ -1,0 +1,136 @@
+"""Whose a name is: the robot that a node, topic or frame belongs to, by the plan and its spelling."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.graph.expectation import Expectation
+
+# What may stand between a robot's name and the rest of a segment.
+JOINTS = "_-."
+
+
+class Owners(NamedTuple):
+    """The robots as names of one sort hold them: graph names, or frames.
+
+    ``exact`` are the planned names that are one robot's, ``nodes`` those whose names are put before
+    private ones. ``words`` are robots called like a word of the names themselves (a robot ``scan``).
+    ``last`` tells that a robot's name stands at the end.
+    """
+
+    exact: Mapping[str, str]
+    nodes: Mapping[str, str]
+    robots: frozenset[str]
+    words: frozenset[str]
+    last: bool
+
+    def of(self, name: str) -> str:
+        """The robot of a name, or an empty string."""
+        known = self.exact.get(name)
+        if known is not None:
+            return known
+        above = name.rpartition("/")[0]
+        while above:
+            if above in self.nodes:
+                return self.nodes[above]
+            above = above.rpartition("/")[0]
+        return self._by_spelling(name)
+
+    def _by_spelling(self, name: str) -> str:
+        segments = name.strip("/").split("/")
+        if len(segments) > 1:
+            place = segments[-1 if self.last else 0]
+            if place in self.robots:
+                return place
+            found = self._longest(segments)
+            if found:
+                return found
+        return self._longest(end for segment in segments for end in _ends(segment))
+
+    def _longest(self, parts: Iterable[str]) -> str:
+        """``arm_left`` rather than ``arm``."""
+        found = (part for part in parts if part in self.robots and part not in self.words)
+        return max(found, key=len, default="")
+
+    def bare(self, name: str, robot: str) -> str:
+        """The name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
+        if not robot or robot not in name:
+            return name
+        lead = "/" if name.startswith("/") else ""
+        segments = name.strip("/").split("/")
+        there = [at for at, segment in enumerate(segments) if segment == robot]
+        if there and len(segments) > 1:
+            del segments[there[-1 if self.last else 0]]
+        else:
+            segments = [_without(segment, robot) for segment in segments]
+        return lead + "/".join(segments)
+
+
+def _ends(segment: str) -> Iterator[str]:
+    """What stands before and after each joint of a segment."""
+    for at, letter in enumerate(segment):
+        if letter in JOINTS:
+            yield segment[:at]
+            yield segment[at + 1 :]
+
+
+def _without(segment: str, robot: str) -> str:
+    after, before = segment.removeprefix(robot), segment.removesuffix(robot)
+    if after != segment and after.startswith(tuple(JOINTS)):
+        return after.lstrip(JOINTS)
+    if before != segment and before.endswith(tuple(JOINTS)):
+        return before.rstrip(JOINTS)
+    return segment
+
+
+def one_less(name: str, robot: str) -> Iterator[str]:
+    """The name with the robot's taken off one of its ends, as often as that can be done."""
+    for joint in ("/", *JOINTS, ""):
+        if name.startswith(robot + joint):
+            yield name[len(robot + joint) :]
+        if name.endswith(joint + robot):
+            yield name[: -len(joint + robot)]
+
+
+def name_owners(plan: Expectation) -> Owners:
+    """The owners of graph names."""
+    nodes = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    planned = ((w.name, nodes[w.node]) for w in plan.endpoints if w.node in nodes)
+    robots = frozenset(robot.name for robot in plan.robots)
+    own = next(((robot.nodes, robot.name) for robot in plan.robots if robot.nodes), ((), ""))
+    draft = Owners(_single((*nodes.items(), *planned)), nodes, robots, frozenset(), _last(*own))
+    asked = {(w.asked, nodes.get(w.node, "")) for w in plan.endpoints}
+    words = {draft.bare(name, robot) for name, robot in (*asked, *nodes.items())}
+    return draft._replace(words=robots & _parts(words))
+
+
+def frame_owners(plan: Expectation) -> Owners:
+    """The owners of tf frames."""
+    frames = [
+        (f, robot.name) for robot in plan.robots for f in (*robot.frames, *robot.other_frames)
+    ]
+    robots = frozenset(robot.name for robot in plan.robots)
+    own = next(((robot.frames, robot.name) for robot in plan.robots if robot.frames), ((), ""))
+    draft = Owners(_single(frames), {}, robots, frozenset(), _last(*own))
+    return draft._replace(words=robots & _parts(draft.bare(frame, own[1]) for frame in own[0]))
+
+
+def _single(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """The names that are one robot's only."""
+    found: dict[str, str] = {}
+    for name, robot in pairs:
+        if found.setdefault(name, robot) != robot:
+            found[name] = ""
+    return {name: robot for name, robot in found.items() if robot}
+
+
+def _last(names: Iterable[str], robot: str) -> bool:
+    """Whether the robot's name ends more of its names than it begins."""
+    bare = [name.strip("/") for name in names]
+    return sum(n.endswith(robot) - n.startswith(robot) for n in bare) > 0
+
+
+def _parts(names: Iterable[str]) -> set[str]:
+    segments = {segment for name in names for segment in name.strip("/").split("/")}
+    return segments.union(end for segment in segments for end in _ends(segment))
