@@ -1,0 +1,154 @@
+"""``multibot check --watch`` beside real nodes that come and go."""
+
+from __future__ import annotations
+
+import os
+import pty
+import queue
+import signal
+import subprocess
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import live_fleet
+import pytest
+from test_live_check import COMMAND, drive, plan
+
+pytest.importorskip(
+    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
+)
+__all__ = ["plan"]
+STRANGER = [{"name": "stranger", "namespace": "robot1", "publishers": [["/robot2/odom", "Empty"]]}]
+
+
+def domain(offset: int) -> int:
+    """A domain of this test's own."""
+    return 1 + (os.getpid() * 7 + 70 + offset) % 100
+
+
+class Watch:
+    """A running watch, whose lines are read as they come."""
+
+    def __init__(self, process: subprocess.Popen[str]) -> None:
+        self.process = process
+        self.lines: list[str] = []
+        self._coming: queue.Queue[str] = queue.Queue()
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        for line in self.process.stdout:
+            self._coming.put(line)
+
+    def until(self, text: str, seconds: float = 20) -> str:
+        """The first line with ``text`` from now on."""
+        limit = time.monotonic() + seconds
+        while (left := limit - time.monotonic()) > 0:
+            with suppress(queue.Empty):
+                self.lines.append(self._coming.get(timeout=left))
+                if text in self.lines[-1]:
+                    return self.lines[-1]
+        raise AssertionError(f"no {text!r} in {self.lines}")
+
+    def end(self) -> tuple[int, str]:
+        """End it as a user does; exit code and what it said on standard error."""
+        self.process.send_signal(signal.SIGINT)
+        assert self.process.stderr is not None
+        said = self.process.stderr.read()
+        return self.process.wait(20), said
+
+
+@contextmanager
+def watching(plan: Path, own: int) -> Iterator[Watch]:
+    process = subprocess.Popen(
+        [*COMMAND, str(plan), "--watch"],
+        env=live_fleet.environ(own),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        yield Watch(process)
+    finally:
+        process.kill()
+        process.wait()
+
+
+def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
+    own = domain(0)
+    with watching(plan, own) as watch:
+        assert "0/2 nodes, 0/6 names" in watch.until("nodes")
+        with live_fleet.running(own, drive("robot1"), drive("robot2")):
+            watch.until("2/2 nodes, 6/6 names, 0 findings: still changing")
+            watch.until("2/2 nodes, 6/6 names, 0 findings: as planned")
+            code, said = watch.end()
+    assert code == 0, said
+    assert said == "multibot: 2 robots, 0 findings: as planned\n"
+
+
+def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
+    own = domain(1)
+    with (
+        watching(plan, own) as watch,
+        live_fleet.running(own, drive("robot1"), drive("robot2")),
+    ):
+        watch.until("2/2 nodes, 6/6 names")
+        with live_fleet.running(own, STRANGER):
+            assert "error" in watch.until("  + /robot1/stranger: error: MG106 topic /robot2/odom")
+        watch.until("  - /robot1/stranger: error: MG106 topic /robot2/odom")
+        code, said = watch.end()
+    assert code == 1, said
+    assert said.endswith("not as planned\n")
+    assert "Traceback" not in said
+
+
+def test_what_goes_away_is_missing_once_the_graph_is_quiet(plan: Path) -> None:
+    own = domain(2)
+    with watching(plan, own) as watch, live_fleet.running(own, drive("robot1")):
+        with live_fleet.running(own, drive("robot2")):
+            watch.until("2/2 nodes, 6/6 names")
+        watch.until("  + robot2: inconclusive: MG109")
+        watch.until("  + robot2: error: MG109")
+        code, _ = watch.end()
+    assert code == 1
+
+
+def test_a_terminal_has_a_screen(plan: Path) -> None:
+    own = domain(3)
+    leader, follower = pty.openpty()
+    command = [*COMMAND, str(plan), "--watch", "--timeout", "12"]
+    env = {**live_fleet.environ(own), "TERM": "xterm", "COLUMNS": "120"}
+    with live_fleet.running(own, drive("robot1"), drive("robot2")):
+        process = subprocess.Popen(command, env=env, stdout=follower, stderr=subprocess.PIPE)
+        os.close(follower)
+        shown = b"".join(_read(leader))
+        assert process.stderr is not None
+        said = process.stderr.read().decode()
+        process.stderr.close()
+        assert process.wait(20) == 0, said
+    text = shown.decode()
+    assert "2/2 nodes, 6/6 names, 0 findings: as planned" in text
+    assert "robot2" in text
+    assert "1/1" in text
+
+
+def _read(leader: int) -> Iterator[bytes]:
+    """What comes on the terminal until the other side closes it."""
+    while True:
+        try:
+            data = os.read(leader, 4096)
+        except OSError:
+            return
+        if not data:
+            return
+        yield data
+
+
+def test_a_snapshot_is_not_watched(plan: Path) -> None:
+    command = [*COMMAND, str(plan), "--watch", "--snapshot", "graph.json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=20)
+    assert done.returncode == 2
+    assert "not allowed with" in done.stderr
