@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from math import inf
 
-from multibot_rewrite.cli import live
+from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.watch import WORDS, follow
@@ -43,6 +43,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--watch", action="store_true", help="show every change until Ctrl-C or --timeout"
     )
     live.options(parser)
+    pictures.options(parser)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -66,6 +67,7 @@ def conclude(options: argparse.Namespace, plan: Expectation, graph: Snapshot) ->
         print(finding)
     for caveat in doubts(graph):
         say(f"incomplete: {caveat.message}", PROGRAM)
+    pictures.deliver(options, plan, graph, found)
     return _sum_up(plan, found, judge(found, graph))
 
 
@@ -86,4 +88,5 @@ def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     if last is None:
         say("ended before anything was seen", PROGRAM)
         return live.INCONCLUSIVE
+    pictures.deliver(options, plan, last.graph, last.found)
     return _sum_up(plan, last.found, final(last))

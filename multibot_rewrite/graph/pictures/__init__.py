@@ -1,0 +1,1 @@
+"""Pictures of a checked graph: a scene is made of plan, snapshot and findings, then drawn."""

@@ -1,0 +1,145 @@
+"""The picture of the whole fleet: a box a robot, and an arrow where one reaches into another."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.graph.pictures.marks import TROUBLE
+from multibot_rewrite.graph.pictures.scene import Reach
+from multibot_rewrite.graph.pictures.svg import LETTER, MEANING, WIDTH, safe, told
+from multibot_rewrite.graph.pictures.text import clipped, counted
+
+# Up to that many robots: boxes in a row, width and height of a box, the gap below it.
+# Room for the arrows above the first row and below the last one.
+MARGIN = 44
+SIZES = ((4, 4, 230, 58, 74), (30, 6, 160, 54, 60), (100_000, 10, 106, 40, 40))
+# More nodes that are no robot's are one box; more arrows have no words on them.
+MOST_NODES, MOST_WORDS = 8, 12
+OTHERS, NOBODYS = "other nodes", "names of no robot"
+
+
+class Tile(NamedTuple):
+    """What is said of a box: its key in a reach, a line below the name, where it links to."""
+
+    key: str
+    title: str
+    note: str
+    link: str
+    looks: str
+
+
+class _Box(NamedTuple):
+    x: float
+    y: float
+    wide: float
+    high: float
+
+
+def overview(robots: Sequence[Tile], reaches: Sequence[Reach], shared: Iterable[str]) -> str:
+    """The picture; ``shared`` are the nodes that are no robot's."""
+    below = list(_below(reaches, list(shared)))
+    middle = _height(len(robots)) if below else 0.0
+    places = {**_rows(robots, 0), **_rows(below, middle)}
+    tiles = (*robots, *below)
+    high = max((box.y + box.high for box in places.values()), default=0.0) + MARGIN
+    arrows, words = [], []
+    for reach in sorted(reaches, key=lambda reach: reach.state in TROUBLE):
+        path, x, y = _path(*_ends(reach, places))
+        arrows.append(_arrow(reach, path))
+        if len(reaches) <= MOST_WORDS and reach.target and reach.state in TROUBLE:
+            words.append(_word(reach, x, y))
+    boxes = (_tile(tile, places[tile.key]) for tile in tiles)
+    return (
+        f'<svg class="overview" viewBox="0 0 {WIDTH} {high:g}" role="group" aria-label="the fleet">'
+        f"{_TIPS}{''.join((*arrows, *boxes, *words))}</svg>"
+    )
+
+
+_TIPS = "<defs>{}</defs>".format(
+    "".join(
+        f'<marker id="{name}" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7"'
+        f' orient="auto"><path class="{name}" d="M0 0L8 4L0 8z"/></marker>'
+        for name in ("tip", "tip-bad")
+    )
+)
+
+
+def _below(reaches: Sequence[Reach], shared: Sequence[str]) -> Iterator[Tile]:
+    """Boxes for the nodes that are no robot's, and for the names that should be a robot's."""
+    if len(shared) > MOST_NODES:
+        yield Tile(OTHERS, counted(len(shared), "other node"), "of no robot", "#shared", "shared")
+    else:
+        yield from (Tile(node, node, "of no robot", "#shared", "shared") for node in shared)
+    leaked = dict.fromkeys(name for r in reaches if not r.target for name in r.names)
+    if leaked:
+        names = dict.fromkeys(name.partition(" ")[2] for name in leaked)
+        yield Tile(NOBODYS, NOBODYS, ", ".join(names), "#shared", "bad")
+
+
+def _size(number: int) -> tuple[int, int, int, int]:
+    return next(size[1:] for size in SIZES if number <= size[0])
+
+
+def _height(number: int) -> float:
+    columns, _, high, gap = _size(number)
+    return -(-number // columns) * (high + gap)
+
+
+def _rows(tiles: Sequence[Tile], top: float) -> dict[str, _Box]:
+    columns, wide, high, gap = _size(len(tiles))
+    cell = WIDTH / min(columns, max(len(tiles), 1))
+    return {
+        tile.key: _Box(
+            at % columns * cell + (cell - wide) / 2,
+            MARGIN + top + at // columns * (high + gap),
+            wide,
+            high,
+        )
+        for at, tile in enumerate(tiles)
+    }
+
+
+def _tile(tile: Tile, box: _Box) -> str:
+    room = int((box.wide - 16) / LETTER)
+    middle = f'x="{box.x + box.wide / 2:g}"'
+    return (
+        f'<a href="{safe(tile.link)}"><g class="tile {tile.looks}">'
+        f'<rect x="{box.x:g}" y="{box.y:g}" width="{box.wide:g}" height="{box.high:g}" rx="7"/>'
+        f'<text class="title" {middle} y="{box.y + box.high * 0.44:g}">'
+        f"{safe(clipped(tile.title, room))}</text>"
+        f'<text class="note" {middle} y="{box.y + box.high * 0.8:g}">'
+        f"{safe(clipped(tile.note, room))}</text>"
+        f"{told(tile.title, tile.note)}</g></a>"
+    )
+
+
+def _ends(reach: Reach, places: Mapping[str, _Box]) -> tuple[_Box, _Box]:
+    start = places.get(reach.source or reach.node) or places[OTHERS]
+    return start, places[reach.target or NOBODYS]
+
+
+def _arrow(reach: Reach, path: str) -> str:
+    looks, tip = ("bad", "tip-bad") if reach.state in TROUBLE else ("calm", "tip")
+    title = told(f"{reach.source or reach.node}: {MEANING[reach.state]}", *reach.names)
+    return f'<path class="reach {looks}" d="{path}" marker-end="url(#{tip})">{title}</path>'
+
+
+def _word(reach: Reach, x: float, y: float) -> str:
+    first = reach.names[0].partition(" ")[2]
+    text = clipped(first, 40) if len(reach.names) == 1 else counted(len(reach.names), "name")
+    return f'<text class="reach-note" x="{x:g}" y="{y:g}">{safe(text)}</text>'
+
+
+def _path(start: _Box, end: _Box) -> tuple[str, float, float]:
+    """A curve from box to box and the middle of it; to and fro do not lie on one another."""
+    x, to_x = start.x + start.wide / 2 + 12, end.x + end.wide / 2 - 12
+    if start.y == end.y:
+        y, bend = start.y, 46 if x < to_x else 26
+        d = f"M{x:g} {y:g}C{x:g} {y - bend:g} {to_x:g} {y - bend:g} {to_x:g} {y:g}"
+        return d, (x + to_x) / 2, y - bend * 0.75 + 4
+    down = start.y < end.y
+    y, to_y = (start.y + start.high, end.y) if down else (start.y, end.y + end.high)
+    half = (to_y - y) / 2
+    d = f"M{x:g} {y:g}C{x:g} {y + half:g} {to_x:g} {to_y - half:g} {to_x:g} {to_y:g}"
+    return d, (x + to_x) / 2, (y + to_y) / 2
