@@ -76,7 +76,7 @@ def _near(name: str, known: Iterable[str]) -> str:
 
     there = sorted(node for node in known if not _is_tool(node))
     near = get_close_matches(name, there, 3, 0.5) or there[:3]
-    return f"there is {', '.join(near)}" if near else "no robot's node is seen"
+    return f"there is {', '.join(near)}" if near else "only tools are there, or none"
 
 
 def helpers_of(graph: Snapshot, names: Sequence[str]) -> dict[str, Helpers]:

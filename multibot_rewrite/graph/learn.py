@@ -106,7 +106,7 @@ def _learned(
     usual = _usual(library)
     found = _endpoints(ends.get(name, ()), place)
     for helper in helpers.names:
-        found = {**_helped(ends.get(helper, ()), place, helper, usual), **found}
+        found = {**_helped(ends.get(helper, ()), place, helper), **found}
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
     own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
     taken = (end for part in parts for end in library.parts[part])
@@ -208,16 +208,11 @@ def _joined(first: Endpoint, second: Endpoint, key: Key) -> Endpoint:
     )
 
 
-def _helped(
-    ends: Iterable[GraphEndpoint], place: _Place, helper: str, usual: frozenset[_Slot]
-) -> dict[_Slot, Endpoint]:
+def _helped(ends: Iterable[GraphEndpoint], place: _Place, helper: str) -> dict[_Slot, Endpoint]:
     """What a helper node asks for, as the node's own."""
     others = [end for end in ends if not end.name.startswith(f"{helper}/") and end.name != CLOCK]
-    return {
-        slot: end._replace(helper=True, note=HELPED)
-        for slot, end in _endpoints(others, place).items()
-        if slot not in usual
-    }
+    found = _endpoints(others, place)
+    return {slot: end._replace(helper=True, note=HELPED) for slot, end in found.items()}
 
 
 def _compared(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str:
