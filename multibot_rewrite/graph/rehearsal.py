@@ -121,7 +121,8 @@ def _played(wanted: Wanted, replaced: Mapping[str, str]) -> Iterator[Wanted]:
             asked = wanted.asked + name.removeprefix(wanted.name)
             yield Wanted(wanted.node, kind, role, name, type_, asked)
     else:
-        yield wanted._replace(type=replaced.get(wanted.type, wanted.type))
+        also = tuple(replaced.get(type_, type_) for type_ in wanted.also)
+        yield wanted._replace(type=replaced.get(wanted.type, wanted.type), also=also)
 
 
 def action_parts(part: Part) -> Iterator[Part]:
