@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from fnmatch import translate
 from functools import lru_cache
 from typing import NamedTuple
@@ -14,6 +14,7 @@ from multibot_rewrite.graph.likeness import stand_ins
 from multibot_rewrite.graph.owners import Owners, frame_owners, name_owners
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.trees import TfTree, tf_trees
+from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 INCONCLUSIVE = "inconclusive"
 # Nodes that come and go beside any fleet; no plan names them. Without a slash: in any namespace.
@@ -55,10 +56,11 @@ class GraphFinding(NamedTuple):
 class View(NamedTuple):
     """A snapshot beside the plan, with the look-ups that several rules need.
 
-    ``types`` has the type of every endpoint seen, ``planned`` all endpoints of the plan.
-    ``unplanned`` are nodes that the plan does not have and nobody ignores; ``stand_ins`` those of
-    them that stand where a planned node is missed (missed -> seen). ``places`` tell where in its
-    description a node comes from.
+    ``types`` has the type of every endpoint seen, ``planned`` all endpoints of the plan, ``more``
+    by node those seen that are not among them (the parts of an action are seen in the action),
+    ``spoken`` the topics that somebody publishes. ``unplanned`` are nodes that the plan does not
+    have and nobody ignores; ``stand_ins`` those of them that stand where a planned node is missed
+    (missed -> seen). ``places`` tell where in its description a node comes from.
     """
 
     plan: Expectation
@@ -70,6 +72,8 @@ class View(NamedTuple):
     frame_owners: Owners
     types: Mapping[End, str]
     planned: Mapping[End, Wanted]
+    more: Mapping[str, list[GraphEndpoint]]
+    spoken: Set[str]
     seen: Mapping[str, int]
     unplanned: tuple[str, ...]
     stand_ins: Mapping[str, str]
@@ -83,11 +87,17 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
     """The look-ups, made once."""
     by_node: dict[str, list[GraphEndpoint]] = defaultdict(list)
     by_name: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    more: dict[str, list[GraphEndpoint]] = defaultdict(list)
     types: dict[End, str] = {}
+    planned = {(w.node, w.kind, w.role, w.name): w for w in plan.endpoints}
     for endpoint in graph.endpoints:
-        by_node[endpoint.node].append(endpoint)
-        by_name[endpoint.name].append(endpoint)
-        types[endpoint.node, endpoint.kind, endpoint.role, endpoint.name] = endpoint.type
+        kind, role, name, type_, _, node, _, _ = endpoint
+        end = (node, kind, role, name)
+        by_node[node].append(endpoint)
+        by_name[name].append(endpoint)
+        types[end] = type_
+        if end not in planned and "/_" not in name:
+            more[node].append(endpoint)
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
     seen = Counter(node.name for node in graph.nodes)
     owners = owners_of(plan)
@@ -102,7 +112,9 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
         owners,
         frame_owners(plan),
         types,
-        {(w.node, w.kind, w.role, w.name): w for w in plan.endpoints},
+        planned,
+        more,
+        {name for _, kind, role, name in types if kind == TOPIC and role == PUBLISHES},
         seen,
         unplanned,
         stand_ins(missing, unplanned, owners),

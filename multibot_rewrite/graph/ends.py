@@ -27,17 +27,22 @@ def type_clashes(view: View) -> Iterator[GraphFinding]:
     """A topic, service or action with more than one type, or with another one than planned."""
     told = set()
     for name, there in view.by_name.items():
-        for ends in _by_kind(there):
+        for ends in () if _alike(there) else _by_kind(there):
             clash = _types(view, name, ends) or _versions(view, name, ends)
             if clash:
                 told.add(name)
                 yield clash
     for end, wanted in view.planned.items():
-        seen = view.types.get(end, "")
-        if not seen or not wanted.type or wanted.name in told:
+        seen, type_ = view.types.get(end, ""), wanted.type
+        if seen in ("", type_) or not type_ or seen in wanted.also or wanted.name in told:
             continue
-        if seen not in (wanted.type, *wanted.also):
-            yield _not_as_planned(view, wanted, seen)
+        yield _not_as_planned(view, wanted, seen)
+
+
+def _alike(ends: Sequence[GraphEndpoint]) -> bool:
+    """The usual case, seen at a glance."""
+    first = (ends[0].type, ends[0].type_hash, ends[0].kind)
+    return all((end.type, end.type_hash, end.kind) == first for end in ends)
 
 
 def _by_kind(ends: Sequence[GraphEndpoint]) -> Iterable[Sequence[GraphEndpoint]]:
@@ -109,6 +114,9 @@ def _not_as_planned(view: View, wanted: Wanted, seen: str) -> GraphFinding:
 def qos_clashes(view: View) -> Iterator[GraphFinding]:
     """A publisher that offers less than a subscription asks for: no message ever arrives."""
     for name, ends in view.by_name.items():
+        # An offer meets the same demand.
+        if all(end.qos == ends[0].qos for end in ends):
+            continue
         givers = _by_qos(ends, PUBLISHES)
         takers = _by_qos(ends, SUBSCRIBES) if givers else {}
         for asked, nodes in takers.items():

@@ -84,19 +84,12 @@ def leaks(view: View) -> Iterator[GraphFinding]:
     shared = {*view.plan.shared_topics, *EVERYWHERE}
     meant = _meant_otherwise(view)
     for node, robot in view.robot_of.items():
-        for name in dict.fromkeys(e.name for e in _own_idea(view, node)):
+        for name in dict.fromkeys(e.name for e in view.more.get(node, ())):
             if name in shared or view.owners.of(name):
                 continue
             message = f"{name} is not {robot}'s own: the same node of another robot has it too"
             cause = _why_leaked(view, node, name, meant.get((node, name)))
             yield GraphFinding("MG103", ERROR, robot, node, message, cause, (name,))
-
-
-def _own_idea(view: View, node: str) -> Iterator[GraphEndpoint]:
-    """A node's endpoints that nobody planned; the parts of an action are seen in the action."""
-    for end in view.by_node.get(node, ()):
-        if (node, end.kind, end.role, end.name) not in view.planned and "/_" not in end.name:
-            yield end
 
 
 def _meant_otherwise(view: View) -> dict[tuple[str, str], Wanted]:
@@ -134,7 +127,7 @@ def deaf_listeners(view: View) -> Iterator[GraphFinding]:
 def cross_talk(view: View) -> Iterator[GraphFinding]:
     """A robot's node that speaks or listens under another robot's name."""
     for node, robot in view.robot_of.items():
-        for end in _own_idea(view, node):
+        for end in view.more.get(node, ()):
             other = view.owners.of(end.name)
             if other and other != robot:
                 message = f"it {end.role} {end.name}, which is {other}'s"
@@ -144,12 +137,11 @@ def cross_talk(view: View) -> Iterator[GraphFinding]:
 
 def captured_topics(view: View) -> Iterator[GraphFinding]:
     """A relative topic below a node's own namespace, as a costmap's sensors: nobody is there."""
-    spoken = _spoken(view)
-    known = spoken | {wanted.name for wanted in view.planned.values()}
+    known = {*view.spoken, *(name for _, _, _, name in view.planned)}
     for node, robot in view.robot_of.items():
         below = view.owners.bare(node, robot).count("/") > 1
-        for end in _own_idea(view, node) if below else ():
-            if (end.kind, end.role) != (TOPIC, SUBSCRIBES) or end.name in spoken:
+        for end in view.more.get(node, ()) if below else ():
+            if (end.kind, end.role) != (TOPIC, SUBSCRIBES) or end.name in view.spoken:
                 continue
             above = (n for n in _above(node, end.name) if view.owners.of(n) == robot)
             meant = next((name for name in above if name in known), "")
@@ -162,11 +154,6 @@ def captured_topics(view: View) -> Iterator[GraphFinding]:
 
 def _absolute(meant: str) -> str:
     return f"a relative name falls below the node's own namespace: write {meant} in its parameters"
-
-
-def _spoken(view: View) -> set[str]:
-    """The topics that somebody publishes."""
-    return {e.name for e in view.graph.endpoints if (e.kind, e.role) == (TOPIC, PUBLISHES)}
 
 
 def _above(node: str, name: str) -> Iterator[str]:
@@ -185,23 +172,21 @@ def _captured(node: str, name: str, meant: str) -> bool:
 
 def unheard(view: View) -> Iterator[GraphFinding]:
     """A planned subscription without any publisher, while one nearly of its name is there."""
-    spoken = _spoken(view)
-    makers: dict[str, list[str]] = defaultdict(list)
-    for wanted in view.planned.values():
-        if (wanted.kind, wanted.role) == (TOPIC, PUBLISHES):
-            makers[wanted.name].append(wanted.node)
-    strays = _strays(view)
-    told = set(spoken)
-    for end in view.planned:
-        node, kind, role, name = end
+    lonely = [
+        end
+        for end in view.planned
+        if end[1:3] == (TOPIC, SUBSCRIBES) and end[3] not in view.spoken and end in view.types
+    ]
+    makers = _makers(view) if lonely else {}
+    strays = _strays(view) if lonely else {}
+    told = set()
+    for node, _, _, name in lonely:
         robot = view.robot_of.get(node, "")
-        if name in told or (kind, role) != (TOPIC, SUBSCRIBES) or end not in view.types:
-            continue
         # What a node that is there does not publish is told of that node.
-        if not robot or any(maker in view.seen for maker in makers.get(name, ())):
+        if not robot or name in told or any(maker in view.seen for maker in makers.get(name, ())):
             continue
-        bare = view.owners.bare(name, robot)
-        twin = _twin(bare, strays[robot], strays[""], name in makers)
+        own, nobodys = strays.get(robot, {}), strays.get("", {})
+        twin = _twin(view.owners.bare(name, robot), own, nobodys, name in makers)
         if twin:
             told.add(name)
             message = f"nobody publishes {name}; {twin.node} publishes {twin.name}"
@@ -209,17 +194,24 @@ def unheard(view: View) -> Iterator[GraphFinding]:
             yield GraphFinding("MG111", WARNING, robot, node, message, cause, (name, twin.name))
 
 
+def _makers(view: View) -> Mapping[str, list[str]]:
+    """The nodes that are to publish each topic."""
+    found: dict[str, list[str]] = defaultdict(list)
+    for node, kind, role, name in view.planned:
+        if (kind, role) == (TOPIC, PUBLISHES):
+            found[name].append(node)
+    return found
+
+
 def _strays(view: View) -> Mapping[str, Strays]:
     """Publishers nobody planned, by the robot of their node."""
     found: dict[str, Strays] = defaultdict(dict)
     told = set(view.stand_ins.values())
-    for end in view.graph.endpoints:
-        if (end.kind, end.role) != (TOPIC, PUBLISHES) or end.name in EVERYWHERE:
-            continue
-        if (end.node, TOPIC, PUBLISHES, end.name) in view.planned or end.node in told:
-            continue
-        bare = view.owners.bare(end.name, view.owners.of(end.name))
-        found[view.owners.of(end.node)].setdefault(bare, []).append(end)
+    for node, ends in view.more.items():
+        for end in ends if node not in told else ():
+            if (end.kind, end.role) == (TOPIC, PUBLISHES) and end.name not in EVERYWHERE:
+                bare = view.owners.bare(end.name, view.owners.of(end.name))
+                found[view.owners.of(node)].setdefault(bare, []).append(end)
     return found
 
 

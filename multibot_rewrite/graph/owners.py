@@ -100,9 +100,15 @@ def name_owners(plan: Expectation) -> Owners:
     robots = frozenset(robot.name for robot in plan.robots)
     own = next(((robot.nodes, robot.name) for robot in plan.robots if robot.nodes), ((), ""))
     draft = Owners(_single((*nodes.items(), *planned)), nodes, robots, frozenset(), _last(*own))
-    asked = {(w.asked, nodes.get(w.node, "")) for w in plan.endpoints}
-    words = {draft.bare(name, robot) for name, robot in (*asked, *nodes.items())}
-    return draft._replace(words=robots & _parts(words))
+    return draft._replace(words=robots & _words(plan, draft))
+
+
+def _words(plan: Expectation, draft: Owners) -> set[str]:
+    """The words of names and nodes without their own robot's name, as far as they may be robots."""
+    nodes = draft.nodes
+    likely = draft.robots & _parts({w.asked for w in plan.endpoints})
+    asked = {(w.asked, nodes.get(w.node, "")) for w in plan.endpoints if likely}
+    return _parts({draft.bare(name, robot) for name, robot in (*asked, *nodes.items())})
 
 
 def frame_owners(plan: Expectation) -> Owners:

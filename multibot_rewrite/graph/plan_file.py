@@ -13,8 +13,8 @@ from multibot_rewrite.remap.records import KINDS, ROLES
 HEAD = """\
 # What the graph of this fleet is to look like. Endpoints: [role, kind, name, type, name in the code].
 # Take out what is not started, add what is: `multibot check` compares exactly this.
-# optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes: patterns
-# of nodes that may come and go, beside the usual tools. sources: where a node's description starts it.
+# optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
+# patterns of nodes that may come and go, beside the usual tools. sources: what starts a node.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
