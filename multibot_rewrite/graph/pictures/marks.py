@@ -86,7 +86,7 @@ def _ends(view: View, finding: GraphFinding) -> Targets:
     met = dict.fromkeys(end.node for name in finding.about for end in view.by_name.get(name, ()))
     words = _words(finding.message)
     others = [node for node in met if finding.code in ALL_ENDS or node in words]
-    return Targets(tuple(dict.fromkeys((finding.node, *others))), finding.about, ())
+    return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), finding.about, ())
 
 
 def _frames(view: View, finding: GraphFinding, topics: Sequence[str]) -> Iterator[FrameKey]:
