@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.naming import NAMESPACE, Naming, affix
 from multibot_rewrite.remap.records import (
@@ -52,6 +53,13 @@ def build_table(
 
     ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
     """
+    with uncollected():
+        return _build(robots, nodes, naming, plugins)
+
+
+def _build(
+    robots: Sequence[str], nodes: Sequence[NodeFacts], naming: Naming, plugins: Mapping[str, Pairs]
+) -> Table:
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's differs in nothing but the robot's name.
     names_of = frozenset(node.name for node in nodes if not node.shared)

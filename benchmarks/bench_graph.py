@@ -1,0 +1,288 @@
+"""Measure the checking of a live graph, with real nodes on this machine, in one run.
+
+python benchmarks/bench_graph.py            print the table
+python benchmarks/bench_graph.py --write    and put it into docs/benchmark-graph.md
+
+Needs rclpy (pip install '.[test]').
+"""
+
+from __future__ import annotations
+
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+import live_fleet  # the nodes of the tests
+
+from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
+from multibot_rewrite.graph.snapshot import (
+    Environment,
+    GraphEndpoint,
+    GraphNode,
+    Snapshot,
+    from_json,
+    to_json,
+)
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.table import build_table
+
+PAGE = Path(__file__).parent.parent / "docs" / "benchmark-graph.md"
+COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check"]
+TYPES = ("String", "Empty")
+LIVE_RUNS = 3
+
+
+class Size(NamedTuple):
+    """A fleet: so many robots, nodes a robot, topics a node, each published and subscribed."""
+
+    robots: int
+    nodes: int
+    topics: int
+    processes: int
+
+    def __str__(self) -> str:
+        nodes = f" x {self.nodes} nodes" if self.nodes > 1 else ""
+        return f"{self.robots} robots{nodes} x {self.topics} topics"
+
+
+SMALL, LARGE = Size(10, 5, 8, 10), Size(100, 1, 20, 5)
+
+
+class Row(NamedTuple):
+    """One line of the table; ``spread`` is least and most."""
+
+    what: str
+    fleet: str
+    median: float
+    spread: str
+    unit: str
+    goal: str
+
+
+def row(what: str, fleet: object, values: Sequence[float], unit: str, goal: str) -> Row:
+    spread = f"{min(values):.3g} to {max(values):.3g}" if len(values) > 1 else ""
+    return Row(what, str(fleet), statistics.median(values), spread, unit, goal)
+
+
+def ends(size: Size) -> Iterator[Wanted]:
+    """Every endpoint of a fleet: a topic has its publisher and its subscription in one node."""
+    for robot in range(size.robots):
+        for node in range(size.nodes):
+            for topic in range(size.topics):
+                name = f"n{node}_t{topic}"
+                full = f"/robot{robot}/{name}"
+                type_ = f"std_msgs/msg/{TYPES[topic % 2]}"
+                for role in (PUBLISHES, SUBSCRIBES):
+                    yield Wanted(f"/robot{robot}/node{node}", TOPIC, role, full, type_, name)
+
+
+def plan_of(size: Size) -> Expectation:
+    robots = tuple(
+        WantedRobot(
+            f"robot{robot}",
+            tuple(f"/robot{robot}/node{node}" for node in range(size.nodes)),
+            (),
+            f"/robot{robot}/tf",
+        )
+        for robot in range(size.robots)
+    )
+    return Expectation("both", robots, (), ("/clock",), ("map",), tuple(ends(size)))
+
+
+def graph_of(plan: Expectation) -> Snapshot:
+    """The graph exactly as planned."""
+    around = Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 5, "quiet", 3.5, ())
+    nodes = tuple(GraphNode(node, "") for robot in plan.robots for node in robot.nodes)
+    found = (
+        GraphEndpoint(w.kind, w.role, w.name, w.type, "", w.node, None, "") for w in plan.endpoints
+    )
+    return Snapshot(nodes, tuple(found), (), around)
+
+
+def specs(size: Size) -> list[list[dict[str, Any]]]:
+    """The fleet for ``live_fleet``, dealt to its processes."""
+    hands: list[list[dict[str, Any]]] = [[] for _ in range(size.processes)]
+    for robot in range(size.robots):
+        for node in range(size.nodes):
+            names = [[f"n{node}_t{at}", TYPES[at % 2]] for at in range(size.topics)]
+            spec = {"name": f"node{node}", "namespace": f"robot{robot}"}
+            hands[robot % size.processes].append(
+                {**spec, "publishers": names, "subscriptions": names}
+            )
+    return hands
+
+
+@contextmanager
+def plan_file(size: Size) -> Iterator[str]:
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder, "plan.yaml")
+        path.write_text(to_yaml(plan_of(size)))
+        yield str(path)
+
+
+class Ended(NamedTuple):
+    """What a command took, its children included: CPU seconds, peak memory of one process."""
+
+    code: int
+    seconds: float
+    cpu: float
+    peak: float
+
+
+def ended(process: subprocess.Popen[str], began: float) -> Ended:
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    cpu = usage.ru_utime + usage.ru_stime
+    return Ended(process.returncode, time.monotonic() - began, cpu, usage.ru_maxrss / 1024)
+
+
+def fresh(size: Size, plan: str, domain: int) -> list[Ended]:
+    """Checks that are started when the fleet is up."""
+    with live_fleet.running(domain, *specs(size)):
+        results = []
+        for _ in range(LIVE_RUNS):
+            began = time.monotonic()
+            process = subprocess.Popen(
+                [*COMMAND, plan, "--timeout", "60"],
+                env=live_fleet.environ(domain), stderr=subprocess.PIPE, text=True,
+            )  # fmt: skip
+            assert process.stderr is not None
+            said = process.stderr.read()
+            results.append(ended(process, began))
+            assert results[-1].code == 0, said
+    return results
+
+
+def first(size: Size, plan: str, domain: int) -> float:
+    """Seconds from the last endpoint of a fleet to its presence on the screen of a running check."""
+    process = subprocess.Popen(
+        [*COMMAND, plan, "--watch"],
+        env=live_fleet.environ(domain), stdout=subprocess.PIPE, text=True,
+    )  # fmt: skip
+    seen: list[float] = []
+    everything = f"{size.robots * size.nodes}/{size.robots * size.nodes} nodes, "
+    names = 2 * size.robots * size.nodes * size.topics
+    began = threading.Event()
+
+    def read() -> None:
+        assert process.stdout is not None
+        for line in process.stdout:
+            began.set()
+            if f"{everything}{names}/{names} names" in line:
+                seen.append(time.monotonic())
+
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    began.wait(30)
+    with live_fleet.running(domain, *specs(size)):
+        last = time.monotonic()
+        limit = last + 30
+        while not seen and time.monotonic() < limit:
+            time.sleep(0.01)
+        process.send_signal(2)
+        process.wait()
+    assert seen, "the fleet was never there"
+    return seen[0] - last
+
+
+def live() -> Iterator[Row]:
+    domain = 1 + os.getpid() % 90
+    for at, (size, presence) in enumerate(((SMALL, "0.5"), (LARGE, "1"))):
+        with plan_file(size) as plan:
+            early = [first(size, plan, domain + at) for _ in range(LIVE_RUNS)]
+            yield row("check that runs already: all present", size, early, "s", presence)
+            late = fresh(size, plan, domain + 5 + at)
+        yield row("fresh check: verdict", size, [it.seconds for it in late], "s", "8")
+        goals = ("2", "120") if size is LARGE else ("", "")
+        yield row("its CPU", size, [it.cpu for it in late], "s", goals[0])
+        yield row("its peak memory", size, [it.peak for it in late], "MiB", goals[1])
+
+
+def timed(job: Callable[[], object], runs: int = 7) -> list[float]:
+    """Milliseconds of each run."""
+    result = []
+    for _ in range(runs):
+        began = time.perf_counter()
+        job()
+        result.append(1000 * (time.perf_counter() - began))
+    return result
+
+
+def pure() -> Iterator[Row]:
+    medians = []
+    for robots, goal in ((100, "50"), (1000, "1000"), (2000, "")):
+        size = Size(robots, 1, 20, 1)
+        plan = plan_of(size)
+        graph = graph_of(plan)
+        assert check(plan, graph) == []
+        values = timed(lambda plan=plan, graph=graph: check(plan, graph))  # type: ignore[misc]
+        medians.append(statistics.median(values))
+        yield row("comparison alone", size, values, "ms", goal)
+        if robots == 100:
+            yaml, json = to_yaml(plan).encode(), to_json(graph)
+            yield row("reading the plan", size, timed(lambda y=yaml: from_yaml(y, "")), "ms", "")  # type: ignore[misc]
+            yield row("reading a snapshot", size, timed(lambda j=json: from_json(j, "")), "ms", "")  # type: ignore[misc]
+    yield row(
+        "2,000 robots against 1,000", "comparison", [medians[2] / medians[1]], "x", "2 is linear"
+    )
+
+
+def tables() -> Iterator[Row]:
+    nodes = stack_of(built_in(), "nav2")
+    names = [f"robot{at}" for at in range(1000)]
+    for layout in ("frames-per-robot", "postfix"):
+        naming = make_naming(layout)
+        values = timed(lambda naming=naming: build_table(names, nodes, naming), 3)  # type: ignore[misc]
+        yield row(f"remap tables of nav2, {layout}", "1000 robots", values, "ms", "1000")
+
+
+def table(rows: Sequence[Row]) -> str:
+    lines = ["| what | fleet | median | least to most | goal |", "|---|---|--:|--:|--:|"]
+    for it in rows:
+        value = f"{it.median:.3g} {it.unit}"
+        goal = f"{it.goal} {it.unit}" if it.goal and it.unit != "x" else it.goal
+        lines.append(f"| {it.what} | {it.fleet} | {value} | {it.spread} | {goal} |")
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    # First, while this process is small: a child starts with its parent's peak of memory.
+    seen = [*live()]
+    text = table([*seen, *pure(), *tables()])
+    print(text)
+    if "--write" in sys.argv:
+        where = f"CPython {platform.python_version()}, {os.cpu_count()} cores, Fast DDS, loopback"
+        head = (
+            "# Benchmark of the live checks\n\n"
+            "Made by `python benchmarks/bench_graph.py --write` in one run.\n"
+            f"{where}; a shared machine, so a digit more or less is noise.\n\n"
+        )
+        write_all([(str(PAGE), (head + text + NOTE).encode())])
+
+
+NOTE = """
+Nodes are rclpy's with their parameter services and run on the same cores as the check: 10 processes
+for the small fleet, 5 for the large one. A verdict needs 3.5 s without change, since a participant is
+announced every 3 s; what is planned is shown as present before that. CPU and memory are those of the
+command with its child that looks, interpreter start included.
+"""
+
+
+if __name__ == "__main__":
+    main()

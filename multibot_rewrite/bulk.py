@@ -1,0 +1,20 @@
+"""Making very many records at once."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+
+@contextmanager
+def uncollected() -> Iterator[None]:
+    """No passes of the garbage collector in the block: of a million fresh records none is garbage,
+    and looking at them again and again takes twice as long as making them."""
+    on = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if on:
+            gc.enable()
