@@ -66,19 +66,51 @@ def by_node(
                         yield GraphEndpoint(kind, role, thing, type_, "", name, None, "")
 
 
+# What was told of a topic, and what its nodes had of it then.
+Memory = dict[str, tuple[frozenset[GraphEndpoint], list[GraphEndpoint]]]
+
+
 def endpoints_of(
-    node: Any, names: list[str], found: list[GraphEndpoint], asked: Collection[str]
+    node: Any,
+    names: list[str],
+    found: list[GraphEndpoint],
+    asked: Collection[str],
+    memory: Memory,
 ) -> list[GraphEndpoint]:
     """``found`` by node, with QoS and process where it is worth asking by topic.
 
-    ``asked`` are topics whose QoS is wanted in any case.
+    ``asked`` are topics whose QoS is wanted in any case. A topic in ``memory`` whose nodes have the
+    same ends of it as before is not asked for again; memory grows.
     """
     topics = dict(node.get_topic_names_and_types())
     wanted = gather.topics_to_ask(names, found, topics, asked)
-    endpoints = gather.merged(found, {topic: _by_topic(node, topic) for topic in wanted})
+    if len(set(names)) < len(names):
+        # One of two nodes of a name is hidden, and so are its ends.
+        memory.clear()
+    told = _told_of(node, wanted, found, memory)
+    endpoints = gather.merged(found, told)
     known = gather.processes(endpoints)
     homeless = {end.node: end for end in found if end.node not in known and end.kind != ACTION}
     return [*endpoints, *_replaced(node, endpoints, homeless)] if homeless else endpoints
+
+
+def _told_of(
+    node: Any, topics: Iterable[str], found: Iterable[GraphEndpoint], memory: Memory
+) -> dict[str, list[GraphEndpoint]]:
+    ends: dict[str, list[GraphEndpoint]] = {}
+    for end in found:
+        ends.setdefault(end.name, []).append(end)
+    result = {}
+    for topic in topics:
+        now = frozenset(ends.get(topic, ()))
+        before, told = memory.get(topic, (None, []))
+        if before != now:
+            told = _by_topic(node, topic)
+            # Else a part of it is still on its way.
+            if {(end.role, end.node) for end in told} == {(end.role, end.node) for end in now}:
+                memory[topic] = now, told
+        result[topic] = told
+    return result
 
 
 def _replaced(

@@ -30,8 +30,9 @@ from multibot_rewrite.graph.snapshot import (
 from multibot_rewrite.graph.worker import Tell, work
 from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 
-# 10 looks a second cost less than a tenth of a core with 100 robots.
-POLL_SECONDS = 0.1
+# How long to wait between two looks, and at least so many times as long as one took: a fleet of 100
+# robots is not looked at as often as one of two.
+POLL_SECONDS, REST = 0.1, 15
 # tf comes ten times a second or more; a shared topic of 100 robots took 1.3 s to be heard whole.
 TF_SECONDS = (1.5, 3.0)
 # Who watches is told this soon, since more may be told later,
@@ -91,20 +92,25 @@ def look(eye: _Eye) -> Snapshot:
 def watch(eye: _Eye) -> Iterator[Snapshot]:
     """A snapshot whenever something changed, and one when nothing did for a while."""
     ears = Ears(partial(_subscribe, eye))
+    memory: ask.Memory = {}
     before: object = None
     told: object = None
-    changed = told_at = 0.0
+    changed = told_at = pause = 0.0
     while not eye.stop.is_set():
-        ros.spin(eye.session, POLL_SECONDS)
+        ros.spin(eye.session, max(POLL_SECONDS, pause))
+        began = eye.now()
         state = (*_overview(eye), ears.edges())
         now = eye.now()
+        pause = REST * (now - began)
         if state != before:
             before, changed = state, now
         quiet = now - changed >= gather.QUIET_SECONDS
         due = now - changed >= GLANCE_SECONDS or now - told_at >= PATIENCE_SECONDS
         if due and told != (state, quiet):
             told, told_at = (state, quiet), now
-            names, endpoints = _view(eye)
+            if quiet:
+                memory.clear()
+            names, endpoints = _view(eye, memory)
             ears.attend(endpoints, eye.request.stand_ins)
             yield _snapshot(eye, names, endpoints, ears, (QUIET if quiet else CHANGING, now))
 
@@ -121,8 +127,11 @@ def _settle(eye: _Eye) -> str:
     before: object = None
     expected_before: object = None
     changed = gather.Changes(0.0, 0.0)
-    while not eye.stop.wait(POLL_SECONDS):
+    pause = 0.0
+    while not eye.stop.wait(max(POLL_SECONDS, pause)):
+        began = eye.now()
         names, ends = _overview(eye)
+        pause = REST * (eye.now() - began)
         expected = [end for end in ends if end.node in request.expected]
         now = eye.now()
         if (names, ends) != before:
@@ -140,18 +149,18 @@ def _taken(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
     """Names and endpoints, again for a while where they have not found one another."""
     limit = min(eye.request.timeout, eye.now() + gather.QUIET_SECONDS)
     while True:
-        names, endpoints = _view(eye)
+        names, endpoints = _view(eye, {})
         owners = {end.node for end in endpoints}
         whole = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
         if whole or eye.now() >= limit or eye.stop.wait(POLL_SECONDS):
             return names, endpoints
 
 
-def _view(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
+def _view(eye: _Eye, memory: ask.Memory) -> tuple[list[str], list[GraphEndpoint]]:
     """Names and endpoints, with QoS and process where they are worth asking for."""
     names = ask.names_in(eye.node)
     found = list(ask.by_node(eye.node, names, (*ask.QUESTIONS, *_ACTIONS), ros.gone()))
-    return names, ask.endpoints_of(eye.node, names, found, eye.request.topics)
+    return names, ask.endpoints_of(eye.node, names, found, eye.request.topics, memory)
 
 
 _ACTIONS: tuple[ask.Question, ...] = (
