@@ -4,6 +4,7 @@ Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "n
 "publishers", "subscriptions", "services", "clients", "actions" of [name, type word, QoS words],
 "frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
 brings, as far as rclpy lets it.
+"arguments": what a command line tells the node.
 """
 
 from __future__ import annotations
@@ -91,6 +92,7 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
 
     node = Node(
         spec["name"],
+        cli_args=spec.get("arguments"),
         namespace=spec.get("namespace", ""),
         start_parameter_services=not spec.get("bare"),
         enable_rosout=not spec.get("bare"),
