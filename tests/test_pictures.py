@@ -49,6 +49,7 @@ from multibot_rewrite.remap.records import PUBLISHES
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
 ABSENT = "/robot2/bt_navigator"
+DOCS = Path(__file__).parent.parent / "docs" / "report.md"
 # What a page is made of.
 TAGS = frozenset(
     re.findall(
@@ -641,6 +642,14 @@ def test_mermaid_shows_as_much_as_it_bears(robots: int, leaks: int, note: str) -
     assert_mermaid(text)
     assert text.splitlines()[1] == f"  %% {note}"
     assert ("leak" in re.findall(r":::([a-z]+)", text)) == (leaks > 0)
+
+
+def test_the_flowchart_on_the_docs_page_is_a_real_one() -> None:
+    plan = drawn.fleet(2, 2)
+    graph = drawn.moved(drawn.healthy(plan), "/robot1/topic1", "/topic1", "driver")
+    text = to_mermaid(drawn.scene(plan, graph)).decode()
+    shown = re.findall(r"```mermaid\n(.*?)```", DOCS.read_text(), re.DOTALL)
+    assert shown == [text.replace("topic0", "odom").replace("topic1", "cmd_vel")]
 
 
 # ---------------------------------------------------------------- Graphviz

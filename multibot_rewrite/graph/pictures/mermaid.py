@@ -71,9 +71,11 @@ def _looks(chart: Chart) -> Iterator[str]:
     by_state: dict[str, list[str]] = defaultdict(list)
     for at, arrow in enumerate(chart.arrows):
         by_state[arrow.state].append(str(at))
+    there = {thing.state for it in chart.clusters for _, thing in (*it.nodes, *it.names)}
     for state, (fill, line, text) in COLOURS.items():
-        dashes = DASHED.get(state, "")
-        yield f"  classDef {_class(state)} fill:{fill},stroke:{line},color:{text}{dashes}"
+        if state == OK or state in there:
+            dashes = DASHED.get(state, "")
+            yield f"  classDef {_class(state)} fill:{fill},stroke:{line},color:{text}{dashes}"
         if state != OK and by_state[state]:
             wide = 1 if state == UNEXPECTED else 2
             yield f"  linkStyle {','.join(by_state[state])} stroke:{line},stroke-width:{wide}px"

@@ -1,0 +1,320 @@
+"""The report in a real browser: nothing is fetched, nothing from the graph runs, clicks find things."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import drawn
+import pytest
+
+from multibot_rewrite.graph.pictures.page import to_html
+
+pytest.importorskip("selenium", reason="no selenium: pip install '.[test]'")
+from selenium import webdriver
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.select import Select
+
+BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
+DRIVER = shutil.which("chromedriver")
+pytestmark = pytest.mark.skipif(
+    not (BROWSER and DRIVER), reason="no browser: apt install chromium chromium-driver"
+)
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--window-size=1280,900",
+)
+Open = Callable[[bytes], webdriver.Chrome]
+
+
+def browser(folder: Path, script: bool = True) -> webdriver.Chrome:
+    options = webdriver.ChromeOptions()
+    options.binary_location = BROWSER or ""
+    for flag in (*FLAGS, f"--user-data-dir={folder}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    if not script:
+        blocked = {"profile.managed_default_content_settings.javascript": 2}
+        options.add_experimental_option("prefs", blocked)
+    return webdriver.Chrome(options, webdriver.ChromeService(DRIVER))
+
+
+@pytest.fixture(scope="module")
+def chromium(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chrome]:
+    driver = browser(tmp_path_factory.mktemp("profile"))
+    yield driver
+    driver.quit()
+
+
+@pytest.fixture
+def show(chromium: webdriver.Chrome, tmp_path: Path) -> Iterator[Open]:
+    """Opens a page; afterwards nothing may have been fetched or complained about."""
+    file = tmp_path / "report.html"
+
+    def open_(data: bytes) -> webdriver.Chrome:
+        file.write_bytes(data)
+        forget(chromium)
+        chromium.get(file.as_uri())
+        return chromium
+
+    yield open_
+    assert chromium.get_log("browser") == []
+    assert set(fetched(chromium)) == {file.as_uri()}
+
+
+def forget(driver: webdriver.Chrome) -> None:
+    driver.get("about:blank")
+    for kind in ("browser", "performance"):
+        driver.get_log(kind)
+
+
+def fetched(driver: webdriver.Chrome) -> Iterator[str]:
+    """Every address that was asked for since the log was read last."""
+    for entry in driver.get_log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            # What follows # is not sent.
+            yield message["params"]["request"]["url"].partition("#")[0]
+
+
+def spoiled() -> bytes:
+    plan = drawn.nav2()
+    return to_html(drawn.scene(plan, drawn.spoiled(plan)))
+
+
+def swarm() -> bytes:
+    plan = drawn.fleet(30, 4)
+    graph = drawn.moved(drawn.healthy(plan), "/robot7/topic1", "/topic1")
+    return to_html(drawn.scene(plan, drawn.without_node(graph, "/robot9/driver")))
+
+
+def every(driver: webdriver.Chrome, css: str) -> list[Any]:
+    return driver.find_elements(By.CSS_SELECTOR, css)
+
+
+def seen(driver: webdriver.Chrome, css: str) -> list[Any]:
+    return [element for element in every(driver, css) if element.is_displayed()]
+
+
+def row(driver: webdriver.Chrome, code: str) -> Any:
+    return next(it for it in every(driver, "#findings tbody tr") if code in it.text)
+
+
+def labels(driver: webdriver.Chrome, css: str) -> set[str]:
+    """What stands in parts of a drawing, in front of what is told on a hover."""
+    script = "return arguments[0].querySelector('text').textContent"
+    return {driver.execute_script(script, part) for part in every(driver, css)}
+
+
+def in_view(driver: webdriver.Chrome, element: Any) -> bool:
+    script = """const box = arguments[0].getBoundingClientRect();
+    return box.height > 0 && box.top >= 0 && box.bottom <= innerHeight;"""
+    return bool(driver.execute_script(script, element))
+
+
+def test_what_is_wrong_is_told_first(show: Open) -> None:
+    driver = show(spoiled())
+    assert every(driver, "h1")[0].text.lower() == "not as planned"
+    texts = [it.text for it in seen(driver, "#findings tbody tr")]
+    assert len(texts) == len(drawn.scene(drawn.nav2(), drawn.spoiled(drawn.nav2())).findings)
+    assert any("/cmd_vel is not robot1's own" in text for text in texts)
+    assert in_view(driver, every(driver, "#findings tbody tr")[0])
+
+
+@pytest.mark.parametrize(
+    ("code", "marked", "ends"),
+    [
+        ("MG101", {"/robot2/bt_navigator"}, {"missing"}),
+        ("MG103", {"/robot1/collision_monitor", "/cmd_vel"}, {"leak"}),
+        ("MG104", {"/robot2/amcl", "/robot1/scan"}, {"cross-talk"}),
+        ("MG201", {"lidar_link/robot1"}, set()),
+    ],
+)
+def test_a_click_on_a_finding_shows_what_it_is_about(
+    show: Open, code: str, marked: set[str], ends: set[str]
+) -> None:
+    driver = show(spoiled())
+    assert every(driver, ".hit") == []
+    row(driver, code).click()
+    assert labels(driver, "g.hit") == marked
+    assert any(in_view(driver, part) for part in every(driver, "g.hit"))
+    strokes = {part.value_of_css_property("stroke") for part in seen(driver, "g.hit > rect")}
+    assert "rgb(255, 207, 51)" in strokes
+    lines = {path.get_attribute("class") for path in every(driver, "path.hit")}
+    assert lines == {f"e {state} hit" for state in ends}
+    driver.find_element(By.TAG_NAME, "body").send_keys(Keys.ESCAPE)
+    assert every(driver, ".hit") == []
+
+
+def test_findings_are_filtered_by_level_and_robot(show: Open) -> None:
+    plan = drawn.nav2()
+    graph = drawn.with_end(drawn.spoiled(plan), "/robot2/gripper", "/robot2/grip")
+    scene = drawn.scene(plan, graph)
+    driver = show(to_html(scene))
+    pairs = [(finding.level, finding.robot) for finding in scene.findings]
+    level, robot = (Select(it) for it in every(driver, "#filters select"))
+    assert len(seen(driver, "#findings tbody tr")) == len(pairs)
+    robot.select_by_visible_text("robot2")
+    assert len(seen(driver, "#findings tbody tr")) == sum(it[1] == "robot2" for it in pairs)
+    level.select_by_visible_text("warning")
+    shown = seen(driver, "#findings tbody tr")
+    assert len(shown) == pairs.count(("warning", "robot2")) == 1
+    assert every(driver, "#filters output")[0].text == f"1 of {len(pairs)}"
+    robot.select_by_visible_text("all robots")
+    level.select_by_visible_text("all levels")
+    assert len(seen(driver, "#findings tbody tr")) == len(pairs)
+
+
+def test_what_every_node_has_is_shown_on_request(show: Open) -> None:
+    driver = show(spoiled())
+    assert seen(driver, ".more") == []
+    every(driver, "label[for=more]")[0].click()
+    assert len(seen(driver, ".more")) == 3
+    assert "/rosout" in labels(driver, ".more g.t")
+
+
+def test_a_part_of_the_drawing_is_marked_by_click_and_by_key(show: Open) -> None:
+    driver = show(spoiled())
+    node = next(it for it in every(driver, "#g0 g.n") if "velocity_smoother" in it.text)
+    node.click()
+    assert labels(driver, "g.hit") == {"/robot1/velocity_smoother"}
+    assert len(every(driver, "path.hit")) >= 2
+    driver.find_element(By.TAG_NAME, "body").send_keys(Keys.ESCAPE)
+    topic = next(it for it in every(driver, "#g0 g.t") if "/cmd_vel_smoothed" in it.text)
+    driver.execute_script("arguments[0].focus()", topic)
+    driver.switch_to.active_element.send_keys(Keys.ENTER)
+    assert labels(driver, "g.hit") == {"/robot1/cmd_vel_smoothed"}
+
+
+def test_findings_are_reached_with_the_keyboard(show: Open) -> None:
+    driver = show(spoiled())
+    link = row(driver, "MG104").find_element(By.TAG_NAME, "a")
+    driver.execute_script("arguments[0].focus()", link)
+    link.send_keys(Keys.ENTER)
+    assert labels(driver, "g.hit") == {"/robot2/amcl", "/robot1/scan"}
+
+
+def test_a_large_fleet_opens_where_something_is_wrong(show: Open) -> None:
+    driver = show(swarm())
+    drawings = seen(driver, "svg.graph")
+    assert len(drawings) == 3
+    assert len(seen(driver, "svg.overview g.tile")) == 31
+    row(driver, "MG103").click()
+    assert labels(driver, "g.hit") >= {"/topic1"}
+    # A tile of a healthy robot leads into what is folded away.
+    tile = next(it for it in every(driver, "svg.overview a") if it.text.startswith("robot20"))
+    tile.click()
+    assert in_view(driver, every(driver, "#g19 > summary")[0])
+
+
+def colours(driver: webdriver.Chrome, dark: bool) -> tuple[int, int]:
+    """How bright page and letters are, 0 to 765."""
+    scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [scheme]})
+    body = every(driver, "body")[0]
+    return brightness(body.value_of_css_property("background-color")), brightness(
+        body.value_of_css_property("color")
+    )
+
+
+def brightness(colour: str) -> int:
+    inside = colour[colour.index("(") + 1 : -1]
+    return sum(int(part) for part in inside.split(",")[:3])
+
+
+def test_the_page_is_light_or_dark_as_the_reader_has_it(show: Open) -> None:
+    driver = show(spoiled())
+    page, letters = colours(driver, dark=False)
+    assert page > 700 and letters < 150
+    dark_page, dark_letters = colours(driver, dark=True)
+    assert dark_page < 150 and dark_letters > 600
+    fills = {it.value_of_css_property("fill") for it in every(driver, "#g0 svg.graph text")[:40]}
+    assert all(brightness(fill) > 350 for fill in fills)
+    colours(driver, dark=False)
+
+
+def test_what_is_open_is_printed_without_switches(show: Open) -> None:
+    driver = show(swarm())
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    assert seen(driver, "#filters, #more, label[for=more]") == []
+    assert len(seen(driver, "svg.graph")) == 3 and seen(driver, "#findings tbody tr")
+    driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
+
+
+@pytest.mark.parametrize("case", ["healthy", "spoiled", "swarm", "nasty"])
+def test_nothing_hangs_over_the_edge(show: Open, case: str) -> None:
+    plan = drawn.nav2()
+    pages = {
+        "healthy": lambda: to_html(drawn.scene(plan, drawn.healthy(plan))),
+        "spoiled": spoiled,
+        "swarm": swarm,
+        "nasty": lambda: to_html(drawn.scene(*drawn.nasty(plan))),
+    }
+    driver = show(pages[case]())
+    every(driver, "label[for=more]")[0].click()
+    for wide in (1280, 800):
+        driver.set_window_size(wide, 900)
+        widths = "return [document.documentElement.scrollWidth, innerWidth]"
+        there, room = driver.execute_script(widths)
+        assert there <= room <= wide
+    driver.set_window_size(1280, 900)
+    # Names stay in their boxes.
+    script = """return [...document.querySelectorAll('.graph g.n, .graph g.t')].filter((part) => {
+      const box = part.querySelector('rect').getBoundingClientRect();
+      return [...part.querySelectorAll('text')].some((text) => {
+        const inner = text.getBoundingClientRect();
+        return inner.width && (inner.right > box.right + 1 || inner.left < box.left - 1);
+      });
+    }).map((part) => part.textContent)"""
+    assert driver.execute_script(script) == []
+
+
+def test_names_from_the_graph_run_nothing(show: Open) -> None:
+    driver = show(to_html(drawn.scene(*drawn.nasty(drawn.nav2()))))
+    for it in every(driver, "#findings tbody tr")[:6]:
+        it.click()
+    script = "return [typeof window.pwned, document.images.length, document.scripts.length]"
+    assert driver.execute_script(script) == ["undefined", 0, 1]
+    text = driver.find_element(By.TAG_NAME, "body").text
+    assert "</script><script>window.pwned=1</script>" in text
+
+
+def test_a_hundred_robots_open_soon(show: Open) -> None:
+    plan = drawn.fleet(100, 20)
+    graph = drawn.moved(drawn.healthy(plan), "/robot50/topic2", "/topic2")
+    driver = show(to_html(drawn.scene(plan, graph)))
+    timing = "return performance.getEntriesByType('navigation')[0].domComplete"
+    # Milliseconds; a busy machine has a share of it.
+    assert 0 < driver.execute_script(timing) < 8000
+    row(driver, "MG103").click()
+    assert "/topic2" in labels(driver, "g.hit")
+
+
+def test_it_reads_and_links_without_scripts(
+    tmp_path_factory: pytest.TempPathFactory, tmp_path: Path
+) -> None:
+    file = tmp_path / "report.html"
+    file.write_bytes(swarm())
+    driver = browser(tmp_path_factory.mktemp("profile"), script=False)
+    try:
+        driver.get(file.as_uri())
+        assert every(driver, "#filters")[0].is_displayed() is False
+        assert seen(driver, "#findings tbody tr") and seen(driver, "svg.graph")
+        every(driver, "label[for=more]")[0].click()
+        assert seen(driver, ".more")
+        row(driver, "MG103").find_element(By.TAG_NAME, "a").click()
+        (target,) = every(driver, "g:target")
+        assert in_view(driver, target)
+    finally:
+        driver.quit()
