@@ -71,7 +71,8 @@ def _looks(chart: Chart) -> Iterator[str]:
     by_state: dict[str, list[str]] = defaultdict(list)
     for at, arrow in enumerate(chart.arrows):
         by_state[arrow.state].append(str(at))
-    there = {thing.state for it in chart.clusters for _, thing in (*it.nodes, *it.names)}
+    there = {node.state for it in chart.clusters for _, node in it.nodes}
+    there |= {name.state for it in chart.clusters for _, name in it.names}
     for state, (fill, line, text) in COLOURS.items():
         if state == OK or state in there:
             dashes = DASHED.get(state, "")
