@@ -49,7 +49,7 @@ def no_rule(view: View, wanted: Wanted) -> str:
     text = rule(wanted)
     which, place = plugin(view, wanted.node)
     if which:
-        lacks = f"rule {text}" if text else "namespace or rule that leads it there"
+        lacks = f"rule {text}" if text else "namespace or rule for it"
         return f"{which} has no {lacks}: see {place}"
     if not text:
         return "a rule of its own or an absolute name in its parameters moves it"

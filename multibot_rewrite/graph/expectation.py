@@ -12,7 +12,7 @@ from multibot_rewrite.rewriting.collect import Inventory
 # What every node has, and what nobody misses.
 ALWAYS = ("/rosout", "/parameter_events")
 # Frames that nearly every robot has, whether or not anything here names them (REP 105).
-USUAL_FRAMES = ("earth", "map", "odom", "base_footprint", "base_link")
+USUAL_FRAMES = ("map", "odom", "base_footprint", "base_link")
 NOTHING: Mapping[str, Sequence[str]] = {}
 NOWHERE: Mapping[str, str] = {}
 

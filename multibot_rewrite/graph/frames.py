@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from multibot_rewrite.graph.causes import plugin, some
 from multibot_rewrite.graph.comparison import GraphFinding, View
@@ -56,17 +56,18 @@ def _and(robots: Iterable[str]) -> str:
     return some(robots).replace(", ", " and ", 1)
 
 
-def _why_colliding(view: View, tree: TfTree, robots: Iterable[str]) -> str:
-    senders = [node for robot in robots for node in tree.senders.get(robot, ())[:1]]
-    if any(_is_bare(view, view.robots[robot]) for robot in robots):
-        rule = _tf_rule(view.robots[next(iter(robots))], "tf")
-        return f"bare frames need a tf topic for each robot: give {some(senders)} the rule {rule}"
-    return f"the descriptions are not rewritten: load each robot's own in {some(senders)}"
+def _why_colliding(view: View, tree: TfTree, robots: Sequence[str]) -> str:
+    senders = some(node for robot in robots for node in tree.senders.get(robot, ()))
+    first = view.robots[robots[0]]
+    if _is_bare(view, first):
+        rules = f"{_tf_rule(first, 'tf')} and {_tf_rule(first, 'tf_static')}"
+        return f"bare frames need a tf topic for each robot: give {senders} the rules {rules}"
+    return f"the descriptions are not rewritten: load each robot's own one in {senders}"
 
 
 def _is_bare(view: View, robot: WantedRobot) -> bool:
-    """Whether the layout has the same frames for every robot."""
-    return all(view.frame_owners.bare(frame, robot.name) == frame for frame in robot.frames)
+    """Whether the layout has the same frames for every robot; one of them may hold its name."""
+    return any(view.frame_owners.bare(frame, robot.name) == frame for frame in robot.frames)
 
 
 def _meanings(view: View, tree: TfTree) -> dict[str, list[str]]:
@@ -76,8 +77,7 @@ def _meanings(view: View, tree: TfTree) -> dict[str, list[str]]:
     stray = {name for name in there if not view.frame_owners.of(name)} - {*view.plan.shared_frames}
     found: dict[str, list[str]] = defaultdict(list)
     for robot in (view.robots[name] for name in tree.robots if stray):
-        for frame in robot.frames:
-            bare = frame if frame in stray else view.frame_owners.bare(frame, robot.name)
+        for bare, frame in _spelled(view, robot).items():
             if bare in stray and (bare == frame or frame not in there):
                 found[bare].append(robot.name)
     return found
@@ -91,7 +91,7 @@ def bare_frames(view: View) -> Iterator[GraphFinding]:
             if len(who) == 1 and frame not in view.robots[who[0]].frames:
                 own[who[0]].append(frame)
         for robot, found in own.items():
-            spelled = {view.frame_owners.bare(f, robot): f for f in view.robots[robot].frames}
+            spelled = _spelled(view, view.robots[robot])
             message = f"frames {some(found)} on {tree.topic} lack the name of {robot}"
             cause = f"expected is {spelled[found[0]]}: load the rewritten description in "
             cause += some(tree.senders.get(robot, ())) or "its robot_state_publisher"
@@ -140,31 +140,53 @@ def _why_astray(view: View, tree: TfTree, robot: WantedRobot, edges: Iterable[Fr
     where = f": see {some(places)}" if places else ""
     if robot.tf == "/tf":
         return f"the layout has one /tf for all robots: take the rule /tf:=... from {who}{where}"
-    static = all(edge.static for edge in edges)
-    return (
-        f"the rule {_tf_rule(robot, 'tf_static' if static else 'tf')} is missing for {who}{where}"
-    )
+    rule = _tf_rule(robot, "tf_static" if all(edge.static for edge in edges) else "tf")
+    return f"the rule {rule} is missing for {who}{where}"
 
 
 def _tf_rule(robot: WantedRobot, topic: str) -> str:
     """The rule that brings a tf topic to its place: relative in the robot's own namespace."""
-    place = robot.tf.removeprefix(f"/{robot.name}/").replace("tf", topic, 1)
-    return f"/{topic}:={place}"
+    namespaced = any(node.startswith(f"/{robot.name}/") for node in robot.nodes)
+    place = robot.tf.removeprefix(f"/{robot.name}/") if namespaced else robot.tf
+    return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
 
 
 def torn_trees(view: View) -> Iterator[GraphFinding]:
     """A robot's frames that do not hang together on its tf topic."""
     for tree in view.trees:
         parent_of: dict[str, dict[str, str]] = defaultdict(dict)
+        children = {edge.child for edge in tree.edges}
         for edge in tree.edges:
             for robot in {_at_home(view, tree, name) for name in (edge.child, edge.parent)} - {""}:
                 parent_of[robot][edge.child] = edge.parent
         for robot, above in parent_of.items():
             roots = sorted({parent for parent in above.values() if parent not in above})
             if len(roots) > 1:
-                message = f"the tf tree of {robot} has {len(roots)} roots: {', '.join(roots)}"
-                cause = _why_torn(view, view.robots[robot], roots)
-                yield GraphFinding("MG203", ERROR, robot, "", message, cause, tuple(roots))
+                yield _torn(view, children, view.robots[robot], roots)
+
+
+def _torn(view: View, children: Set[str], robot: WantedRobot, roots: Sequence[str]) -> GraphFinding:
+    message = f"the tf tree of {robot.name} has {len(roots)} roots: {', '.join(roots)}"
+    cause = (
+        "a transform between them is missing: no joint_states for a joint that moves, no odometry, "
+        "no localisation, or one side spells it otherwise"
+    )
+    for root in roots:
+        bare = view.frame_owners.bare(root, robot.name)
+        other = next((n for n in _spellings(bare, root, robot.name) if n in children), "")
+        # With one of its spellings it hangs in the tree.
+        if other:
+            cause = f"{other} and {root} are one frame in two spellings: see the other findings"
+    return GraphFinding("MG203", ERROR, robot.name, "", message, cause, tuple(roots))
+
+
+def _spellings(bare: str, root: str, robot: str) -> Iterator[str]:
+    """What else a frame may be called: without the robot's name, and with it once more."""
+    if bare != root:
+        yield bare
+    for joint in ("/", *JOINTS):
+        yield f"{robot}{joint}{root}"
+        yield f"{root}{joint}{robot}"
 
 
 def _at_home(view: View, tree: TfTree, frame: str) -> str:
@@ -175,20 +197,10 @@ def _at_home(view: View, tree: TfTree, frame: str) -> str:
     return robot if robot and tree_of(view.robots[robot].tf) == tree.topic else ""
 
 
-def _why_torn(view: View, robot: WantedRobot, roots: Iterable[str]) -> str:
-    spelled = _spelled(view, robot)
-    for root in roots:
-        meant = spelled.get(view.frame_owners.bare(root, robot.name), root)
-        if meant != root:
-            return f"{root} is called {meant} in the description: one publisher spells it otherwise"
-    return (
-        "a transform between them is missing: no joint_states for a joint that moves, no odometry, "
-        "no localisation, or one side spells it otherwise"
-    )
-
-
 def _spelled(view: View, robot: WantedRobot) -> dict[str, str]:
     """The robot's frames by what they are called without its name."""
+    if _is_bare(view, robot):
+        return {frame: frame for frame in robot.frames}
     return {view.frame_owners.bare(frame, robot.name): frame for frame in robot.frames}
 
 
@@ -272,6 +284,6 @@ def _undeclared(view: View, robot: WantedRobot, names: Sequence[str]) -> GraphFi
     spelled = _spelled(view, robot)
     bare = view.frame_owners.bare(names[0], robot.name)
     meant = spelled.get(bare) or spelled.get(similar(bare, spelled), "")
-    cause = f"is {meant} meant? " if meant else "a sensor's own? "
-    cause += "what is right belongs in other_frames of the plan"
+    cause = f"is {meant} meant? else" if meant else "a sensor's own? then"
+    cause += f" put {'it' if len(names) == 1 else 'them'} in other_frames of the plan"
     return GraphFinding("MG204", WARNING, robot.name, "", message, cause, tuple(names))

@@ -43,6 +43,8 @@ def _why_missing(view: View, wanted: Wanted, robot: str) -> str:
     said = f"it {wanted.role} {instead} instead"
     if instead in _as_asked(view, wanted, robot):
         return f"{said}: {no_rule(view, wanted)}{how_to_give(view, wanted)}"
+    if not view.owners.of(wanted.name):
+        return f"{said}: a rule moves it, though the plan has one {wanted.name} for all robots"
     if _captured(wanted.node, instead, wanted.name):
         return f"{said}: {_absolute(wanted.name)}"
     other = view.owners.of(instead)

@@ -28,20 +28,22 @@ OR = " | "
 
 def to_yaml(plan: Expectation) -> str:
     """The file's text."""
-    import yaml
-
     rows: dict[str, list[list[str]]] = defaultdict(list)
     for wanted in plan.endpoints:
         types = OR.join((wanted.type, *wanted.also))
         rows[wanted.node].append([wanted.role, wanted.kind, wanted.name, types, wanted.asked])
     data = {key: _plain(getattr(plan, key)) for key in (*KEYS[:-1], "ignored_nodes")}
     data["robots"] = {robot.name: _robot(robot, rows) for robot in plan.robots}
-    if plan.sources:
-        data["sources"] = dict(plan.sources)
-    text = yaml.dump(
-        data, Dumper=_fast("SafeDumper"), sort_keys=False, width=120, default_flow_style=None
-    )
-    return HEAD + str(text)
+    text = _dumped(data, None)
+    # One a line: that is how people look them up.
+    return HEAD + text + (_dumped({"sources": dict(plan.sources)}, False) if plan.sources else "")
+
+
+def _dumped(value: object, flow: bool | None) -> str:
+    import yaml
+
+    dumper = _fast("SafeDumper")
+    return str(yaml.dump(value, None, dumper, sort_keys=False, width=120, default_flow_style=flow))
 
 
 def _fast(name: str) -> Any:
