@@ -183,6 +183,19 @@ def test_a_node_and_a_topic_that_nobody_planned() -> None:
     assert node_states(scene)["/robot1/amcl"] == OK
 
 
+def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not() -> None:
+    plan = drawn.nav2()
+    graph = drawn.healthy(plan)
+    for node in ("/rqt_gui", "/robot1/gripper"):
+        log = graph.endpoints[-1]._replace(node=node)
+        seen = (*graph.nodes, GraphNode(node, ""))
+        graph = graph._replace(nodes=seen, endpoints=(*graph.endpoints, log))
+    scene = drawn.scene(plan, graph)
+    light = {n.name for one in scene.groups for n in plain(one).nodes}
+    more = {n.name for one in scene.groups for n in rest(one).nodes}
+    assert "/robot1/gripper" in light and "/rqt_gui" not in light and "/rqt_gui" in more
+
+
 def test_a_clash_of_types_marks_all_ends() -> None:
     plan = drawn.nav2()
     graph = drawn.healthy(plan)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 
-from multibot_rewrite.graph.pictures.marks import MISSING, OK, TROUBLE, UNEXPECTED
-from multibot_rewrite.graph.pictures.scene import Edge, Group, Name, Node
+from multibot_rewrite.graph.pictures.marks import MISSING, OK, TROUBLE
+from multibot_rewrite.graph.pictures.scene import Edge, Group, Name
 from multibot_rewrite.remap.records import SERVES
 
 # That many of a node's services without a caller are drawn as one.
@@ -59,19 +59,15 @@ def without_loose(group: Group) -> Group:
 
 
 def _with_edges(group: Group, edges: Iterable[Edge]) -> Group:
-    """The group with these edges only; what was not planned goes where none is left of it."""
+    """The group with these edges only; of tools and the like none is left without an edge."""
     kept = tuple(edges)
     there = {edge.node for edge in kept}
     names = {(edge.kind, edge.name) for edge in kept}
     return group._replace(
-        nodes=tuple(n for n in group.nodes if n.name in there or _belongs(n)),
+        nodes=tuple(n for n in group.nodes if n.name in there or not (n.whole or n.loose)),
         names=tuple(n for n in group.names if (n.kind, n.name) in names),
         edges=kept,
     )
-
-
-def _belongs(node: Node) -> bool:
-    return not node.whole and node.state != UNEXPECTED
 
 
 def _merged(group: Group) -> Group:

@@ -49,12 +49,16 @@ class Edge(NamedTuple):
 
 
 class Node(NamedTuple):
-    """A node; in the group of what is shared it may be a whole robot."""
+    """A node; in the group of what is shared it may be a whole robot.
+
+    ``loose`` tells that it is neither planned nor told of in a finding, as tools are.
+    """
 
     name: str
     robot: str
     state: str
     whole: bool = False
+    loose: bool = False
 
 
 class Name(NamedTuple):
@@ -185,7 +189,8 @@ def _nodes(view: View, marks: Marks, edges: Iterable[Edge], owners: _Owners) -> 
             state = MISSING
         elif state == OK and node not in planned:
             state = UNEXPECTED
-        result[node] = Node(node, robot, state)
+        loose = node not in planned and node not in marks.nodes
+        result[node] = Node(node, robot, state, loose=loose)
     return result
 
 
