@@ -498,7 +498,8 @@ def test_a_helper_of_several_nodes_is_given_to_each_and_it_is_said() -> None:
     seen = graph(node(name="one"), node(name="two"), LISTENER, process="p")
     for found in (*learned(seen), one(seen, "/one")):
         assert found.parts == ("tf_helper",)
-        (remark,) = found.remarks
+        bare, remark = found.remarks
+        assert bare == "nothing of it is seen but its name"
         assert "is given to each: /transform_listener_impl_55d0c0ffee" in remark
 
 
@@ -524,7 +525,7 @@ def test_a_helper_that_is_named_is_a_node() -> None:
 
 
 def test_a_hidden_node_has_no_helper() -> None:
-    found = one(graph(node(), node(name="_hidden"), LISTENER, process="p"))
+    found = one(graph(node(publishes("x")), node(name="_hidden"), LISTENER, process="p"))
     assert (found.parts, found.remarks) == (("tf_helper",), ())
 
 
@@ -663,8 +664,10 @@ def test_what_is_learned_gives_the_whole_table(
 
 
 def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["learn", "--snapshot", str(shot), "--node", "/eye"]) == 0
+    assert main(["learn", "--snapshot", str(shot), "--node", "/eye", "-o", "-"]) == 0
     out, err = capsys.readouterr()
+    assert main(["learn", "--snapshot", str(shot), "--node", "/eye"]) == 0
+    assert capsys.readouterr().out == out
     assert "# Of: /eye\n" in out
     assert (
         "nodes:\n  eye:\n    note: seen as /eye\n    with: [every_node]\n    publishes:\n"

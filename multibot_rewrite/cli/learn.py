@@ -57,7 +57,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--stack", type=_stack, default="learned", metavar="NAME", help="default: %(default)s"
     )
-    parser.add_argument("-o", "--output", metavar="FILE", help="write it there")
+    parser.add_argument(
+        "-o", "--output", metavar="FILE", help="write it there, not to standard output"
+    )
     parser.add_argument("--snapshot", metavar="FILE", help="what multibot snapshot wrote")
     parser.add_argument(
         "--timeout", type=seconds, metavar="S", help=f"look S seconds (default: {LOOK_SECONDS:.0f})"
@@ -88,10 +90,10 @@ def run(options: argparse.Namespace) -> int:
     library = built_in()
     learned = learn(graph, names, namespace, library)
     data = to_yaml(learned, options.stack, library).encode()
-    if options.output:
-        write_all([(options.output, data)])
-    else:
+    if options.output in (None, "-"):
         print_bytes(data)
+    else:
+        write_all([(options.output, data)])
     for note in _notes(graph, learned, options.namespace):
         say(f"note: {note}", PROGRAM)
     say(f"{len(learned)} node{'s' * (len(learned) != 1)} learned as stack {options.stack}", PROGRAM)

@@ -40,6 +40,7 @@ from multibot_rewrite.rosnames import expand
 
 HELPED = "asked for by transform_listener_impl_<address>"
 UNSURE = "its process has several nodes, so what a helper there asks for is given to each"
+BARE = "nothing of it is seen but its name"
 EVERY_NODE, SIM_TIME = "every_node", "use_sim_time"
 # What every node has since Jazzy, beside the part of that name.
 SINCE_JAZZY = (SERVES, "~/get_type_description")
@@ -104,14 +105,13 @@ def _learned(
     known = library.nodes.get(node)
     place = _Place(base, node, frozenset(_wired(known)) if known else frozenset())
     usual = _usual(library)
-    found = _endpoints(ends.get(name, ()), place)
-    for helper in helpers.names:
-        found = {**_helped(ends.get(helper, ()), place, helper), **found}
+    found = _with_helpers(name, ends, helpers, place)
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
     own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
     taken = (end for part in parts for end in library.parts[part])
     facts = NodeFacts(node, "", (*own, *taken), note=f"seen as {name}")
-    remarks = [] if helpers.sure else [f"{UNSURE}: {', '.join(helpers.names)}"]
+    remarks = [] if ends.get(name) else [BARE]
+    remarks += [] if helpers.sure else [f"{UNSURE}: {', '.join(helpers.names)}"]
     remarks += [_compared(facts, known, usual)] if known else []
     return Learned(name, facts, tuple(own), parts, tuple(remarks))
 
@@ -208,11 +208,18 @@ def _joined(first: Endpoint, second: Endpoint, key: Key) -> Endpoint:
     )
 
 
-def _helped(ends: Iterable[GraphEndpoint], place: _Place, helper: str) -> dict[_Slot, Endpoint]:
-    """What a helper node asks for, as the node's own."""
-    others = [end for end in ends if not end.name.startswith(f"{helper}/") and end.name != CLOCK]
-    found = _endpoints(others, place)
-    return {slot: end._replace(helper=True, note=HELPED) for slot, end in found.items()}
+def _with_helpers(
+    name: str, ends: Mapping[str, Sequence[GraphEndpoint]], helpers: Helpers, place: _Place
+) -> dict[_Slot, Endpoint]:
+    """What a node asks for, and what helper nodes ask for beside it, as its own."""
+    found = _endpoints(ends.get(name, ()), place)
+    for helper in helpers.names:
+        private = f"{helper}/"
+        asked = (end for end in ends.get(helper, ()) if not end.name.startswith(private))
+        theirs = _endpoints((end for end in asked if end.name != CLOCK), place)
+        for slot, end in theirs.items():
+            found.setdefault(slot, end._replace(helper=True, note=HELPED))
+    return found
 
 
 def _compared(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str:
