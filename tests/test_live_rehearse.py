@@ -58,6 +58,7 @@ def layouts(
 
     def run(at: int, layout: str) -> subprocess.CompletedProcess[str]:
         words = ["--stack", "nav2", "--layout", layout, "-o", str(folder / layout)]
+        words += ["--report", str(folder / f"{layout}.html")]
         return rehearse(at, *PAIR, *words)
 
     with ThreadPoolExecutor() as pool:
@@ -77,6 +78,9 @@ def test_every_layout_holds(
     assert len({frame.child for frame in graph.frames}) == (9 if layout == "L1" else 18)
     assert not [node for node in graph.nodes if not _of_a_robot(node.name)]
     assert len(actions(graph)) == 34
+    page = file.with_suffix(".html").read_text()
+    assert "as planned" in page
+    assert "/navigate_to_pose" in page
 
 
 def _of_a_robot(name: str) -> bool:

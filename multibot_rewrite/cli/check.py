@@ -48,6 +48,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Compare, print a line for each finding, sum up; returns the exit code."""
+    pictures.check(options)
     plan = from_yaml(read_file(options.plan), options.plan)
     try:
         return _watch(options, plan) if options.watch else _check(options, plan)

@@ -31,6 +31,11 @@ def options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{name}", metavar="FILE", help=f"write {about}")
 
 
+def check(options: argparse.Namespace) -> None:
+    """Raises UsageError for a picture that cannot go where it is asked for, before any work."""
+    list(_wanted(options))
+
+
 def deliver(
     options: argparse.Namespace, plan: Expectation, graph: Snapshot, found: Sequence[GraphFinding]
 ) -> None:

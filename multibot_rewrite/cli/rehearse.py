@@ -8,7 +8,7 @@ import os
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 
-from multibot_rewrite.cli import fleet, live
+from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import say
@@ -32,6 +32,7 @@ rules of multibot remap; then looks at the graph as multibot check does. A type 
 has a stand-in. robot_state_publisher is added where no stack has it. -o writes the snapshot.
 examples:
   multibot rehearse rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot
+  multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html
   multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules    what would happen otherwise
 exit codes: 0 as planned; 1 something leaks or is missing; 2 wrong use or unreadable input; 3
 inconclusive; 4 rclpy or its RMW is missing or does not start
@@ -45,6 +46,7 @@ def options(parser: argparse.ArgumentParser) -> None:
     parser.epilog = MORE
     fleet.options(parser)
     live.options(parser)
+    pictures.options(parser)
     parser.add_argument(
         "--without-rules", action="store_true", help="give rcl no rules but namespace and node name"
     )
@@ -52,6 +54,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Play, look, compare, sum up; returns the exit code."""
+    pictures.check(options)
     made = fleet.build(options, also=STATE_PUBLISHER)
     actors = list(cast(made.table, made.edges, not options.without_rules))
     environ = stage(options.domain)
