@@ -34,8 +34,8 @@ def to_yaml(learned: Sequence[Learned], stack: str, library: Library) -> str:
     except UsageError as error:
         raise ProofError(f"what was learned cannot be read: {error}") from None
     if read != facts:
-        wrong = next(it.name for it, other in zip(facts, read, strict=False) if it != other)
-        raise ProofError(f"what was learned of {wrong} is read as something else")
+        wrong = ", ".join(node.name for node in facts if node not in read)
+        raise ProofError(f"what was learned is read as something else: {wrong}")
     return text
 
 
