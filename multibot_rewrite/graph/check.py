@@ -17,6 +17,7 @@ RULES: tuple[Rule, ...] = (
     nodes.missing_nodes,
     names.missing_endpoints,
     names.leaks,
+    names.planned_leaks,
     names.deaf_listeners,
     names.cross_talk,
     nodes.same_names,

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 
 from multibot_rewrite.graph.causes import how_to_give, no_rule, plugin, unremapped
 from multibot_rewrite.graph.comparison import GraphFinding, View
+from multibot_rewrite.graph.environment import listed
 from multibot_rewrite.graph.expectation import ALWAYS, Wanted
 from multibot_rewrite.graph.likeness import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
@@ -113,6 +114,28 @@ def _why_leaked(view: View, node: str, name: str, meant: Wanted | None) -> str:
     robot = view.robot_of[node]
     target = f"{name}/{robot}" if view.owners.last else f"/{robot}{name}"
     return f"an absolute name in its code or parameters: give --ros-args -r {name}:={target}"
+
+
+def planned_leaks(view: View) -> Iterator[GraphFinding]:
+    """A name that the plan itself has for several robots, since no rule reaches it."""
+    shared = {*view.plan.shared_topics, *EVERYWHERE, *_shared_tf(view)}
+    nodes: dict[str, dict[str, None]] = defaultdict(dict)
+    for node, kind, role, name in view.planned:
+        own = node in view.robot_of and name not in shared and not view.owners.of(name)
+        if own and (node, kind, role, name) in view.types:
+            nodes[name][node] = None
+    for name, there in nodes.items():
+        robots = dict.fromkeys(view.robot_of[node] for node in there)
+        for node in there if len(robots) > 1 else ():
+            message = f"{name} is planned for {listed(robots)}: they meet there"
+            cause = "no rule reaches it; set the node's parameter, or plan it with --shared-topics"
+            yield GraphFinding("MG103", ERROR, view.robot_of[node], node, message, cause, (name,))
+
+
+def _shared_tf(view: View) -> set[str]:
+    """The tf topics that robots share by their layout."""
+    times = Counter(robot.tf for robot in view.plan.robots)
+    return {f"{tf}{end}" for tf, count in times.items() if count > 1 for end in ("", "_static")}
 
 
 def deaf_listeners(view: View) -> Iterator[GraphFinding]:
