@@ -40,6 +40,8 @@ NASTY = (
     "/robot1/a b\tc\nd\x00e",
     "/robot1/\u202egnp.\ud800\\N",
     '/robot1/" onmouseover="window.pwned=1',
+    "/<b onclick=window.pwned=1>/robot1",
+    "/<svg onload=window.pwned=1>_robot1",
     "/robot1/" + "long" * 300,
     "/robot1/機械人" * 20,
 )
@@ -155,20 +157,20 @@ def spoiled(plan: Expectation) -> Snapshot:
 
 
 def nasty(plan: Expectation) -> tuple[Expectation, Snapshot]:
-    """A plan and a graph where nodes, topics, types, frames and caveats have names that bite."""
-    graph = healthy(plan)
+    """A plan and a graph where robots, nodes, topics, types, frames and caveats have names that
+    bite; the odd robot talks across."""
+    odd = WantedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
+    first = plan.robots[0].nodes[0]
+    missed = (Wanted(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY)
+    worse = plan._replace(
+        layout=odd.name, robots=(*plan.robots, odd), endpoints=(*plan.endpoints, *missed)
+    )
+    graph = with_end(healthy(plan), "/odd", NASTY[1])
     for name in NASTY:
-        graph = with_end(graph, f"{name}/node", name)
-        graph = with_end(graph, plan.robots[0].nodes[0], name, PUBLISHES)
-    frames = tuple(Frame(name, "base_link/robot1", name, False, (name,)) for name in NASTY)
+        graph = with_end(with_end(graph, f"{name}/node", name), first, name, PUBLISHES)
+    frames = (Frame(name, "base_link/robot1", name, False, (name,)) for name in NASTY)
     around = environment(*(Caveat("note", True, name) for name in NASTY))._replace(rmw=NASTY[0])
-    missed = tuple(
-        Wanted(plan.robots[0].nodes[0], TOPIC, PUBLISHES, f"{name}/missed", name, name)
-        for name in NASTY
-    )
-    return plan._replace(layout=NASTY[0], endpoints=(*plan.endpoints, *missed)), graph._replace(
-        frames=(*graph.frames, *frames), environment=around
-    )
+    return worse, graph._replace(frames=(*graph.frames, *frames), environment=around)
 
 
 def scene(plan: Expectation, graph: Snapshot) -> Scene:
