@@ -17,6 +17,7 @@ from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.graph.expectation import Expectation, WantedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
+    Caveat,
     Environment,
     Frame,
     GraphEndpoint,
@@ -70,17 +71,18 @@ def read_plan(layout: str) -> Expectation:
 # ---------------------------------------------------------------- a graph as planned
 
 
-def environment() -> Environment:
-    return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, ())
+def environment(*caveats: Caveat) -> Environment:
+    return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, caveats)
 
 
 def as_planned(plan: Expectation) -> Snapshot:
     """The graph that a plan is of; a type that is not known is that of the other end."""
-    types: dict[str, str] = {}
+    types: dict[tuple[str, str], str] = {}
     for wanted in plan.endpoints:
-        types[wanted.name] = types.get(wanted.name) or wanted.type
+        both = (wanted.kind, wanted.name)
+        types[both] = types.get(both) or wanted.type
     ends = [
-        GraphEndpoint(w.kind, w.role, w.name, types[w.name], "", w.node, None, "")
+        GraphEndpoint(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "")
         for w in plan.endpoints
     ]
     nodes = [GraphNode(node, "") for robot in plan.robots for node in robot.nodes]

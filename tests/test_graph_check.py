@@ -2,23 +2,33 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
+from time import process_time
 
 import pytest
-
-from multibot_rewrite.graph.check import ABSENCE, RULES, check
-from multibot_rewrite.graph.comparison import INCONCLUSIVE, owner
-from multibot_rewrite.graph.expectation import Expectation, expect
-from multibot_rewrite.graph.snapshot import (
-    Caveat,
-    Environment,
-    Frame,
-    GraphEndpoint,
-    GraphNode,
-    Qos,
-    Snapshot,
+from graph_cases import (
+    ROOT,
+    as_planned,
+    bare,
+    environment,
+    global_tf,
+    moved,
+    of,
+    qos,
+    reframed,
+    renamed_node,
+    sent,
+    with_node,
+    with_qos,
+    with_type,
+    without_node,
 )
+
+from multibot_rewrite.graph.check import ABSENCE, check
+from multibot_rewrite.graph.comparison import INCONCLUSIVE, owner
+from multibot_rewrite.graph.expectation import Expectation, Wanted, expect, spelled
+from multibot_rewrite.graph.owners import name_owners
+from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphEndpoint, GraphNode, Qos, Snapshot
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
     PUBLISHES,
@@ -62,55 +72,20 @@ def plan(layout: str = "L2") -> Expectation:
     return expect(build_table(ROBOTS, NODES, naming), naming, frames(layout))
 
 
-def frames(layout: str) -> dict[str, tuple[str, ...]]:
-    bare = layout == "L1"
-    return {r: tuple(link if bare else f"{link}/{r}" for link in LINKS) for r in ROBOTS}
+def frames(layout: str) -> dict[str, list[str]]:
+    naming = make_naming(layout)
+    return {robot: [spelled(link, robot, naming) for link in LINKS] for robot in ROBOTS}
 
 
 def healthy(layout: str = "L2") -> Snapshot:
-    """The graph exactly as planned."""
-    wanted = plan(layout)
-    endpoints = [
-        GraphEndpoint(w.kind, w.role, w.name, w.type, "", w.node, None, "")
-        for w in wanted.endpoints
-    ]
-    nodes = [GraphNode(node, node) for robot in wanted.robots for node in robot.nodes]
-    edges = [
-        edge
-        for robot in wanted.robots
-        for edge in (
-            Frame(robot.frames[0], odom(layout, robot.name), robot.tf, False, ()),
-            Frame(
-                robot.frames[1], robot.frames[0], f"{robot.tf}".replace("tf", "tf_static"), True, ()
-            ),
-        )
-    ]
-    return Snapshot(tuple(nodes), tuple(endpoints), tuple(edges), environment())
-
-
-def odom(layout: str, robot: str) -> str:
-    return "odom" if layout == "L1" else f"odom/{robot}"
-
-
-def environment(*caveats: Caveat) -> Environment:
-    return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, caveats)
-
-
-def moved(graph: Snapshot, old: str, new: str, node: str = "") -> Snapshot:
-    """The graph with one name under another one."""
-    return graph._replace(
-        endpoints=tuple(
-            e._replace(name=new) if e.name == old and e.node.endswith(node) else e
-            for e in graph.endpoints
-        )
+    """The graph exactly as planned, on odometry."""
+    graph = as_planned(plan(layout))
+    naming = make_naming(layout)
+    odometry = tuple(
+        Frame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
+        for robot in plan(layout).robots
     )
-
-
-def without_node(graph: Snapshot, node: str) -> Snapshot:
-    return graph._replace(
-        nodes=tuple(n for n in graph.nodes if n.name != node),
-        endpoints=tuple(e for e in graph.endpoints if e.node != node),
-    )
+    return sent(graph._replace(frames=(*graph.frames, *odometry)))
 
 
 def codes(graph: Snapshot, layout: str = "L2") -> list[str]:
@@ -194,30 +169,25 @@ def test_two_types_of_one_topic() -> None:
     assert "/robot1/driver subscribes std_msgs/msg/String" in found.message
 
 
-def qos(reliability: str, durability: str = "VOLATILE") -> Qos:
-    lease = math.inf
-    return Qos("UNKNOWN", 0, reliability, durability, lease, lease, "AUTOMATIC", lease)
-
-
 @pytest.mark.parametrize(
     ("offered", "wanted", "clash"),
     [
-        (qos("RELIABLE"), qos("RELIABLE"), False),
-        (qos("RELIABLE"), qos("BEST_EFFORT"), False),
-        (qos("BEST_EFFORT"), qos("RELIABLE"), True),
-        (qos("RELIABLE", "VOLATILE"), qos("RELIABLE", "TRANSIENT_LOCAL"), True),
-        (None, qos("RELIABLE"), False),
+        (qos(), qos(), False),
+        (qos(), qos(reliability="BEST_EFFORT"), False),
+        (qos(reliability="BEST_EFFORT"), qos(), True),
+        (qos(), qos(durability="TRANSIENT_LOCAL"), True),
+        (qos(durability="TRANSIENT_LOCAL"), qos(), False),
+        (None, qos(), False),
     ],
 )
 def test_qos_that_cannot_connect(offered: Qos | None, wanted: Qos | None, clash: bool) -> None:
-    graph = healthy()
     ends = tuple(
         e._replace(qos=offered if e.role == PUBLISHES else wanted)
         if e.name == "/robot1/joint_states"
         else e
-        for e in graph.endpoints
+        for e in healthy().endpoints
     )
-    assert codes(graph._replace(endpoints=ends)) == (["MG107"] if clash else [])
+    assert codes(healthy()._replace(endpoints=ends)) == (["MG107"] if clash else [])
 
 
 # ---------------------------------------------------------------- tf
@@ -270,10 +240,11 @@ def test_a_leak_stays_a_leak_in_an_incomplete_view() -> None:
     assert levels == {"MG102": INCONCLUSIVE, "MG103": "error"}
 
 
-def test_absence_codes_are_codes_of_rules() -> None:
-    source = "".join(rule.__module__ for rule in RULES)
-    assert source
-    assert len(set(ABSENCE)) == len(ABSENCE)
+@pytest.mark.parametrize("code", ABSENCE)
+def test_absence_codes_are_codes_of_rules(code: str) -> None:
+    rules = ("nodes", "names", "ends", "frames")
+    folder = ROOT / "multibot_rewrite" / "graph"
+    assert any(f'"{code}"' in (folder / f"{rule}.py").read_text() for rule in rules)
 
 
 # ---------------------------------------------------------------- whose a name is
@@ -292,3 +263,546 @@ def test_absence_codes_are_codes_of_rules() -> None:
 )
 def test_the_owner_of_a_name(name: str, robot: str) -> None:
     assert owner(name, plan()) == robot
+
+
+# ---------------------------------------------------------------- causes
+
+
+def test_a_plugin_is_named_with_its_line() -> None:
+    place = (("/robot1/driver", "rover.urdf:120"),)
+    graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
+    missing, leak = check(plan()._replace(sources=place), graph)
+    assert missing.cause == (
+        "it subscribes /cmd_vel instead: plugin driver has no rule /cmd_vel:=cmd_vel: "
+        "see rover.urdf:120"
+    )
+    assert leak.cause == "plugin driver has no rule /cmd_vel:=cmd_vel: see rover.urdf:120"
+
+
+def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
+    graph = renamed_node(healthy(), "/robot1/driver", "/driver")
+    wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
+    (found,) = check(wanted, graph)
+    assert found.cause == "/driver is there: plugin driver has no namespace, see rover.urdf:120"
+    (found,) = check(wanted, without_node(healthy(), "/robot1/driver"))
+    assert "see rover.urdf:120" in found.cause
+
+
+def test_a_plugin_of_the_postfix_layout() -> None:
+    wanted = plan("L4")._replace(sources=(("/driver_robot1", "rover.urdf:120"),))
+    (found,) = check(wanted, renamed_node(healthy("L4"), "/driver_robot1", "/driver"))
+    assert found.code == "MG101"
+    assert "plugin driver has no name of its own for each robot, see rover.urdf:120" in found.cause
+
+
+def test_the_rule_of_the_postfix_layout() -> None:
+    found = check(plan("L4"), moved(healthy("L4"), "/cmd_vel/robot1", "/cmd_vel"))
+    assert [f.code for f in found] == ["MG102", "MG103"]
+    assert "--ros-args -r /cmd_vel:=cmd_vel/robot1," in found[0].cause
+
+
+def test_an_action_needs_more_than_one_rule() -> None:
+    end = Wanted("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
+    wanted = plan()._replace(endpoints=(*plan().endpoints, end))
+    there = GraphEndpoint("action", "serves", "/go", "a/action/B", "", end.node, None, "")
+    hidden = there._replace(
+        kind="service", name="/go/_action/send_goal", type="a/action/B_SendGoal"
+    )
+    graph = healthy()._replace(endpoints=(*healthy().endpoints, there, hidden))
+    found = check(wanted, graph)
+    assert [f.code for f in found] == ["MG102", "MG103"]
+    assert "one for each of its _action/ names" in found[0].cause
+
+
+def test_a_managed_node_may_not_be_configured() -> None:
+    name = "/robot1/driver/get_state"
+    end = Wanted("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
+    wanted = plan()._replace(endpoints=(*plan().endpoints, end))
+    state = GraphEndpoint(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
+    kept = (e for e in healthy().endpoints if e.name != "/robot1/reset")
+    (found,) = check(wanted, healthy()._replace(endpoints=(*kept, state)))
+    assert found.message == "it should serve service /robot1/reset, and does not"
+    assert "ros2 lifecycle get /robot1/driver" in found.cause
+
+
+def test_a_robot_under_another_namespace() -> None:
+    graph = healthy()
+    for node in ("driver", "robot_state_publisher"):
+        graph = renamed_node(graph, f"/robot1/{node}", f"/robot_1/{node}")
+    found = [f for f in check(plan(), graph) if f.code != "MG203"]
+    assert [f.code for f in found] == ["MG109"]
+    assert "/robot_1/driver" in found[0].cause
+
+
+# ---------------------------------------------------------------- what nobody planned
+
+
+def test_an_unplanned_node_of_a_robot_is_one_finding() -> None:
+    ends = [(PUBLISHES, f"/robot1/grip{at}", "std_msgs/msg/Bool") for at in range(5)]
+    (found,) = check(plan(), with_node(healthy(), "/robot1/gripper", *ends))
+    assert (found.code, found.level) == ("MG108", "warning")
+    assert (found.robot, found.node) == ("robot1", "/robot1/gripper")
+
+
+def test_an_unplanned_node_with_names_of_no_robot() -> None:
+    graph = with_node(healthy(), "/robot1/gripper", (PUBLISHES, "/grip", "std_msgs/msg/Bool"))
+    (found,) = check(plan(), graph)
+    assert "it has /grip, not robot1's own" in found.message
+
+
+def test_an_unplanned_node_by_its_affix() -> None:
+    (found,) = check(plan("L4"), with_node(healthy("L4"), "/gripper_robot2"))
+    assert (found.code, found.robot) == ("MG108", "robot2")
+
+
+def test_one_more_of_a_planned_node_is_called_that() -> None:
+    (found,) = check(plan(), with_node(healthy(), "/driver"))
+    assert (found.code, found.robot) == ("MG108", "")
+    assert "one more" in found.cause
+
+
+def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
+    wanted = plan()._replace(shared_nodes=("/fleet_manager",))
+    assert check(wanted, with_node(healthy(), "/fleet_manager")) == []
+    (found,) = check(wanted, healthy())
+    assert (found.code, found.level, found.node) == ("MG101", "warning", "/fleet_manager")
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        "/_ros2cli_daemon_0_1234", "/launch_ros_4711", "/robot1/transform_listener_impl_55e1",
+        "/transform_listener_impl_55e1", "/rqt_gui_py_node_1", "/rviz2", "/robot1/rviz",
+        "/rosbag2_recorder", "/foxglove_bridge", "/ros_gz_bridge", "/robot1/_hidden", "/gazebo",
+        "/teleop_twist_keyboard", "/teleop_twist_joy_node", "/joy_node", "/robot2/nav2_container",
+        "/robot1/bt_navigator_navigate_to_pose_rclcpp_node", "/robot1/spawner_diff_drive",
+    ],
+)  # fmt: skip
+def test_tools_are_no_surprise(node: str) -> None:
+    assert check(plan(), with_node(healthy(), node)) == []
+    twice = with_node(with_node(healthy(), node), node)
+    assert check(plan(), twice) == []
+
+
+def test_a_plan_has_its_own_patterns() -> None:
+    graph = with_node(with_node(healthy(), "/robot1/probe_7"), "/lab/probe")
+    assert [f.code for f in check(plan(), graph)] == ["MG108", "MG108"]
+    wanted = plan()._replace(ignored_nodes=("probe_*", "/lab/*"))
+    assert check(wanted, graph) == []
+
+
+def test_a_plan_of_nothing_finds_nothing_unplanned() -> None:
+    robots = tuple(robot._replace(nodes=()) for robot in plan().robots)
+    assert check(plan()._replace(robots=robots, endpoints=()), healthy()) == []
+
+
+def test_a_robot_without_planned_nodes_may_have_any() -> None:
+    first, second = plan().robots
+    some = plan()._replace(
+        robots=(first, second._replace(nodes=())),
+        endpoints=tuple(w for w in plan().endpoints if w.node in first.nodes),
+    )
+    assert check(some, healthy()) == []
+
+
+def test_a_node_under_a_condition_is_not_missed() -> None:
+    first, second = plan().robots
+    wanted = plan()._replace(robots=(first._replace(optional=("/robot1/driver",)), second))
+    assert check(wanted, without_node(healthy(), "/robot1/driver")) == []
+    graph = renamed_node(healthy(), "/robot1/driver", "/driver")
+    assert [f.code for f in check(wanted, graph)] == ["MG101"]
+
+
+# ---------------------------------------------------------------- types
+
+
+def test_another_type_than_planned() -> None:
+    graph = with_type(healthy(), "/robot1/cmd_vel", "/robot1/driver", "std_msgs/msg/String")
+    (found,) = check(plan(), graph)
+    assert found.code == "MG106"
+    assert "as std_msgs/msg/String, planned is geometry_msgs/msg/Twist" in found.message
+
+
+def test_a_type_that_it_may_have_as_well() -> None:
+    stamped = "geometry_msgs/msg/TwistStamped"
+    ends = tuple(
+        w._replace(also=(stamped,)) if w.name == "/robot1/cmd_vel" else w for w in plan().endpoints
+    )
+    graph = with_type(healthy(), "/robot1/cmd_vel", "/robot1/driver", stamped)
+    assert check(plan()._replace(endpoints=ends), graph) == []
+
+
+def test_stamped_and_plain_commands_have_a_known_cause() -> None:
+    graph = with_node(
+        healthy(), "/teleop_twist_joy_node",
+        (PUBLISHES, "/robot1/cmd_vel", "geometry_msgs/msg/TwistStamped"),
+    )  # fmt: skip
+    (found,) = check(plan(), graph)
+    assert (found.code, found.node) == ("MG106", "/teleop_twist_joy_node")
+    assert "use_stamped" in found.cause
+
+
+def test_a_service_and_a_topic_of_one_name_are_no_clash() -> None:
+    end = GraphEndpoint(
+        SERVICE,
+        SERVES,
+        "/robot1/joint_states",
+        "std_srvs/srv/Empty",
+        "",
+        "/robot1/driver",
+        None,
+        "",
+    )
+    assert check(plan(), healthy()._replace(endpoints=(*healthy().endpoints, end))) == []
+
+
+@pytest.mark.parametrize(
+    ("hashes", "clash"),
+    [
+        (("RIHS01_aa", "RIHS01_bb"), True),
+        (("RIHS01_aa", "RIHS01_aa"), False),
+        (("RIHS01_aa", ""), False),
+        (("INVALID", "RIHS01_aa"), False),
+    ],
+)
+def test_two_versions_of_a_message(hashes: tuple[str, str], clash: bool) -> None:
+    offered, asked = hashes
+    ends = tuple(
+        e._replace(type_hash=offered if e.role == PUBLISHES else asked)
+        if e.name == "/robot1/joint_states"
+        else e
+        for e in healthy().endpoints
+    )
+    found = check(plan(), healthy()._replace(endpoints=ends))
+    assert [f.code for f in found] == (["MG106"] if clash else [])
+    assert all("2 versions of sensor_msgs/msg/JointState" in f.message for f in found)
+
+
+# ---------------------------------------------------------------- QoS
+
+
+@pytest.mark.parametrize(
+    ("offered", "asked", "words"),
+    [
+        ({"deadline": 1.0}, {"deadline": 0.5}, "a deadline of 1 s"),
+        ({}, {"deadline": 0.5}, "no deadline"),
+        ({"deadline": 0.5}, {"deadline": 0.5}, ""),
+        ({"deadline": 0.1}, {"deadline": 0.5}, ""),
+        ({"deadline": 0.5}, {}, ""),
+        ({"deadline": 0.0}, {"deadline": 0.5}, "no deadline"),
+        ({"deadline": 1.0}, {"deadline": 0.0}, ""),
+        ({}, {"liveliness": "MANUAL_BY_TOPIC"}, "offers AUTOMATIC"),
+        ({"liveliness": "MANUAL_BY_TOPIC"}, {}, ""),
+        ({}, {"liveliness": "UNKNOWN"}, ""),
+        ({"liveliness_lease_duration": 2.0}, {"liveliness_lease_duration": 1.0}, "a lease of 2 s"),
+        ({"liveliness_lease_duration": 1.0}, {"liveliness_lease_duration": 2.0}, ""),
+        ({"reliability": "SYSTEM_DEFAULT"}, {"reliability": "RELIABLE"}, ""),
+        ({"reliability": "BEST_EFFORT"}, {"reliability": "BEST_AVAILABLE"}, ""),
+        ({"durability": "UNKNOWN"}, {"durability": "TRANSIENT_LOCAL"}, ""),
+        ({"history": "KEEP_LAST", "depth": 1}, {"history": "KEEP_ALL"}, ""),
+        ({"lifespan": 1.0}, {"lifespan": 0.5}, ""),
+    ],
+)
+def test_what_dds_connects(
+    offered: dict[str, object], asked: dict[str, object], words: str
+) -> None:
+    graph = with_qos(healthy(), "/robot1/joint_states", qos(**offered), qos(**asked))
+    found = check(plan(), graph)
+    assert [f.code for f in found] == (["MG107"] if words else [])
+    assert all(words in f.message for f in found)
+
+
+def test_many_publishers_are_one_finding_for_a_listener() -> None:
+    graph = with_qos(healthy(), "/robot1/joint_states", qos(), qos(durability="TRANSIENT_LOCAL"))
+    driver = next(e for e in graph.endpoints if e.name == "/robot1/joint_states" and e.qos == qos())
+    more = tuple(driver._replace(node=f"/robot1/_more{at}") for at in range(5))
+    (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, *more)))
+    assert "/robot1/driver (as 5 more) offers VOLATILE" in found.message
+
+
+# ---------------------------------------------------------------- nobody on the other side
+
+
+def test_an_operator_topic_without_an_operator_is_silent() -> None:
+    assert not [e for e in healthy().endpoints if e.role == PUBLISHES and "cmd_vel" in e.name]
+    assert check(plan(), healthy()) == []
+
+
+def test_a_teleop_without_a_robot_is_told_to_each() -> None:
+    twist = (PUBLISHES, "/cmd_vel", "geometry_msgs/msg/Twist")
+    found = check(plan(), with_node(healthy(), "/teleop_twist_keyboard", twist))
+    assert [(f.code, f.node) for f in found] == [
+        ("MG111", "/robot1/driver"),
+        ("MG111", "/robot2/driver"),
+    ]
+    assert found[0].message == (
+        "nobody publishes /robot1/cmd_vel; /teleop_twist_keyboard publishes /cmd_vel"
+    )
+    assert "/cmd_vel:=/robot1/cmd_vel" in found[0].cause
+
+
+def test_a_teleop_of_one_robot_is_no_fault_of_the_other() -> None:
+    twist = (PUBLISHES, "/robot2/cmd_vel", "geometry_msgs/msg/Twist")
+    assert check(plan(), with_node(healthy(), "/teleop_twist_keyboard", twist)) == []
+
+
+def with_pilot(name: str) -> tuple[Expectation, Snapshot]:
+    """A planned pilot of robot1 that is not there, and one that is, with another topic."""
+    first, second = plan().robots
+    end = Wanted("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
+    wanted = plan()._replace(
+        robots=(first._replace(nodes=(*first.nodes, "/robot1/pilot")), second),
+        endpoints=(*plan().endpoints, end),
+    )
+    twist = (PUBLISHES, name, "geometry_msgs/msg/Twist")
+    return wanted, with_node(healthy(), "/robot1/controller_server", twist)
+
+
+@pytest.mark.parametrize("name", ["/robot1/cmd_vel_nav", "/robot2/cmd_vel", "/cmd_vel"])
+def test_a_publisher_of_nearly_that_name(name: str) -> None:
+    found = check(*with_pilot(name))
+    told = [f for f in found if f.code == "MG111"]
+    assert [f.node for f in told] == ["/robot1/driver"]
+    assert f"/robot1/controller_server publishes {name}" in told[0].message
+
+
+def test_a_publisher_of_quite_another_name() -> None:
+    assert "MG111" not in {f.code for f in check(*with_pilot("/robot1/plan"))}
+
+
+def test_what_a_planned_publisher_lacks_is_told_of_it_alone() -> None:
+    found = check(plan(), moved(healthy(), "/robot1/joint_states", "/joint_states", "driver"))
+    assert [f.code for f in found] == ["MG102", "MG103"]
+
+
+# ---------------------------------------------------------------- below its own namespace
+
+SCAN = "sensor_msgs/msg/LaserScan"
+COSTMAP = "/robot1/local_costmap/local_costmap"
+
+
+def with_costmap(*names: str, published: str = "/robot1/scan") -> tuple[Expectation, Snapshot]:
+    """A planned costmap that hears these, and somebody who publishes."""
+    first, second = plan().robots
+    wanted = plan()._replace(robots=(first._replace(nodes=(*first.nodes, COSTMAP)), second))
+    graph = with_node(healthy(), COSTMAP, *((SUBSCRIBES, name, SCAN) for name in names))
+    end = GraphEndpoint(TOPIC, PUBLISHES, published, SCAN, "", "/robot1/driver", None, "")
+    return wanted, graph._replace(endpoints=(*graph.endpoints, end))
+
+
+def test_a_topic_that_fell_below_a_costmap() -> None:
+    (found,) = check(*with_costmap("/robot1/local_costmap/scan"))
+    assert (found.code, found.node) == ("MG110", COSTMAP)
+    assert found.message == (
+        "it subscribes /robot1/local_costmap/scan, where nobody publishes; /robot1/scan is meant"
+    )
+    assert "write /robot1/scan" in found.cause
+
+
+def test_a_topic_that_is_planned_above_is_enough() -> None:
+    wanted, graph = with_costmap("/robot1/local_costmap/scan", published="/robot1/other")
+    assert check(wanted, graph) == []
+    end = Wanted(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
+    found = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
+    assert [f.code for f in found] == ["MG102", "MG110"]
+    assert "falls below the node's own namespace" in found[0].cause
+
+
+@pytest.mark.parametrize(
+    ("names", "published"),
+    [
+        (["/robot1/scan"], "/robot1/scan"),
+        (["/robot1/local_costmap/scan"], "/robot1/local_costmap/scan"),
+        (["/robot1/local_costmap/footprint"], "/robot1/scan"),
+    ],
+)
+def test_a_costmap_that_hears_is_silent(names: list[str], published: str) -> None:
+    assert check(*with_costmap(*names, published=published)) == []
+
+
+# ---------------------------------------------------------------- tf, layout by layout
+
+
+def test_bare_frames_of_two_robots_on_one_topic() -> None:
+    found = [f for f in check(plan("L1"), global_tf(healthy("L1"), *ROBOTS)) if f.code > "MG2"]
+    assert [f.code for f in found] == ["MG202"]
+    assert found[0].about == ("base_link", "laser")
+    assert "sent by robot1 and robot2" in found[0].message
+    assert "/tf:=tf" in found[0].cause
+
+
+def test_bare_frames_of_one_robot_on_the_global_topic() -> None:
+    found = [f for f in check(plan("L1"), global_tf(healthy("L1"), "robot1")) if f.code > "MG2"]
+    assert [(f.code, f.robot) for f in found] == [("MG205", "robot1")]
+
+
+def test_a_node_of_one_robot_on_the_tf_of_another() -> None:
+    graph = moved(healthy("L1"), "/robot2/tf", "/robot1/tf", "robot_state_publisher")
+    codes_ = {f.code for f in check(plan("L1"), graph)}
+    assert {"MG102", "MG104", "MG202"} <= codes_
+
+
+def test_descriptions_that_are_not_rewritten() -> None:
+    graph = reframed(bare)(healthy())
+    (found,) = check(plan(), graph)
+    assert (found.code, found.robot) == ("MG202", "")
+    assert "not rewritten" in found.cause
+    alone = reframed(lambda f: bare(f) if of("robot1", f) else f)(healthy())
+    (found,) = check(plan(), alone)
+    assert (found.code, found.robot) == ("MG207", "robot1")
+
+
+def test_a_shared_topic_alone_is_no_collision() -> None:
+    publishers = {f.publishers for f in healthy().frames if f.topic == "/tf"}
+    assert publishers == {("/robot1/robot_state_publisher", "/robot2/robot_state_publisher")}
+    assert check(plan(), healthy()) == []
+
+
+@pytest.mark.parametrize(
+    ("layout", "name"),
+    [
+        ("L1", "robot1/laser"), ("L1", "robot1/odom"), ("L1", "robot1_laser"),
+        ("L2", "robot1/laser/robot1"), ("L2", "robot1/robot1/laser"), ("L2", "laser/robot1/robot1"),
+        ("L2", "robot1laser/robot1"), ("L2", "robot1/odom/robot1"), ("L3", "robot1/laser/robot1"),
+        ("L4", "robot1_laser/robot1"),
+    ],
+)  # fmt: skip
+def test_a_name_put_in_twice(layout: str, name: str) -> None:
+    graph = healthy(layout)
+    edge = next(f for f in graph.frames if f.static)
+    found = check(plan(layout), graph._replace(frames=(*graph.frames, edge._replace(child=name))))
+    assert [(f.code, f.robot, f.about) for f in found] == [("MG206", "robot1", (name,))]
+    assert "frame_prefix" in found[0].cause
+    assert "tf_frame_prefix_enable" in found[0].cause
+
+
+def with_frame(layout: str, child: str, parent: str, static: bool = True) -> Snapshot:
+    graph = healthy(layout)
+    topic = next(f.topic for f in graph.frames if f.static)
+    return sent(graph._replace(frames=(*graph.frames, Frame(child, parent, topic, static, ()))))
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_a_sensors_own_frames_are_silent(layout: str) -> None:
+    frame, parent = (
+        ("laser_top", "laser") if layout == "L1" else ("laser_top/robot1", "laser/robot1")
+    )
+    assert check(plan(layout), with_frame(layout, frame, parent)) == []
+
+
+def test_what_a_camera_sees_is_silent() -> None:
+    assert check(plan("L1"), with_frame("L1", "tag36h11:5", "laser", static=False)) == []
+    assert check(plan(), with_frame("L2", "tag36h11:5", "laser/robot1", static=False)) == []
+
+
+def test_a_frame_that_is_nearly_the_declared_one() -> None:
+    (found,) = check(plan(), with_frame("L2", "lasr/robot1", "base_link/robot1"))
+    assert found.code == "MG204"
+    assert "is laser/robot1 meant?" in found.cause
+    (found,) = check(plan("L1"), with_frame("L1", "laser_link", "base_link"))
+    assert (found.code, found.robot) == ("MG204", "robot1")
+
+
+def test_other_frames_of_the_plan_are_silent() -> None:
+    first, second = plan().robots
+    wanted = plan()._replace(robots=(first._replace(other_frames=("gripper/robot1",)), second))
+    assert check(wanted, with_frame("L2", "gripper/robot1", "base_link/robot1")) == []
+
+
+def test_many_undeclared_frames_are_one_finding() -> None:
+    graph = healthy()
+    for at in range(6):
+        more = with_frame("L2", f"part{at}/robot1", "base_link/robot1").frames[-1]
+        graph = graph._replace(frames=(*graph.frames, more))
+    (found,) = check(plan(), graph)
+    assert len(found.about) == 6
+    assert "and 3 more" in found.message
+
+
+def test_map_above_odom_is_silent() -> None:
+    assert check(plan(), with_frame("L2", "odom/robot1", "map", static=False)) == []
+    assert check(plan("L1"), with_frame("L1", "odom", "map", static=False)) == []
+
+
+def test_a_copy_of_all_tf_for_looking_on_is_silent() -> None:
+    graph = with_node(healthy("L3"), "/tf_bridge", (PUBLISHES, "/tf", "tf2_msgs/msg/TFMessage"))
+    copies = tuple(f._replace(topic="/tf") for f in graph.frames if not f.static)
+    assert copies
+    assert check(plan("L3"), sent(graph._replace(frames=(*graph.frames, *copies)))) == []
+
+
+def test_a_tf_listener_that_no_rule_reached() -> None:
+    node = "/robot1/transform_listener_impl_55e1"
+    heard = (SUBSCRIBES, "/tf", "tf2_msgs/msg/TFMessage")
+    (found,) = check(plan("L1"), with_node(healthy("L1"), node, heard))
+    assert (found.code, found.node) == ("MG103", node)
+    assert "whole process" in found.cause
+    assert check(plan(), with_node(healthy(), node, heard)) == []
+
+
+# ---------------------------------------------------------------- odd robots
+
+
+def robots_called(*names: str, layout: str = "L2") -> Expectation:
+    naming = make_naming(layout)
+    declared = {name: [spelled(link, name, naming) for link in LINKS] for name in names}
+    return expect(build_table(names, NODES, naming), naming, declared)
+
+
+@pytest.mark.parametrize(
+    ("robots", "layout", "name", "robot"),
+    [
+        (("arm", "arm_left"), "L2", "/arm_left/x", "arm_left"),
+        (("arm", "arm_left"), "L2", "/arm/left", "arm"),
+        (("arm", "arm_left"), "L4", "/x/arm_left", "arm_left"),
+        (("arm", "arm_left"), "L4", "/gripper_arm_left", "arm_left"),
+        (("arm", "arm_left"), "L4", "/gripper_arm", "arm"),
+        (("robot1", "joint_states"), "L2", "/robot1/joint_states", "robot1"),
+        (("robot1", "joint_states"), "L2", "/joint_states", ""),
+        (("robot1", "joint_states"), "L2", "/robot1/more/joint_states", "robot1"),
+        (("robot1", "joint_states"), "L2", "/joint_states/scan", "joint_states"),
+        (("robot1", "joint_states"), "L4", "/joint_states/robot1", "robot1"),
+        (("robot1", "joint_states"), "L4", "/joint_states/more/robot1", "robot1"),
+        (("robot1", "joint_states"), "L4", "/joint_states/compressed", ""),
+        (("robot1", "robot10"), "L2", "/robot10/x", "robot10"),
+        (("robot1", "robot2"), "L2", "/driver_robot1/x", "robot1"),
+        (("robot1", "robot2"), "L2", "/robot1", ""),
+    ],
+)
+def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot: str) -> None:
+    assert owner(name, robots_called(*robots, layout=layout)) == robot
+
+
+@pytest.mark.parametrize(
+    ("layout", "name", "bare"),
+    [
+        ("L2", "/robot1/scan", "/scan"),
+        ("L2", "/robot1/a/robot1", "/a/robot1"),
+        ("L4", "/robot1/a/robot1", "/robot1/a"),
+        ("L4", "/driver_robot1", "/driver"),
+        ("L4", "/robot1_driver", "/driver"),
+        ("L2", "/robot1", "/robot1"),
+        ("L2", "/robot10/x", "/robot10/x"),
+    ],
+)
+def test_a_name_without_the_robots(layout: str, name: str, bare: str) -> None:
+    assert name_owners(plan(layout)).bare(name, "robot1") == bare
+
+
+# ---------------------------------------------------------------- size
+
+
+def test_time_grows_with_the_fleet_and_not_faster() -> None:
+    def seconds(count: int) -> float:
+        names = [f"robot{at}" for at in range(count)]
+        wanted = robots_called(*names)
+        graph = moved(as_planned(wanted), "/robot1/cmd_vel", "/cmd_vel")
+        times = []
+        for _ in range(3):
+            start = process_time()
+            found = check(wanted, graph)
+            times.append(process_time() - start)
+            assert [f.code for f in found] == ["MG102", "MG103"]
+        return min(times)
+
+    assert seconds(800) < 10 * seconds(200)

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
+from graph_cases import as_planned as planned_graph
+from graph_cases import environment, moved, without_node
 from robots import FIXTURES
-from test_graph_check import environment, moved, without_node
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.snapshot import (
-    Caveat,
-    GraphEndpoint,
-    GraphNode,
-    Snapshot,
-    to_json,
-)
+from multibot_rewrite.graph.snapshot import Caveat, Snapshot, to_json
 from multibot_rewrite.model import InputError
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
@@ -32,17 +28,8 @@ def plan(tmp_path: Path) -> Path:
 
 
 def as_planned(plan: Path) -> Snapshot:
-    """A graph that is the plan, type by type; unknown types left out."""
-    wanted = from_yaml(plan.read_bytes(), "plan")
-    types: dict[str, str] = {}
-    for end in wanted.endpoints:
-        types[end.name] = types.get(end.name) or end.type
-    ends = [
-        GraphEndpoint(e.kind, e.role, e.name, types[e.name], "", e.node, None, "")
-        for e in wanted.endpoints
-    ]
-    nodes = [GraphNode(node, node) for robot in wanted.robots for node in robot.nodes]
-    return Snapshot(tuple(nodes), tuple(ends), (), environment())
+    """A graph that is the plan; of tf nothing was heard."""
+    return planned_graph(from_yaml(plan.read_bytes(), "plan"))._replace(frames=())
 
 
 def held(plan: Path, graph: Snapshot, capture: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
@@ -102,6 +89,17 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
         pytest.param("[map, world]", "map", "shared_frames is no list", id="no-list"),
         pytest.param("topic, /robot1", "topic, robot1", "no full name", id="relative"),
         pytest.param("layout:", "layout: [", "not YAML", id="no-yaml"),
+        pytest.param(
+            "ignored_nodes: []", "ignored_nodes: rviz", "ignored_nodes is no list", id="i"
+        ),
+        pytest.param("sources:", "sources: [a]\nmore:", "'more' is missing or unknown", id="more"),
+        pytest.param(f": {ROVER}:88", ": [1]", "sources./robot1/diff_drive: write", id="place"),
+        pytest.param(
+            "/robot1/imu_driver: []", "/robot1/imu_driver: {}", "imu_driver is no l", id="r"
+        ),
+        pytest.param(
+            "    nodes:", "    optional: x\n    nodes:", "optional is no list", id="optional"
+        ),
     ],
 )
 def test_a_wrong_plan_is_one_line(
@@ -125,3 +123,81 @@ def test_a_snapshot_that_is_none(plan: Path, capsys: pytest.CaptureFixture[str])
     capsys.readouterr()
     assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
     assert "not JSON" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- where a node comes from
+
+
+def sources(path: Path) -> dict[str, str]:
+    return dict(from_yaml(path.read_bytes(), "plan").sources)
+
+
+def test_the_plan_has_the_lines_of_the_users_file(plan: Path) -> None:
+    found = sources(plan)
+    assert len(found) == 10
+    lines = Path(ROVER).read_text().splitlines()
+    for node, place in found.items():
+        file, _, line = place.rpartition(":")
+        assert file == ROVER
+        assert f'<plugin name="{node.rpartition("/")[2]}"' in lines[int(line) - 1]
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
+def test_inserted_lines_do_not_move_them(layout: str, tmp_path: Path) -> None:
+    path = tmp_path / "plan.yaml"
+    assert main(["plan", ROVER, "robot1", "robot2", "--layout", layout, "-o", str(path)]) == 0
+    assert sorted({int(place.rpartition(":")[2]) for place in sources(path).values()}) == [
+        88, 97, 106, 118, 126,
+    ]  # fmt: skip
+
+
+def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> None:
+    path = tmp_path / "plan.yaml"
+    assert main(["plan", f"{ROVER}.xacro", "robot1", "-o", str(path)]) == 0
+    places = sources(path).values()
+    assert places
+    assert all(" (expanded):" in place for place in places)
+
+
+def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
+    _, out, _ = held(plan, graph, capsys)
+    assert f"plugin diff_drive has no namespace or rule for it: see {ROVER}:88" in out
+
+
+# ---------------------------------------------------------------- what a plan has besides
+
+
+def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    graph = as_planned(plan)
+    text = plan.read_text().partition("\nsources:")[0].replace("ignored_nodes: []\n", "") + "\n"
+    kept = re.sub(r"^    (other_frames|optional): \[[^]]*\]\n", "", text, flags=re.MULTILINE)
+    assert len(kept) < len(text)
+    plan.write_text(kept)
+    assert from_yaml(plan.read_bytes(), "plan").sources == ()
+    assert held(plan, graph, capsys)[:2] == (0, "")
+
+
+def test_a_node_under_a_condition_is_optional(
+    plan: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first, _ = from_yaml(plan.read_bytes(), "plan").robots
+    assert first.optional == ("/robot1/route_server",)
+    assert held(plan, without_node(as_planned(plan), "/robot1/route_server"), capsys)[0] == 0
+
+
+def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
+    ends = from_yaml(plan.read_bytes(), "plan").endpoints
+    (end,) = (e for e in ends if (e.node, e.asked) == ("/robot1/velocity_smoother", "cmd_vel"))
+    assert (end.type, *end.also) == ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+
+
+def test_frames_that_parameters_name_are_other_frames(tmp_path: Path) -> None:
+    path = tmp_path / "plan.yaml"
+    bare = tmp_path / "bare.urdf"
+    bare.write_text('<robot name="r"><link name="base_link"/></robot>')
+    command = ["plan", str(bare), "robot1", "--stack", "localization", "--layout", "L2"]
+    assert main([*command, "-o", str(path)]) == 0
+    (robot,) = from_yaml(path.read_bytes(), "plan").robots
+    assert {"base_footprint/robot1"} <= {*robot.frames, *robot.other_frames}
+    assert not {"map", "map/robot1"} & {*robot.frames, *robot.other_frames}

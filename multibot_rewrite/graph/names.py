@@ -12,7 +12,7 @@ from multibot_rewrite.graph.expectation import ALWAYS, Wanted
 from multibot_rewrite.graph.likeness import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.model import ERROR, WARNING
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
 # Every node with use_sim_time hears the clock, whatever is called shared.
@@ -38,7 +38,7 @@ def _why_missing(view: View, wanted: Wanted, robot: str) -> str:
     """The first user question: we never get the topic /robot1/cmd_vel, why?"""
     instead = _instead(view, wanted, robot)
     if not instead:
-        managed = (wanted.node, SERVES, "service", f"{wanted.node}/get_state") in view.planned
+        managed = (wanted.node, SERVICE, SERVES, f"{wanted.node}/get_state") in view.planned
         state = f"; is it configured? ros2 lifecycle get {wanted.node}" if managed else ""
         return f"it has no name like it: switched off by a parameter?{state}"
     said = f"it {wanted.role} {instead} instead"

@@ -98,8 +98,8 @@ def name_owners(plan: Expectation) -> Owners:
     nodes = {node: robot.name for robot in plan.robots for node in robot.nodes}
     planned = ((w.name, nodes[w.node]) for w in plan.endpoints if w.node in nodes)
     robots = frozenset(robot.name for robot in plan.robots)
-    own = next(((robot.nodes, robot.name) for robot in plan.robots if robot.nodes), ((), ""))
-    draft = Owners(_single((*nodes.items(), *planned)), nodes, robots, frozenset(), _last(*own))
+    last = _last((name, robot.name) for robot in plan.robots for name in (*robot.nodes, robot.tf))
+    draft = Owners(_single((*nodes.items(), *planned)), nodes, robots, frozenset(), last)
     return draft._replace(words=robots & _words(plan, draft))
 
 
@@ -113,13 +113,14 @@ def _words(plan: Expectation, draft: Owners) -> set[str]:
 
 def frame_owners(plan: Expectation) -> Owners:
     """The owners of tf frames."""
-    frames = [
-        (f, robot.name) for robot in plan.robots for f in (*robot.frames, *robot.other_frames)
-    ]
+    declared = [(frame, robot.name) for robot in plan.robots for frame in robot.frames]
+    others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
     robots = frozenset(robot.name for robot in plan.robots)
-    own = next(((robot.frames, robot.name) for robot in plan.robots if robot.frames), ((), ""))
-    draft = Owners(_single(frames), {}, robots, frozenset(), _last(*own))
-    return draft._replace(words=robots & _parts(draft.bare(frame, own[1]) for frame in own[0]))
+    exact = _single((*declared, *others))
+    draft = Owners(exact, {}, robots, frozenset(), _last(declared))
+    # The descriptions are one: the first robot's frames are enough.
+    bare = (draft.bare(*pair) for pair in declared if pair[1] == declared[0][1])
+    return draft._replace(words=robots & _parts(bare))
 
 
 def _single(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
@@ -131,10 +132,10 @@ def _single(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
     return {name: robot for name, robot in found.items() if robot}
 
 
-def _last(names: Iterable[str], robot: str) -> bool:
-    """Whether the robot's name ends more of its names than it begins."""
-    bare = [name.strip("/") for name in names]
-    return sum(n.endswith(robot) - n.startswith(robot) for n in bare) > 0
+def _last(names: Iterable[tuple[str, str]]) -> bool:
+    """Whether the robots' names end more of their names than they begin."""
+    bare = ((name.strip("/"), robot) for name, robot in names)
+    return sum(name.endswith(robot) - name.startswith(robot) for name, robot in bare) > 0
 
 
 def _parts(names: Iterable[str]) -> set[str]:

@@ -1,0 +1,165 @@
+"""Any fleet as planned is silent; one name moved away is found, and its node is named."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from graph_cases import as_planned, sent
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.expectation import Expectation, expect, spelled
+from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
+from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot, from_json, to_json
+from multibot_rewrite.naming import Naming, affix, make_naming
+from multibot_rewrite.remap.records import (
+    CALLS,
+    PUBLISHES,
+    ROLES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+    NodeFacts,
+)
+from multibot_rewrite.remap.table import build_table
+
+# Robots called like one another, and like words of the names.
+ROBOTS = ("robot1", "robot2", "robot10", "arm", "arm_left", "left", "scan", "camera", "map", "r")
+NODES = ("driver", "scan", "arm_left", "left", "camera/camera", "robot_state_publisher", "arm")
+NAMES = (
+    "scan",
+    "/scan",
+    "cmd_vel",
+    "/cmd_vel",
+    "~/state",
+    "arm/left",
+    "/camera/image",
+    "left_scan",
+)
+LINKS = ("base_link", "laser", "arm_link", "camera", "left_wheel", "scan")
+TYPES = {
+    TOPIC: ("std_msgs/msg/String", "nav_msgs/msg/Odometry"),
+    SERVICE: ("std_srvs/srv/Trigger",),
+}
+
+
+class Fleet(NamedTuple):
+    """A plan, and the graph that is as planned."""
+
+    plan: Expectation
+    graph: Snapshot
+
+
+@st.composite
+def endpoints(draw: st.DrawFn) -> Endpoint:
+    role = draw(st.sampled_from(ROLES))
+    kind = SERVICE if role in (SERVES, CALLS) else TOPIC
+    # One type a name, as in a fleet that works.
+    name = draw(st.sampled_from(NAMES))
+    return Endpoint(kind, role, name, TYPES[kind][0])
+
+
+@st.composite
+def fleets(draw: st.DrawFn) -> Fleet:
+    layout = draw(st.sampled_from(("L1", "L2", "L3", "L4")))
+    affix = draw(st.sampled_from(("postfix", "prefix")))
+    naming = make_naming(layout, affix)
+    robots = draw(st.lists(st.sampled_from(ROBOTS), min_size=1, max_size=3, unique=True))
+    names = draw(st.lists(st.sampled_from(NODES), min_size=1, max_size=3, unique=True))
+    some = st.lists(endpoints(), min_size=1, max_size=4, unique=True)
+    tf = Endpoint(TOPIC, PUBLISHES, "/tf", "tf2_msgs/msg/TFMessage")
+    still = tf._replace(name="/tf_static")
+    nodes = [NodeFacts(name, "p", (*draw(some), tf, still)) for name in names]
+    links = draw(st.lists(st.sampled_from(LINKS), min_size=1, max_size=4, unique=True))
+    frames = {robot: [spelled(link, robot, naming) for link in links] for robot in robots}
+    plan = expect(build_table(robots, nodes, naming), naming, frames)
+    return Fleet(plan, beside(plan, as_planned(plan), naming))
+
+
+def beside(plan: Expectation, graph: Snapshot, naming: Naming) -> Snapshot:
+    """What every node brings, a topic of its own that nobody planned, and people's tools."""
+    robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    more = [
+        GraphEndpoint(kind, role, name, type_, "", node.name, None, "")
+        for node in graph.nodes
+        for kind, role, name, type_ in (
+            (TOPIC, PUBLISHES, "/rosout", "rcl_interfaces/msg/Log"),
+            (TOPIC, SUBSCRIBES, "/clock", "rosgraph_msgs/msg/Clock"),
+            (SERVICE, SERVES, f"{node.name}/get_parameters", "rcl_interfaces/srv/GetParameters"),
+            (TOPIC, PUBLISHES, own("/more/left", robot_of[node.name], naming), "std_msgs/msg/Bool"),
+        )
+    ]
+    tools = (
+        "/rviz2",
+        "/teleop_twist_keyboard",
+        "/rosbag2_recorder",
+        "/_ros2cli_1",
+        "/ros_gz_bridge",
+    )
+    return graph._replace(
+        nodes=(*graph.nodes, *(GraphNode(tool, "") for tool in tools)),
+        endpoints=(*graph.endpoints, *more),
+    )
+
+
+def own(topic: str, robot: str, naming: Naming) -> str:
+    """A topic as a robot has it."""
+    there = affix(naming, "topic", topic)
+    return there.spell(topic, robot) if there else f"/{robot}{topic}"
+
+
+@settings(max_examples=300, deadline=None)
+@given(fleets())
+def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
+    assert check(fleet.plan, fleet.graph) == []
+
+
+@settings(max_examples=300, deadline=None)
+@given(fleets(), st.data())
+def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataObject) -> None:
+    planned = [(w.node, w.kind, w.role, w.name) for w in fleet.plan.endpoints]
+    end = data.draw(st.sampled_from(planned))
+    new = data.draw(st.sampled_from(("/elsewhere", "/scan", "/robot2/cmd_vel", f"{end[3]}_raw")))
+    moved = tuple(
+        e._replace(name=new) if (e.node, e.kind, e.role, e.name) == end else e
+        for e in fleet.graph.endpoints
+    )
+    found = check(fleet.plan, sent(fleet.graph._replace(endpoints=moved)))
+    if (*end[:3], new) in planned:
+        return
+    assert end[0] in {finding.node for finding in found}
+    assert any(end[3] in finding.message for finding in found)
+
+
+@settings(max_examples=100, deadline=None)
+@given(fleets(), st.data())
+def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -> None:
+    robot = data.draw(st.sampled_from(fleet.plan.robots))
+    node = data.draw(st.sampled_from(robot.nodes))
+    graph = fleet.graph._replace(
+        nodes=tuple(n for n in fleet.graph.nodes if n.name != node),
+        endpoints=tuple(e for e in fleet.graph.endpoints if e.node != node),
+    )
+    found = [(f.code, f.robot) for f in check(fleet.plan, graph) if f.code in ("MG101", "MG109")]
+    assert found == [("MG101" if len(robot.nodes) > 1 else "MG109", robot.name)]
+
+
+@settings(max_examples=100, deadline=None)
+@given(fleets(), st.data())
+def test_a_frame_that_hangs_elsewhere_is_found(fleet: Fleet, data: st.DataObject) -> None:
+    if not fleet.graph.frames:
+        return
+    edge = data.draw(st.sampled_from(fleet.graph.frames))
+    other = edge._replace(parent="somewhere_else")
+    found = check(fleet.plan, fleet.graph._replace(frames=(*fleet.graph.frames, other)))
+    assert "MG201" in {finding.code for finding in found}
+
+
+@settings(max_examples=50, deadline=None)
+@given(fleets())
+def test_plan_and_graph_go_through_files_unchanged(fleet: Fleet) -> None:
+    assert from_yaml(to_yaml(fleet.plan).encode(), "plan") == fleet.plan
+    assert from_json(to_json(fleet.graph), "graph") == fleet.graph
