@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from math import inf
 
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.output import say
+from multibot_rewrite.cli.output import print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.watch import WORDS, follow
 from multibot_rewrite.graph.check import check, doubts
@@ -64,8 +64,7 @@ def _check(options: argparse.Namespace, plan: Expectation) -> int:
 def conclude(options: argparse.Namespace, plan: Expectation, graph: Snapshot) -> int:
     """Compare, print a line for each finding, draw what is asked for; the exit code."""
     found = check(plan, graph)
-    for finding in found:
-        print(finding)
+    print_lines(found)
     for caveat in doubts(graph):
         say(f"incomplete: {caveat.message}", PROGRAM)
     pictures.deliver(options, plan, graph, found)

@@ -78,6 +78,12 @@ def print_bytes(data: bytes, instead: str = "-o") -> None:
         raise UsageError(f"standard output: cannot be written: {error.strerror}") from None
 
 
+def print_lines(lines: Iterable[object]) -> None:
+    """A line each to standard output; what no text can hold, from a file, is shown escaped."""
+    text = "".join(f"{line}\n" for line in lines)
+    print_bytes(text.encode("utf-8", "backslashreplace"), "--report")
+
+
 def changes_json(first: Rewrite, robots: list[str]) -> bytes:
     """Every change for every robot, as ``--changes`` writes it."""
     import json

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack, closing, contextmanager
 
+from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, renderable
 from multibot_rewrite.graph.comparison import GraphFinding
 from multibot_rewrite.graph.expectation import Expectation
@@ -41,11 +42,9 @@ def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> Mom
 def _print_lines(moment: Moment) -> None:
     """What changed, for a log: findings come with + and go with -."""
     at = f"{moment.graph.environment.seconds:7.1f} s"
-    if moment.whole:
-        for sign, findings in (("+", moment.appeared), ("-", moment.solved)):
-            for finding in findings:
-                print(f"{at}  {sign} {finding}")
-    print(f"{at}  {_headline(moment)}", flush=True)
+    changes = (("+", moment.appeared), ("-", moment.solved)) if moment.whole else ()
+    told = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
+    print_lines([*told, f"{at}  {_headline(moment)}"])
 
 
 @contextmanager
