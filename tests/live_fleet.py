@@ -3,7 +3,7 @@
 Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "namespace", and lists
 "publishers", "subscriptions", "services", "clients", "actions" of [name, type word, QoS words],
 "frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
-brings, as far as rclpy lets it.
+brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a process of its own.
 "arguments": what a command line tells the node.
 """
 
@@ -13,7 +13,8 @@ import json
 import os
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+import time
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
@@ -33,21 +34,27 @@ def environ(domain: int) -> dict[str, str]:
 
 
 @contextmanager
-def running(domain: int, *specs: list[dict[str, Any]], **more: str) -> Iterator[None]:
-    """One process a spec; they are up inside the block and ended after it, each cleanly."""
+def running(
+    domain: int, *specs: list[dict[str, Any]], inside: Sequence[str] = (), **more: str
+) -> Iterator[list[subprocess.Popen[str]]]:
+    """One process a spec; they are up inside the block and ended after it, each cleanly.
+
+    ``inside`` is put before their command lines, ``more`` into their environment.
+    """
     with ExitStack() as stack:
-        children = [
-            stack.enter_context(_child(spec, {**environ(domain), **more})) for spec in specs
-        ]
+        env = {**environ(domain), **more}
+        children = [stack.enter_context(_child(spec, env, inside)) for spec in specs]
         for child in children:
             assert child.stdout is not None
             assert child.stdout.readline().strip() == READY
-        yield
+        yield children
 
 
 @contextmanager
-def _child(spec: list[dict[str, Any]], env: Mapping[str, str]) -> Iterator[subprocess.Popen[str]]:
-    command = [sys.executable, str(Path(__file__)), json.dumps(spec)]
+def _child(
+    spec: list[dict[str, Any]], env: Mapping[str, str], inside: Sequence[str]
+) -> Iterator[subprocess.Popen[str]]:
+    command = [*inside, sys.executable, str(Path(__file__)), json.dumps(spec)]
     pipe = subprocess.PIPE
     child = subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True, env=env)
     assert child.stdin is not None and child.stdout is not None
@@ -71,14 +78,18 @@ def main(spec: str) -> None:
     # A terminal's Ctrl-C ends the test, which then closes the input.
     rclpy.init(args=[], signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
     executor = SingleThreadedExecutor()
-    nodes = [_node(one, executor) for one in json.loads(spec)]
+    specs = json.loads(spec)
+    nodes = [_node(one, executor) for one in specs]
+    # Nobody is answered; a large fleet that spins would keep the machine busy.
+    sends = any(one.get("frames") for one in specs)
     print(READY, flush=True)
     stop = _input_closed()
     while not stop.done():
-        executor.spin_once(timeout_sec=0.05)
+        executor.spin_once(timeout_sec=0.05) if sends else time.sleep(0.05)
     for node in nodes:
         node.destroy_node()
-    rclpy.shutdown()
+    for context in {node.context for node in nodes}:
+        context.try_shutdown()
 
 
 def _input_closed() -> Any:
@@ -92,6 +103,7 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
 
     node = Node(
         spec["name"],
+        context=_context() if spec.get("alone") else None,
         cli_args=spec.get("arguments"),
         namespace=spec.get("namespace", ""),
         start_parameter_services=not spec.get("bare"),
@@ -99,7 +111,8 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
     )
     if spec.get("bare"):
         node.destroy_publisher(node._parameter_event_publisher)
-    executor.add_node(node)
+    if not spec.get("alone"):
+        executor.add_node(node)
     for name, type_, *words in spec.get("publishers", ()):
         node.create_publisher(_type(type_), name, _qos(words))
     for name, type_, *words in spec.get("subscriptions", ()):
@@ -113,6 +126,15 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
     for topic, static, *edges in spec.get("frames", ()):
         _send_frames(node, topic, static, edges)
     return node
+
+
+def _context() -> Any:
+    import rclpy
+    from rclpy.signals import SignalHandlerOptions
+
+    context = rclpy.Context()
+    rclpy.init(args=[], context=context, signal_handler_options=SignalHandlerOptions.NO)
+    return context
 
 
 def _action(node: Any, type_: Any, name: str) -> None:

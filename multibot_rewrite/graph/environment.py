@@ -1,7 +1,7 @@
 """Whether the environment lets a graph be seen at all, and whether a view of it is whole. Pure.
 
 Sources: rcl ``domain_id.c``, ``discovery_options.c``; rmw_fastrtps ``participant.cpp`` (32 peers
-on one machine); the ROS 2 domain id page (0 to 232).
+on a machine under LOCALHOST, else Fast DDS's own 4); the ROS 2 domain id page (0 to 232).
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
+from math import inf
 from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import (
@@ -32,8 +33,10 @@ KNOWN_RMW = (
     "rmw_zenoh_cpp",
     "rmw_gurumdds_cpp",
 )
-# rmw_fastrtps asks that many participants of a machine by unicast when multicast is off.
-LOCAL_PARTICIPANTS = 32
+# That many participants of a machine are asked by unicast: under LOCALHOST, of a peer under SUBNET.
+LOCAL_LIMIT, PEER_LIMIT = 32, 4
+# How a Fast DDS participant's group starts: the vendor, then four digits for its machine.
+_FAST_DDS = "010f"
 _SHOWN = 5
 _NUMBER = re.compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 
@@ -92,6 +95,7 @@ def _localhost_only(environ: Mapping[str, str]) -> bool:
 
 def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
     """What is odd in the variables, though rcl starts with it, each with what to do."""
+    asked = settings(environ)
     word = environ.get("ROS_AUTOMATIC_DISCOVERY_RANGE", "")
     if _localhost_only(environ):
         text = "ROS_LOCALHOST_ONLY=1 overrides discovery range and static peers; unset it and set"
@@ -104,13 +108,15 @@ def setting_caveats(environ: Mapping[str, str]) -> Iterator[Caveat]:
             "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF hides every other process; use LOCALHOST or SUBNET"
         )
         yield Caveat("range-off", True, text)
+    elif word == "SYSTEM_DEFAULT" and asked.static_peers:
+        text = "ROS_STATIC_PEERS is not read under range SYSTEM_DEFAULT, so their robots may not be"
+        yield Caveat("peers-unread", True, f"{text} seen; use SUBNET or LOCALHOST, or unset it")
     rmw = environ.get("RMW_IMPLEMENTATION", "")
     if rmw and rmw not in KNOWN_RMW:
         text = (
             f"RMW_IMPLEMENTATION={rmw!r} is not a known one; usual are {', '.join(KNOWN_RMW[:3])}"
         )
         yield Caveat("rmw-word", False, text)
-    asked = settings(environ)
     if asked.discovery_server and not asked.super_client:
         text = "ROS_DISCOVERY_SERVER is set and ROS_SUPER_CLIENT is not: a plain client of a server"
         text = f"{text} sees nodes without their topics; set ROS_SUPER_CLIENT=TRUE"
@@ -132,9 +138,7 @@ def view_caveats(
     if settled == CHANGING:
         yield Caveat("not-settled", True, "the graph is still changing")
     if not nodes:
-        where = f"domain {asked.domain}, range {asked.range}"
-        text = f"no node was seen ({where}); is it the robots' ROS_DOMAIN_ID and discovery range?"
-        yield Caveat("nothing-seen", True, text)
+        yield Caveat("nothing-seen", True, _nothing(asked))
     absent = sorted(set(expected) - set(names))
     if nodes and absent:
         text = f"expected and not seen: {listed(absent)}; are they started, is the name right?"
@@ -147,15 +151,46 @@ def view_caveats(
         yield Caveat("same-name", False, f"{text} look again after that")
 
 
+def _nothing(asked: Settings) -> str:
+    """Where nothing was seen, and what that may come from."""
+    where = f"domain {asked.domain}, range {asked.range}"
+    remedy = "is it the robots' ROS_DOMAIN_ID and discovery range?"
+    if asked.discovery_server:
+        where += f", discovery server {asked.discovery_server}"
+        remedy = "does the server run there, and do the robots use it?"
+    elif asked.static_peers:
+        where += f", peers {' '.join(asked.static_peers)}"
+    elif asked.range == "LOCALHOST":
+        remedy += " Robots on other machines: name these in ROS_STATIC_PEERS"
+    return f"no node was seen ({where}); {remedy}"
+
+
 def _cut_off(endpoints: Iterable[GraphEndpoint], asked: Settings) -> Iterator[Caveat]:
-    seen = participants(endpoints)
-    if asked.range != "LOCALHOST" or asked.discovery_server or seen < LOCAL_PARTICIPANTS:
+    """Where Fast DDS may have asked too few participants, as it does without multicast or server."""
+    machines = Counter(map(_machine, _processes(endpoints)))
+    if asked.discovery_server or not machines:
         return
-    text = (
-        f"{seen} participants under LOCALHOST, where a late one sees {LOCAL_PARTICIPANTS} at most"
-    )
-    remedy = "use range SUBNET, or a discovery server with ROS_SUPER_CLIENT=TRUE"
-    yield Caveat("participant-limit", True, f"{text}: the view may be cut off; {remedy}")
+    most = max(machines.values())
+    if asked.range == "LOCALHOST" and most >= LOCAL_LIMIT:
+        text = (
+            f"{most} participants of one machine under LOCALHOST, where a late one sees"
+            f" {LOCAL_LIMIT} at most: the view may be cut off; use range SUBNET for all, or a"
+            " discovery server with ROS_SUPER_CLIENT=TRUE"
+        )
+        yield Caveat("participant-limit", True, text)
+    known = [count for name, count in machines.items() if name]
+    if asked.range == "SUBNET" and asked.static_peers and min(known, default=inf) <= PEER_LIMIT:
+        text = (
+            f"a machine shows no more than the {PEER_LIMIT} participants that Fast DDS asks of each"
+            " static peer under SUBNET: without multicast the view is cut off; look with"
+            f" ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, which asks {LOCAL_LIMIT}"
+        )
+        yield Caveat("peer-limit", True, text)
+
+
+def _machine(process: str) -> str:
+    """What the participants of one machine have in common; empty where that is not known."""
+    return process[:8] if process.startswith(_FAST_DDS) else ""
 
 
 def _unfinished(
@@ -175,7 +210,11 @@ def _unfinished(
 
 def participants(endpoints: Iterable[GraphEndpoint]) -> int:
     """How many DDS participants the endpoints come from."""
-    return len({endpoint.process for endpoint in endpoints} - {""})
+    return len(_processes(endpoints))
+
+
+def _processes(endpoints: Iterable[GraphEndpoint]) -> set[str]:
+    return {endpoint.process for endpoint in endpoints} - {""}
 
 
 def listed(names: Collection[str]) -> str:
