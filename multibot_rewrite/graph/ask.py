@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
+from functools import lru_cache
 from typing import Any
 
 from multibot_rewrite.graph import gather
@@ -157,18 +158,41 @@ def _told(kind: str, role: str, name: str, info: Any) -> GraphEndpoint:
 
 
 def _qos(profile: Any) -> Qos:
-    return Qos(
-        profile.history.name,
+    return _shared_qos(
+        profile.history,
         profile.depth,
-        profile.reliability.name,
-        profile.durability.name,
-        _seconds(profile.deadline),
-        _seconds(profile.lifespan),
-        profile.liveliness.name,
-        _seconds(profile.liveliness_lease_duration),
+        profile.reliability,
+        profile.durability,
+        profile.deadline.nanoseconds,
+        profile.lifespan.nanoseconds,
+        profile.liveliness,
+        profile.liveliness_lease_duration.nanoseconds,
     )
 
 
-def _seconds(duration: Any) -> float:
-    count = duration.nanoseconds
-    return float("inf") if count >= _ENDLESS or count == 0 else count / 1e9
+# A fleet has thousands of endpoints and a handful of profiles.
+@lru_cache(maxsize=256)
+def _shared_qos(
+    history: Any,
+    depth: int,
+    reliability: Any,
+    durability: Any,
+    deadline: int,
+    lifespan: int,
+    liveliness: Any,
+    lease: int,
+) -> Qos:
+    return Qos(
+        history.name,
+        depth,
+        reliability.name,
+        durability.name,
+        _seconds(deadline),
+        _seconds(lifespan),
+        liveliness.name,
+        _seconds(lease),
+    )
+
+
+def _seconds(nanoseconds: int) -> float:
+    return float("inf") if nanoseconds >= _ENDLESS or nanoseconds == 0 else nanoseconds / 1e9
