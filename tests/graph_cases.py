@@ -9,7 +9,7 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import redirect_stdout
-from io import StringIO
+from io import BytesIO, TextIOWrapper
 from pathlib import Path
 from typing import NamedTuple
 
@@ -394,10 +394,11 @@ CASES = (
 
 def check_lines(plan: str, graph: str) -> str:
     """What the command prints on standard output."""
-    out = StringIO()
-    with redirect_stdout(out):
+    data = BytesIO()
+    with TextIOWrapper(data, "utf-8") as out, redirect_stdout(out):
         multibot(["check", plan, "--snapshot", graph])
-    return out.getvalue()
+        out.flush()
+        return data.getvalue().decode()
 
 
 def write(path: str, graph: Snapshot) -> None:

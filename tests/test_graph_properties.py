@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from graph_cases import as_planned, sent
+from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.expectation import Expectation, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot, expect, spelled
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot, from_json, to_json
+from multibot_rewrite.graph.snapshot import (
+    Frame,
+    GraphEndpoint,
+    GraphNode,
+    Snapshot,
+    from_json,
+    to_json,
+)
 from multibot_rewrite.naming import Naming, affix, make_naming
 from multibot_rewrite.remap.records import (
     CALLS,
@@ -163,3 +170,75 @@ def test_a_frame_that_hangs_elsewhere_is_found(fleet: Fleet, data: st.DataObject
 def test_plan_and_graph_go_through_files_unchanged(fleet: Fleet) -> None:
     assert from_yaml(to_yaml(fleet.plan).encode(), "plan") == fleet.plan
     assert from_json(to_json(fleet.graph), "graph") == fleet.graph
+
+
+SEGMENTS = (
+    "robot1",
+    "arm",
+    "arm_left",
+    "scan",
+    "tf",
+    "tf_static",
+    "x_arm",
+    "arm_x",
+    "",
+    "_",
+    "{node}",
+)
+full_names = st.lists(st.sampled_from(SEGMENTS), max_size=4).map(
+    lambda parts: "/" + "/".join(parts)
+)
+any_names = st.one_of(full_names, st.text(max_size=5))
+ends = st.sampled_from(
+    [(TOPIC, PUBLISHES), (TOPIC, SUBSCRIBES), (SERVICE, SERVES), (SERVICE, CALLS)]
+)
+types = st.sampled_from(("", "a/msg/A", "a/msg/B"))
+
+
+@st.composite
+def anything(draw: st.DrawFn) -> Fleet:
+    """A plan that nobody would make and a graph that has little to do with it."""
+    names = draw(
+        st.lists(st.sampled_from(("robot1", "arm", "arm_left", "")), max_size=3, unique=True)
+    )
+    nodes = st.lists(full_names, max_size=3, unique=True).map(tuple)
+    some = st.lists(any_names, max_size=3).map(tuple)
+    robots = [
+        draw(st.builds(WantedRobot, st.just(n), nodes, some, full_names, some)) for n in names
+    ]
+    there = st.sampled_from([node for robot in robots for node in robot.nodes] or ["/else"])
+    node = st.one_of(full_names, there)
+    wanted = st.builds(
+        lambda n, end, *rest: Wanted(n, *end, *rest), there, ends, full_names, types, any_names
+    )
+    plan = Expectation(
+        "any", tuple(robots), draw(nodes), draw(nodes), draw(some),
+        tuple(draw(st.lists(wanted, max_size=5, unique_by=lambda w: w[:4]))), draw(some),
+    )  # fmt: skip
+    seen = st.builds(
+        lambda end, *rest: GraphEndpoint(*end, *rest), ends, full_names, types,
+        st.sampled_from(("", "RIHS01_a", "RIHS01_b")), node,
+        st.sampled_from((None, qos())), st.just(""),
+    )  # fmt: skip
+    frame = st.builds(
+        Frame,
+        any_names,
+        any_names,
+        full_names,
+        st.booleans(),
+        st.lists(node, max_size=2).map(tuple),
+    )
+    graph = Snapshot(
+        tuple(GraphNode(name, "") for name in draw(st.lists(node, max_size=5))),
+        tuple(draw(st.lists(seen, max_size=8))), tuple(draw(st.lists(frame, max_size=5))),
+        environment(),
+    )  # fmt: skip
+    return Fleet(plan, graph)
+
+
+@settings(max_examples=300, deadline=None)
+@given(anything())
+def test_whatever_there_is_each_finding_is_told_once(fleet: Fleet) -> None:
+    found = check(fleet.plan, fleet.graph)
+    assert len(set(found)) == len(found)
+    assert found == check(fleet.plan, fleet.graph)

@@ -89,6 +89,10 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
         pytest.param("[map, world]", "map", "shared_frames is no list", id="no-list"),
         pytest.param("topic, /robot1", "topic, robot1", "no full name", id="relative"),
         pytest.param("layout:", "layout: [", "not YAML", id="no-yaml"),
+        pytest.param("    tf: /robot1/tf", "    tf:", "tf: None is no full name", id="tf"),
+        pytest.param(
+            "      /robot1/imu_driver:", "      imu_driver:", "'imu_driver' is no f", id="n"
+        ),
         pytest.param(
             "ignored_nodes: []", "ignored_nodes: rviz", "ignored_nodes is no list", id="i"
         ),

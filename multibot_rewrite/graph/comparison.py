@@ -95,9 +95,10 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
         end = (node, kind, role, name)
         by_node[node].append(endpoint)
         by_name[name].append(endpoint)
-        types[end] = type_
-        if end not in planned and "/_" not in name:
+        # A node may subscribe a topic more than once.
+        if end not in planned and end not in types and "/_" not in name:
             more[node].append(endpoint)
+        types[end] = type_
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
     seen = Counter(node.name for node in graph.nodes)
     owners = owners_of(plan)

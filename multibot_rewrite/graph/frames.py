@@ -246,14 +246,15 @@ def _is_doubled(view: View, robot: WantedRobot, name: str) -> bool:
 
 
 def _doubled(view: View, robot: WantedRobot, names: Sequence[str]) -> GraphFinding:
+    cause = (
+        "frame_prefix of robot_state_publisher or tf_frame_prefix_enable of a controller (on by "
+    )
     if _is_bare(view, robot):
         message = f"{_frames(names)} the name of {robot.name}, the layout has bare frames"
-        cause = "frame_prefix of robot_state_publisher, or tf_frame_prefix_enable of a controller "
-        cause += "(on by default), puts it in: set them to '' and false"
+        cause += "default), or a description rewritten for another layout: set them to '' and false"
     else:
         message = f"{_frames(names)} the name of {robot.name} twice"
-        cause = "frame_prefix of robot_state_publisher, or tf_frame_prefix_enable of a controller "
-        cause += "(on by default), on top of a rewritten description: set them to '' and false"
+        cause += "default), on top of a rewritten description: set them to '' and false"
     return GraphFinding("MG206", ERROR, robot.name, "", message, cause, tuple(names))
 
 

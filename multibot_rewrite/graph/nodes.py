@@ -24,7 +24,7 @@ def missing_nodes(view: View) -> Iterator[GraphFinding]:
             cause = not_named(view, node, stand_in) if stand_in else _not_started(view, node)
             message = f"expected node {node}, it is not there"
             yield GraphFinding("MG101", ERROR, robot.name, node, message, cause)
-    for node in view.plan.shared_nodes:
+    for node in dict.fromkeys(view.plan.shared_nodes):
         if node not in view.seen and not ignored(node, view.plan.ignored_nodes):
             message = f"expected node {node} for all robots, it is not there"
             yield GraphFinding("MG101", WARNING, "", node, message, "is it started?")
@@ -70,9 +70,7 @@ def unexpected_nodes(view: View) -> Iterator[GraphFinding]:
             continue
         if robot:
             message = f"it is {robot}'s and not in the plan{_strays(view, node, robot)}"
-            cause = (
-                "put it in the plan: a node of a stack (--stack, --nodes), or a line of the file"
-            )
+            cause = "put it in the plan: by --stack or --nodes, or by hand"
         else:
             message = "it is no robot's, and not one of shared_nodes in the plan"
             cause = "add it there if it serves all robots; else it lacks its robot's namespace"

@@ -103,7 +103,15 @@ def _read_robot(name: str, given: object, file: str) -> tuple[WantedRobot, list[
         for node, rows in nodes.items()
         for at, row in enumerate(_rows(rows, f"{file}: {place}.nodes.{node}"))
     ]
-    return WantedRobot(name, tuple(nodes), frames, str(robot["tf"]), *more), endpoints
+    tf = _full_name(robot["tf"], f"{file}: {place}.tf")
+    names = tuple(_full_name(node, f"{file}: {place}.nodes") for node in nodes)
+    return WantedRobot(name, names, frames, tf, *more), endpoints
+
+
+def _full_name(value: object, place: str) -> str:
+    if not isinstance(value, str) or not value.startswith("/"):
+        raise InputError(f"{place}: {value!r} is no full name, it starts with /")
+    return value
 
 
 def _rows(value: object, place: str) -> Sequence[object]:
@@ -146,7 +154,5 @@ def _wanted(node: str, row: object, place: str) -> Wanted:
     if role not in ROLES or kind not in KINDS:
         allowed = f"{', '.join(ROLES)} and {', '.join(KINDS)}"
         raise InputError(f"{place}: {role!r} {kind!r}: role and kind are of {allowed}")
-    if not name.startswith("/"):
-        raise InputError(f"{place}: {name!r} is no full name, it starts with /")
     type_, *also = type_.split(OR)
-    return Wanted(node, kind, role, name, type_, asked, tuple(also))
+    return Wanted(node, kind, role, _full_name(name, place), type_, asked, tuple(also))
