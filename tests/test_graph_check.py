@@ -144,6 +144,26 @@ def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
     )
 
 
+def test_a_name_that_the_plan_has_for_two_robots_is_a_leak_too() -> None:
+    ends = [
+        Wanted(f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm")
+        for robot in ROBOTS
+    ]
+    wanted = plan()._replace(endpoints=(*plan().endpoints, *ends))
+    graph = healthy()
+    for robot in ROBOTS:
+        end = GraphEndpoint(
+            TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "", f"/{robot}/driver", None, ""
+        )
+        graph = graph._replace(endpoints=(*graph.endpoints, end))
+    found = check(wanted, graph)
+    assert [(f.code, f.node) for f in found] == [
+        ("MG103", "/robot1/driver"),
+        ("MG103", "/robot2/driver"),
+    ]
+    assert check(wanted._replace(shared_topics=(*wanted.shared_topics, "/alarm")), graph) == []
+
+
 def test_one_robot_listening_to_another() -> None:
     found = check(plan(), moved(healthy(), "/robot1/cmd_vel", "/robot2/cmd_vel"))
     assert ("MG104", "/robot1/driver") in [(f.code, f.node) for f in found]
@@ -288,6 +308,23 @@ def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
     assert "see rover.urdf:120" in found.cause
 
 
+def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
+    graph = healthy()
+    for node in ("driver", "robot_state_publisher"):
+        graph = renamed_node(graph, f"/robot1/{node}", f"/{node}")
+    wanted = plan()._replace(sources=(("/robot1/robot_state_publisher", "rover.urdf:120"),))
+    (found,) = check(wanted, graph)
+    assert (found.code, found.robot) == ("MG109", "robot1")
+    assert "has no namespace, see rover.urdf:120; 1 more of its nodes likewise" in found.cause
+
+
+def test_a_robot_of_conditions_only_is_never_silent() -> None:
+    first, second = plan().robots
+    wanted = plan()._replace(robots=(first._replace(optional=first.nodes), second))
+    graph = without_node(healthy(), "/robot1/driver")
+    assert check(wanted, without_node(graph, "/robot1/robot_state_publisher")) == []
+
+
 def test_a_plugin_of_the_postfix_layout() -> None:
     wanted = plan("L4")._replace(sources=(("/driver_robot1", "rover.urdf:120"),))
     (found,) = check(wanted, renamed_node(healthy("L4"), "/driver_robot1", "/driver"))
@@ -331,7 +368,7 @@ def test_a_robot_under_another_namespace() -> None:
         graph = renamed_node(graph, f"/robot1/{node}", f"/robot_1/{node}")
     found = [f for f in check(plan(), graph) if f.code != "MG203"]
     assert [f.code for f in found] == ["MG109"]
-    assert "/robot_1/driver" in found[0].cause
+    assert "/robot_1/robot_state_publisher is there" in found[0].cause
 
 
 # ---------------------------------------------------------------- what nobody planned
@@ -382,6 +419,18 @@ def test_tools_are_no_surprise(node: str) -> None:
     assert check(plan(), with_node(healthy(), node)) == []
     twice = with_node(with_node(healthy(), node), node)
     assert check(plan(), twice) == []
+
+
+def test_a_tool_may_be_the_planned_one_without_its_namespace() -> None:
+    first, second = plan().robots
+    wanted = plan()._replace(
+        robots=(first._replace(nodes=(*first.nodes, "/robot1/joy_node")), second)
+    )
+    (found,) = check(wanted, with_node(healthy(), "/joy_node"))
+    assert (found.code, found.node) == ("MG101", "/robot1/joy_node")
+    assert found.cause.startswith("/joy_node is there")
+    twice = with_node(with_node(healthy(), "/robot1/joy_node"), "/robot1/joy_node")
+    assert [f.code for f in check(wanted, twice)] == ["MG105"]
 
 
 def test_a_plan_has_its_own_patterns() -> None:

@@ -73,7 +73,7 @@ def not_named(view: View, node: str, stand_in: str) -> str:
     bare = view.owners.bare(node, robot)
     namespaced = node == f"/{robot}{bare}"
     if stand_in not in (bare, f"/{bare.rpartition('/')[2]}"):
-        return f"{stand_in} is there: is that it?"
+        return f"{stand_in} is there: is it that one, under another name?"
     lacks = "namespace" if namespaced else "name of its own for each robot"
     if which:
         return f"{stand_in} is there: {which} has no {lacks}, see {place}"

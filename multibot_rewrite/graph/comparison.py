@@ -85,12 +85,48 @@ class View(NamedTuple):
 
 def make_view(plan: Expectation, graph: Snapshot) -> View:
     """The look-ups, made once."""
-    by_node: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    by_name: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    more: dict[str, list[GraphEndpoint]] = defaultdict(list)
-    types: dict[End, str] = {}
     planned = {(w.node, w.kind, w.role, w.name): w for w in plan.endpoints}
-    for endpoint in graph.endpoints:
+    ends = _sorted_out(graph.endpoints, planned)
+    robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    seen = Counter(node.name for node in graph.nodes)
+    foreseen = {*robot_of, *plan.shared_nodes}
+    strangers = [node for node in seen if node not in foreseen]
+    unplanned = tuple(node for node in strangers if not ignored(node, plan.ignored_nodes))
+    missing = {node: robot for node, robot in robot_of.items() if node not in seen}
+    owners = owners_of(plan)
+    return View(
+        plan=plan,
+        graph=graph,
+        by_node=ends.by_node,
+        by_name=ends.by_name,
+        robot_of=robot_of,
+        owners=owners,
+        frame_owners=frame_owners(plan),
+        types=ends.types,
+        planned=planned,
+        more=ends.more,
+        spoken={n for _, kind, role, n in ends.types if (kind, role) == (TOPIC, PUBLISHES)},
+        seen=seen,
+        unplanned=unplanned,
+        stand_ins=stand_ins(missing, strangers, unplanned, owners),
+        places=dict(plan.sources),
+        trees=tf_trees(graph.frames, plan.robots, owners),
+        robots={robot.name: robot for robot in plan.robots},
+        frames_of={r.name: frozenset((*r.frames, *r.other_frames)) for r in plan.robots},
+    )
+
+
+class _Ends(NamedTuple):
+    by_node: dict[str, list[GraphEndpoint]]
+    by_name: dict[str, list[GraphEndpoint]]
+    more: dict[str, list[GraphEndpoint]]
+    types: dict[End, str]
+
+
+def _sorted_out(endpoints: Iterable[GraphEndpoint], planned: Mapping[End, Wanted]) -> _Ends:
+    found = _Ends(defaultdict(list), defaultdict(list), defaultdict(list), {})
+    by_node, by_name, more, types = found
+    for endpoint in endpoints:
         kind, role, name, type_, _, node, _, _ = endpoint
         end = (node, kind, role, name)
         by_node[node].append(endpoint)
@@ -99,38 +135,7 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
         if end not in planned and end not in types and "/_" not in name:
             more[node].append(endpoint)
         types[end] = type_
-    robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
-    seen = Counter(node.name for node in graph.nodes)
-    owners = owners_of(plan)
-    unplanned = tuple(_unplanned(plan, seen, robot_of))
-    missing = {node: robot for node, robot in robot_of.items() if node not in seen}
-    return View(
-        plan,
-        graph,
-        by_node,
-        by_name,
-        robot_of,
-        owners,
-        frame_owners(plan),
-        types,
-        planned,
-        more,
-        {name for _, kind, role, name in types if kind == TOPIC and role == PUBLISHES},
-        seen,
-        unplanned,
-        stand_ins(missing, unplanned, owners),
-        dict(plan.sources),
-        tf_trees(graph.frames, plan.robots, owners),
-        {robot.name: robot for robot in plan.robots},
-        {robot.name: frozenset((*robot.frames, *robot.other_frames)) for robot in plan.robots},
-    )
-
-
-def _unplanned(
-    plan: Expectation, seen: Iterable[str], robot_of: Mapping[str, str]
-) -> Iterable[str]:
-    left = [node for node in seen if node not in robot_of and node not in plan.shared_nodes]
-    return (node for node in left if not ignored(node, plan.ignored_nodes))
+    return found
 
 
 def ignored(node: str, more: tuple[str, ...] = ()) -> bool:
@@ -143,7 +148,6 @@ def ignored(node: str, more: tuple[str, ...] = ()) -> bool:
 def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
     every = (*IGNORED, *more)
     sides = ([p for p in every if "/" in p], [p for p in every if "/" not in p])
-    # An empty alternative would be any pattern's match of nothing, which no node is.
     full, last = (re.compile("|".join(map(translate, side))) for side in sides)
     return full, last
 

@@ -11,6 +11,8 @@ from multibot_rewrite.rewriting.collect import Inventory
 
 # What every node has, and what nobody misses.
 ALWAYS = ("/rosout", "/parameter_events")
+# Every node with use_sim_time hears the clock, whatever is called shared.
+EVERYWHERE = (*ALWAYS, "/clock")
 # Frames that nearly every robot has, whether or not anything here names them (REP 105).
 USUAL_FRAMES = ("map", "odom", "base_footprint", "base_link")
 NOTHING: Mapping[str, Sequence[str]] = {}

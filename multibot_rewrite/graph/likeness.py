@@ -31,8 +31,8 @@ def similar(name: str, known: Collection[str]) -> str:
 
 
 class _Loose(NamedTuple):
-    """Nodes that nobody planned: all, by robot, and the namespaces of those without one, by what is
-    left of them without case and underscores."""
+    """Nodes that nobody planned: all, and those that are no tools by robot; and the namespaces of
+    those without one, by what is left of them without case and underscores."""
 
     all: frozenset[str]
     of: Mapping[str, Sequence[str]]
@@ -40,16 +40,19 @@ class _Loose(NamedTuple):
 
 
 def stand_ins(
-    missing: Mapping[str, str], unplanned: Sequence[str], owners: Owners
+    missing: Mapping[str, str], strangers: Iterable[str], unplanned: Iterable[str], owners: Owners
 ) -> dict[str, str]:
-    """The unplanned node that each missing one (node -> robot) probably is, where there is one."""
-    if not missing or not unplanned:
+    """The stranger that each missing node (node -> robot) probably is, where there is one.
+
+    ``unplanned`` are the strangers that are no tools: only those may have another name.
+    """
+    if not missing:
         return {}
     of: dict[str, list[str]] = defaultdict(list)
     for node in unplanned:
         of[owners.of(node)].append(node)
     heads = {_plain(node.split("/")[1]): node.split("/")[1] for node in of[""]}
-    loose = _Loose(frozenset(unplanned), of, heads)
+    loose = _Loose(frozenset(strangers), of, heads)
     found = {node: _stand_in(node, robot, loose, owners) for node, robot in missing.items()}
     return {node: other for node, other in found.items() if other}
 

@@ -8,15 +8,13 @@ from collections.abc import Iterator, Mapping
 from multibot_rewrite.graph.causes import how_to_give, no_rule, plugin, unremapped
 from multibot_rewrite.graph.comparison import GraphFinding, View
 from multibot_rewrite.graph.environment import listed
-from multibot_rewrite.graph.expectation import ALWAYS, Wanted
+from multibot_rewrite.graph.expectation import EVERYWHERE, Wanted
 from multibot_rewrite.graph.likeness import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
-# Every node with use_sim_time hears the clock, whatever is called shared.
-EVERYWHERE = (*ALWAYS, "/clock")
 # What tf2 listens with beside a node; rules for the node alone do not reach it.
 LISTENER = "transform_listener_impl_"
 # Publishers by their name without a robot's.
@@ -128,7 +126,7 @@ def planned_leaks(view: View) -> Iterator[GraphFinding]:
         robots = dict.fromkeys(view.robot_of[node] for node in there)
         for node in there if len(robots) > 1 else ():
             message = f"{name} is planned for {listed(robots)}: they meet there"
-            cause = "no rule reaches it; set the node's parameter, or plan it with --shared-topics"
+            cause = "no rule reaches it: set the node's parameter, or put it in shared_topics"
             yield GraphFinding("MG103", ERROR, view.robot_of[node], node, message, cause, (name,))
 
 

@@ -6,28 +6,31 @@ from collections.abc import Iterator
 
 from multibot_rewrite.graph.causes import not_named, plugin, some
 from multibot_rewrite.graph.comparison import GraphFinding, View, ignored
-from multibot_rewrite.graph.expectation import ALWAYS, WantedRobot
+from multibot_rewrite.graph.expectation import EVERYWHERE, WantedRobot
 from multibot_rewrite.model import ERROR, WARNING
 
 
 def missing_nodes(view: View) -> Iterator[GraphFinding]:
     """A planned node that is not there."""
     for robot in view.plan.robots:
-        missing = [node for node in robot.nodes if node not in view.seen]
-        if missing and len(missing) == len(robot.nodes):
+        missing = [node for node in robot.nodes if _is_missed(view, robot, node)]
+        if missing and view.seen.keys().isdisjoint(robot.nodes):
             yield _silent(view, robot)
             continue
         for node in missing:
             stand_in = view.stand_ins.get(node, "")
-            if node in robot.optional and not stand_in:
-                continue
             cause = not_named(view, node, stand_in) if stand_in else _not_started(view, node)
             message = f"expected node {node}, it is not there"
             yield GraphFinding("MG101", ERROR, robot.name, node, message, cause)
     for node in dict.fromkeys(view.plan.shared_nodes):
-        if node not in view.seen and not ignored(node, view.plan.ignored_nodes):
+        if node not in view.seen:
             message = f"expected node {node} for all robots, it is not there"
             yield GraphFinding("MG101", WARNING, "", node, message, "is it started?")
+
+
+def _is_missed(view: View, robot: WantedRobot, node: str) -> bool:
+    """One that is started under a condition only is missed where it is there under another name."""
+    return node not in view.seen and (node not in robot.optional or node in view.stand_ins)
 
 
 def _not_started(view: View, node: str) -> str:
@@ -39,19 +42,20 @@ def _not_started(view: View, node: str) -> str:
 
 def _silent(view: View, robot: WantedRobot) -> GraphFinding:
     message = f"none of the {len(robot.nodes)} nodes of {robot.name} is there"
-    there = [view.stand_ins[node] for node in robot.nodes if node in view.stand_ins]
+    there = {node: view.stand_ins[node] for node in robot.nodes if node in view.stand_ins}
     cause = "is the robot started? in this ROS_DOMAIN_ID?"
     if there:
-        cause = f"{some(there)} there: was it started without its namespace or name?"
+        cause = not_named(view, *next(iter(there.items())))
+        cause += f"; {len(there) - 1} more of its nodes likewise" if len(there) > 1 else ""
     return GraphFinding("MG109", ERROR, robot.name, "", message, cause)
 
 
 def same_names(view: View) -> Iterator[GraphFinding]:
     """Two nodes of one name: half of the tools see one of them only."""
     for node, times in view.seen.items():
-        if times == 1 or ignored(node, view.plan.ignored_nodes):
-            continue
         robot = view.robot_of.get(node, "")
+        if times == 1 or (not robot and ignored(node, view.plan.ignored_nodes)):
+            continue
         meant = [missing for missing, there in view.stand_ins.items() if there == node]
         cause = "started twice, or two robots without a namespace; a dead one stays for 20 s"
         if len(meant) > 1:
@@ -81,7 +85,7 @@ def unexpected_nodes(view: View) -> Iterator[GraphFinding]:
 
 def _strays(view: View, node: str, robot: str) -> str:
     """What it has under no robot's name or another's: with that it may disturb the others."""
-    shared = {*view.plan.shared_topics, *ALWAYS}
+    shared = {*view.plan.shared_topics, *EVERYWHERE}
     names = dict.fromkeys(e.name for e in view.by_node.get(node, ()) if "/_" not in e.name)
     astray = [name for name in names if name not in shared and view.owners.of(name) != robot]
     return f"; it has {some(astray)}, not {robot}'s own" if astray else ""
