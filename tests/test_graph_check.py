@@ -657,6 +657,30 @@ def test_a_topic_that_is_planned_above_is_enough() -> None:
     assert "falls below the node's own namespace" in found[0].cause
 
 
+def test_a_costmap_whose_plan_is_wrong_is_told_too() -> None:
+    wanted, graph = with_costmap("/robot1/local_costmap/scan")
+    end = Wanted(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
+    (found,) = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
+    assert found.code == "MG110"
+
+
+def test_a_costmap_that_is_not_planned() -> None:
+    _, graph = with_costmap("/robot1/local_costmap/scan")
+    assert [f.code for f in check(plan(), graph)] == ["MG108", "MG110"]
+
+
+def test_a_planned_name_below_a_namespace_of_another_node_is_meant_so() -> None:
+    first, second = plan().robots
+    arm = "/robot1/arm/controller"
+    end = Wanted(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
+    wanted = plan()._replace(
+        robots=(first._replace(nodes=(*first.nodes, arm)), second),
+        endpoints=(*plan().endpoints, end),
+    )
+    graph = with_node(healthy(), arm, (SUBSCRIBES, "/robot1/arm/joint_states", ""))
+    assert check(wanted, graph) == []
+
+
 @pytest.mark.parametrize(
     ("names", "published"),
     [

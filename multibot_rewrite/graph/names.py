@@ -17,6 +17,8 @@ from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SERVICE, SU
 SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
 # What tf2 listens with beside a node; rules for the node alone do not reach it.
 LISTENER = "transform_listener_impl_"
+# What Nav2's costmaps are called.
+COSTMAP = "costmap"
 # Publishers by their name without a robot's.
 Strays = dict[str, list[GraphEndpoint]]
 
@@ -161,18 +163,40 @@ def cross_talk(view: View) -> Iterator[GraphFinding]:
 def captured_topics(view: View) -> Iterator[GraphFinding]:
     """A relative topic below a node's own namespace, as a costmap's sensors: nobody is there."""
     known = {*view.spoken, *(name for _, _, _, name in view.planned)}
+    for node, robot in _below_a_namespace(view):
+        # A costmap's sensors are its robot's; what else is planned so is meant so.
+        costmap = COSTMAP in node.rpartition("/")[2]
+        for end in _lonely(view, view.by_node if costmap else view.more, node):
+            above = [n for n in _above(node, end.name) if view.owners.of(n) == robot]
+            planned = (node, end.kind, end.role, end.name) in view.planned
+            meant = next((n for n in above if n in (view.spoken if planned else known)), "")
+            if meant:
+                message = f"it subscribes {end.name}, where nobody publishes; {meant} is meant"
+                about = (end.name, meant)
+                yield GraphFinding("MG110", ERROR, robot, node, message, _absolute(meant), about)
+
+
+def _below_a_namespace(view: View) -> Iterator[tuple[str, str]]:
+    """The nodes with a namespace below their robot's: planned ones, and costmaps."""
     for node, robot in view.robot_of.items():
-        below = view.owners.bare(node, robot).count("/") > 1
-        for end in view.more.get(node, ()) if below else ():
-            if (end.kind, end.role) != (TOPIC, SUBSCRIBES) or end.name in view.spoken:
-                continue
-            above = (n for n in _above(node, end.name) if view.owners.of(n) == robot)
-            meant = next((name for name in above if name in known), "")
-            if not meant:
-                continue
-            message = f"it subscribes {end.name}, where nobody publishes; {meant} is meant"
-            about = (end.name, meant)
-            yield GraphFinding("MG110", ERROR, robot, node, message, _absolute(meant), about)
+        if view.owners.bare(node, robot).count("/") > 1:
+            yield node, robot
+    for node in view.unplanned:
+        robot = view.owners.of(node) if COSTMAP in node.rpartition("/")[2] else ""
+        if robot:
+            yield node, robot
+
+
+def _lonely(
+    view: View, ends: Mapping[str, list[GraphEndpoint]], node: str
+) -> Iterator[GraphEndpoint]:
+    """A node's subscriptions that nobody publishes, each name once."""
+    names = {
+        end.name: end
+        for end in ends.get(node, ())
+        if (end.kind, end.role) == (TOPIC, SUBSCRIBES) and end.name not in view.spoken
+    }
+    return iter(names.values())
 
 
 def _absolute(meant: str) -> str:
