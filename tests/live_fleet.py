@@ -1,7 +1,7 @@
 """Live nodes for tests: a process of rclpy nodes that ends cleanly when its standard input closes.
 
 Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "namespace", and lists
-"publishers", "subscriptions", "services", "clients", "actions" of [name, type word, QoS words],
+"publishers", "subscriptions", "services", "clients", "actions" of [name, type, QoS words],
 "frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
 brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a process of its own.
 "arguments": what a command line tells the node.
@@ -163,7 +163,8 @@ def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) ->
 def _type(word: str) -> Any:
     from importlib import import_module
 
-    return getattr(import_module(_MODULES.get(word, "std_msgs.msg")), word)
+    module, _, name = word.replace("/", ".").rpartition(".")
+    return getattr(import_module(module or _MODULES.get(word, "std_msgs.msg")), name)
 
 
 def _qos(words: list[str]) -> Any:

@@ -15,18 +15,18 @@ from pathlib import Path
 
 import live_fleet
 import pytest
-from test_live_check import COMMAND, drive, plan
+from planned import COMMAND, domain, node, write_plan
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )
-__all__ = ["plan"]
+CHECK = [*COMMAND, "check"]
 STRANGER = [{"name": "stranger", "namespace": "robot1", "publishers": [["/robot2/odom", "Empty"]]}]
 
 
-def domain(offset: int) -> int:
-    """A domain of this test's own."""
-    return 1 + (os.getpid() * 7 + 70 + offset) % 100
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    return write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
 
 
 class Watch:
@@ -64,7 +64,7 @@ class Watch:
 @contextmanager
 def watching(plan: Path, own: int) -> Iterator[Watch]:
     process = subprocess.Popen(
-        [*COMMAND, str(plan), "--watch"],
+        [*CHECK, str(plan), "--watch"],
         env=live_fleet.environ(own),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -78,10 +78,10 @@ def watching(plan: Path, own: int) -> Iterator[Watch]:
 
 
 def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
-    own = domain(0)
+    own = domain(70)
     with watching(plan, own) as watch:
         assert "0/2 nodes, 0/6 names" in watch.until("nodes")
-        with live_fleet.running(own, drive("robot1"), drive("robot2")):
+        with live_fleet.running(own, [node("robot1")], [node("robot2")]):
             watch.until("2/2 nodes, 6/6 names, 0 findings: still changing")
             watch.until("2/2 nodes, 6/6 names, 0 findings: as planned")
             code, said = watch.end()
@@ -90,10 +90,10 @@ def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
 
 
 def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
-    own = domain(1)
+    own = domain(71)
     with (
         watching(plan, own) as watch,
-        live_fleet.running(own, drive("robot1"), drive("robot2")),
+        live_fleet.running(own, [node("robot1")], [node("robot2")]),
     ):
         watch.until("2/2 nodes, 6/6 names")
         with live_fleet.running(own, STRANGER):
@@ -106,9 +106,9 @@ def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
 
 
 def test_what_goes_away_is_missing_once_the_graph_is_quiet(plan: Path) -> None:
-    own = domain(2)
-    with watching(plan, own) as watch, live_fleet.running(own, drive("robot1")):
-        with live_fleet.running(own, drive("robot2")):
+    own = domain(72)
+    with watching(plan, own) as watch, live_fleet.running(own, [node("robot1")]):
+        with live_fleet.running(own, [node("robot2")]):
             watch.until("2/2 nodes, 6/6 names")
         watch.until("  + robot2: inconclusive: MG109")
         watch.until("  + robot2: error: MG109")
@@ -117,11 +117,11 @@ def test_what_goes_away_is_missing_once_the_graph_is_quiet(plan: Path) -> None:
 
 
 def test_a_terminal_has_a_screen(plan: Path) -> None:
-    own = domain(3)
+    own = domain(73)
     leader, follower = pty.openpty()
-    command = [*COMMAND, str(plan), "--watch", "--timeout", "12"]
+    command = [*CHECK, str(plan), "--watch", "--timeout", "12"]
     env = {**live_fleet.environ(own), "TERM": "xterm", "COLUMNS": "120"}
-    with live_fleet.running(own, drive("robot1"), drive("robot2")):
+    with live_fleet.running(own, [node("robot1")], [node("robot2")]):
         process = subprocess.Popen(command, env=env, stdout=follower, stderr=subprocess.PIPE)
         os.close(follower)
         shown = b"".join(_read(leader))
@@ -148,7 +148,7 @@ def _read(leader: int) -> Iterator[bytes]:
 
 
 def test_a_snapshot_is_not_watched(plan: Path) -> None:
-    command = [*COMMAND, str(plan), "--watch", "--snapshot", "graph.json"]
+    command = [*CHECK, str(plan), "--watch", "--snapshot", "graph.json"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=20)
     assert done.returncode == 2
     assert "not allowed with" in done.stderr
