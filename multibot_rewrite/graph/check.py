@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.graph import ends, frames, names, nodes
 from multibot_rewrite.graph.comparison import INCONCLUSIVE, GraphFinding, View, make_view
 from multibot_rewrite.graph.expectation import Expectation
@@ -40,8 +41,9 @@ ABSENCE = ("MG101", "MG102", "MG109", "MG110", "MG111", "MG203", "MG207")
 
 def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:
     """Everything that is wrong, in the order of the rules; empty for a healthy fleet."""
-    view = make_view(plan, graph)
-    found = [finding for rule in RULES for finding in rule(view)]
+    with uncollected():
+        view = make_view(plan, graph)
+        found = [finding for rule in RULES for finding in rule(view)]
     if not doubts(graph):
         return found
     return [_softened(finding) if finding.code in ABSENCE else finding for finding in found]
