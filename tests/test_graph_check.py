@@ -25,9 +25,9 @@ from graph_cases import (
 )
 
 from multibot_rewrite.graph.check import ABSENCE, check
-from multibot_rewrite.graph.comparison import INCONCLUSIVE, owner
 from multibot_rewrite.graph.expectation import Expectation, Wanted, expect, spelled
-from multibot_rewrite.graph.owners import name_owners
+from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
+from multibot_rewrite.graph.rules.owners import name_owners
 from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphEndpoint, GraphNode, Qos, Snapshot
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
@@ -263,7 +263,7 @@ def test_a_leak_stays_a_leak_in_an_incomplete_view() -> None:
 @pytest.mark.parametrize("code", ABSENCE)
 def test_absence_codes_are_codes_of_rules(code: str) -> None:
     rules = ("nodes", "names", "ends", "frames")
-    folder = ROOT / "multibot_rewrite" / "graph"
+    folder = ROOT / "multibot_rewrite" / "graph" / "rules"
     assert any(f'"{code}"' in (folder / f"{rule}.py").read_text() for rule in rules)
 
 
@@ -282,7 +282,7 @@ def test_absence_codes_are_codes_of_rules(code: str) -> None:
     ],
 )
 def test_the_owner_of_a_name(name: str, robot: str) -> None:
-    assert owner(name, plan()) == robot
+    assert name_owners(plan()).of(name) == robot
 
 
 # ---------------------------------------------------------------- causes
@@ -843,7 +843,7 @@ def robots_called(*names: str, layout: str = "L2") -> Expectation:
     ],
 )
 def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot: str) -> None:
-    assert owner(name, robots_called(*robots, layout=layout)) == robot
+    assert name_owners(robots_called(*robots, layout=layout)).of(name) == robot
 
 
 @pytest.mark.parametrize(

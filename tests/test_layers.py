@@ -29,7 +29,8 @@ FLOORS = (
     ("sources",),
     ("library",),
     ("remap",),
-    ("graph", "lint", "fleet"),
+    ("graph", "lint"),
+    ("fleet",),
     ("__init__", "launch"),
     ("cli",),
 )

@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from robots import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.choosing import choose, strays
-from multibot_rewrite.graph.learn import Learned, learn
-from multibot_rewrite.graph.nodes_file import to_yaml
+from multibot_rewrite.graph.learning.choosing import choose, strays
+from multibot_rewrite.graph.learning.learn import Learned, learn
+from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.snapshot import (
     QUIET,
     Caveat,

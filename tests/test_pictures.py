@@ -23,7 +23,6 @@ from hypothesis import strategies as st
 from lxml import html
 
 from multibot_rewrite.cli import multibot
-from multibot_rewrite.graph.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
@@ -42,6 +41,7 @@ from multibot_rewrite.graph.pictures.page import to_html
 from multibot_rewrite.graph.pictures.scene import Group, Scene, make_scene
 from multibot_rewrite.graph.pictures.text import clipped, columns, visible
 from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphNode, Snapshot, to_json
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.remap.records import PUBLISHES

@@ -20,7 +20,7 @@ from multibot_rewrite.graph.environment import (
     settings,
     view_caveats,
 )
-from multibot_rewrite.graph.gather import (
+from multibot_rewrite.graph.live.gather import (
     Changes,
     Heard,
     frames,
@@ -31,7 +31,7 @@ from multibot_rewrite.graph.gather import (
     settled,
     topics_to_ask,
 )
-from multibot_rewrite.graph.request import Request, from_text, to_text
+from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     QUIET,
@@ -294,7 +294,7 @@ def test_expected_nodes_that_are_absent_are_named() -> None:
 
 def test_every_caveat_is_documented() -> None:
     root = Path(__file__).parent.parent
-    source = "".join(file.read_text() for file in (root / "multibot_rewrite/graph").glob("*.py"))
+    source = "".join(file.read_text() for file in (root / "multibot_rewrite/graph").rglob("*.py"))
     page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
     assert set(re.findall(r'Caveat\(\s*"([\w-]+)"', source)) == set(
         re.findall(r"`([a-z]+-[\w-]+)`", page)

@@ -11,11 +11,11 @@ from multibot_rewrite.cli.output import print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.watch import WORDS, follow
 from multibot_rewrite.graph.check import check, doubts
-from multibot_rewrite.graph.child import RosUnusable, observe, watch
-from multibot_rewrite.graph.comparison import GraphFinding
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
+from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.request import Request
+from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.graph.watching import Verdict, final, judge
 from multibot_rewrite.sources import read_file

@@ -3,39 +3,17 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Sequence
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
-from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
-from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.fleet import Fleet, make_fleet
 from multibot_rewrite.model import ERROR
-from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS, Naming, make_naming
-from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
-from multibot_rewrite.remap.records import NodeFacts, Problem, Table
-from multibot_rewrite.remap.stacks import built_in, user_stack
-from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.rewriting.collect import Inventory, collect
-from multibot_rewrite.rewriting.document import read_document
-
-
-class Fleet(NamedTuple):
-    """A fleet's table, what each robot's rewritten description holds, and the transforms that each
-    robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
-    (``file:line``) a plugin's node comes from."""
-
-    table: Table
-    inventories: dict[str, Inventory]
-    naming: Naming
-    edges: Edges
-    facts: tuple[NodeFacts, ...]
-    sources: dict[str, str]
+from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS
+from multibot_rewrite.remap.records import Problem
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +21,9 @@ def options(parser: argparse.ArgumentParser) -> None:
     names = ", ".join(f"{layout.name} ({layout.short})" for layout in LAYOUTS)
     shared = ",".join(SHARED_TOPICS)
     parser.add_argument("input", metavar="INPUT", help="the robot's description, not rewritten")
-    parser.add_argument("robots", nargs="+", metavar="ROBOT", help="names of the robots")
+    parser.add_argument(
+        "robots", nargs="+", metavar="ROBOT", help="names of the robots; NAME:=VALUE is for xacro"
+    )
     parser.add_argument(
         "--stack", action="append", default=[], metavar="NAME", help="nodes that every robot runs"
     )
@@ -57,57 +37,28 @@ def options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def build(options: argparse.Namespace, also: str = "") -> Fleet:
-    """Rewrite the description for each robot, make the fleet's table and say what is wrong with it.
+def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
+    """Make the fleet that the options describe and say what is wrong with its table.
 
-    ``also`` is a node that every robot runs, too.
+    ``also`` are nodes that every robot runs, too.
     """
     if options.output:
         check_target(options.output, [options.input], "--output")
-    policy: dict[str, Any] = {
-        "layout": options.layout,
-        "affix": options.affix,
-        "topics": options.topics,
-        "shared_topics": options.shared_topics.split(","),
-    }
-    library = user_stack(options.nodes) if options.nodes else built_in()
-    stacks = [*options.stack, *filter(None, [also])]
-    nodes = tuple(dict.fromkeys(node for stack in stacks for node in stack_of(library, stack)))
-    naming = make_naming(**policy)
-    vocabulary = configured_vocabulary(options.input)
-    tree = builtin_tree(vocabulary)
-    rewritten = list(rewrite_all(options.input, options.robots, vocabulary=vocabulary, **policy))
-    inventories = {
-        one.robot: collect(read_document(one.data, options.input), tree) for one in rewritten
-    }
-    plugins = {robot: list(plugin_nodes(found, robot)) for robot, found in inventories.items()}
-    table = build_table(options.robots, nodes, naming, plugins)
-    _tell(table.problems)
-    edges: dict[tuple[str, str], list[Edge]] = {}
-    for robot, found in inventories.items():
-        own = [facts for facts, _ in plugins[robot]]
-        edges |= edges_of(robot, found, nodes, own, naming)
-    places = plugin_places(rewritten[0].template.inventory)
-    sources = {
-        f"{node.namespace.rstrip('/')}/{node.name}": place
-        for found in plugins.values()
-        for (_, node), place in zip(found, places, strict=True)
-    }
-    return Fleet(table, inventories, naming, edges, nodes, sources)
-
-
-def expected(made: Fleet) -> Expectation:
-    """What the graph of the fleet is to look like."""
-    frames = {
-        robot: frames_of(found, _sent(made, robot), made.naming)
-        for robot, found in made.inventories.items()
-    }
-    named = {robot: named_frames(found) for robot, found in made.inventories.items()}
-    return expect(made.table, made.naming, frames, made.facts, named, made.sources)
-
-
-def _sent(made: Fleet, robot: str) -> list[Edge]:
-    return [edge for (owner, _), edges in made.edges.items() if owner == robot for edge in edges]
+    arguments = [word for word in options.robots if ":=" in word]
+    made = make_fleet(
+        options.input,
+        [word for word in options.robots if ":=" not in word],
+        [*options.stack, *also],
+        nodes=options.nodes,
+        vocabulary=configured_vocabulary(options.input),
+        xacro_args=dict(word.split(":=", 1) for word in arguments),
+        layout=options.layout,
+        affix=options.affix,
+        topics=options.topics,
+        shared_topics=options.shared_topics.split(","),
+    )
+    _tell(made.table.problems)
+    return made
 
 
 def deliver(options: argparse.Namespace, text: str) -> None:

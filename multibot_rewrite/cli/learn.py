@@ -20,11 +20,11 @@ from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.graph.check import doubts
-from multibot_rewrite.graph.child import RosUnusable, observe
-from multibot_rewrite.graph.choosing import choose, strays
-from multibot_rewrite.graph.learn import Learned, learn
-from multibot_rewrite.graph.nodes_file import to_yaml
-from multibot_rewrite.graph.request import Request
+from multibot_rewrite.graph.learning.choosing import choose, strays
+from multibot_rewrite.graph.learning.learn import Learned, learn
+from multibot_rewrite.graph.learning.nodes_file import to_yaml
+from multibot_rewrite.graph.live.child import RosUnusable, observe
+from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.stacks import built_in

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.cli import fleet
+from multibot_rewrite.fleet import expected
 from multibot_rewrite.graph.plan_file import to_yaml
 
 ABOUT = "what the graph of a fleet is to look like"
@@ -24,5 +25,5 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Make the plan and write it."""
     made = fleet.build(options)
-    fleet.deliver(options, to_yaml(fleet.expected(made)))
+    fleet.deliver(options, to_yaml(expected(made)))
     return fleet.verdict(made)

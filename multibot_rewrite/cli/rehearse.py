@@ -13,7 +13,9 @@ from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.graph.child import PLAY, RosUnusable, observe, running
+from multibot_rewrite.fleet import expected
+from multibot_rewrite.graph.live.child import PLAY, RosUnusable, observe, running
+from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.rehearsal import (
     Actor,
     as_played,
@@ -21,7 +23,6 @@ from multibot_rewrite.graph.rehearsal import (
     dealt,
     to_order,
 )
-from multibot_rewrite.graph.request import Request, to_text
 from multibot_rewrite.graph.snapshot import to_json
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 
@@ -55,7 +56,7 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Play, look, compare, sum up; returns the exit code."""
     pictures.check(options)
-    made = fleet.build(options, also=STATE_PUBLISHER)
+    made = fleet.build(options, also=[STATE_PUBLISHER])
     actors = list(cast(made.table, made.edges, not options.without_rules))
     environ = stage(options.domain)
     try:
@@ -69,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         write_all([(options.output, to_json(graph))])
     _tell(replaced)
-    code = conclude(options, as_played(fleet.expected(made), replaced), graph)
+    code = conclude(options, as_played(expected(made), replaced), graph)
     return code if code != DONE else fleet.verdict(made)
 
 

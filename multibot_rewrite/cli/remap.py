@@ -9,6 +9,7 @@ from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.tables import Grid, print_report
+from multibot_rewrite.fleet import Fleet
 from multibot_rewrite.remap.bridge import as_yaml, bridge
 from multibot_rewrite.remap.forms import EVERY_ROBOT, FORMS
 from multibot_rewrite.remap.records import Table
@@ -46,7 +47,7 @@ def run(options: argparse.Namespace) -> int:
     return fleet.verdict(made)
 
 
-def _bridge(made: fleet.Fleet) -> str:
+def _bridge(made: Fleet) -> str:
     carried, left = bridge(made.inventories, made.naming)
     for item in left:
         message = f"line {item.line}: {item.what} has no topic, its default hangs on the world"

@@ -11,8 +11,8 @@ from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, print_report
-from multibot_rewrite.graph.child import RosUnusable, observe
-from multibot_rewrite.graph.request import Request
+from multibot_rewrite.graph.live.child import RosUnusable, observe
+from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.snapshot import QUIET, Snapshot, incomplete, to_json
 from multibot_rewrite.remap.records import (
     ACTION,

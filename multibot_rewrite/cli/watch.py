@@ -8,8 +8,8 @@ from contextlib import ExitStack, closing, contextmanager
 
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, renderable
-from multibot_rewrite.graph.comparison import GraphFinding
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.graph.watching import Moment, Verdict, next_moment
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from multibot_rewrite.bulk import uncollected
-from multibot_rewrite.graph import ends, frames, names, nodes
-from multibot_rewrite.graph.comparison import INCONCLUSIVE, GraphFinding, View, make_view
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.rules import ends, frames, names, nodes
+from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding, View, make_view
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
 Rule = Callable[[View], Iterator[GraphFinding]]

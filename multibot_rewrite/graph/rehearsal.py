@@ -1,6 +1,6 @@
 """A remap table -> nodes to play: each asks for its names as its code does, rcl gets its rules.
 
-Pure; ``graph.play`` plays them. What is not known is not played: parameters are taken to be set as
+Pure; ``graph.live.play`` plays them. What is not known is not played: parameters are taken to be set as
 the layout says, QoS is the usual, and what hangs on a condition is left out.
 """
 

@@ -7,8 +7,8 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from multibot_rewrite.graph.check import ABSENCE, check, doubts
-from multibot_rewrite.graph.comparison import GraphFinding
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.model import ERROR
 

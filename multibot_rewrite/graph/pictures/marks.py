@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.comparison import GraphFinding, View
-from multibot_rewrite.graph.trees import tree_of
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.rules.trees import tree_of
 from multibot_rewrite.model import ERROR, WARNING
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"

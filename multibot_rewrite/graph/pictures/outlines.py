@@ -6,11 +6,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.comparison import View
 from multibot_rewrite.graph.expectation import WantedRobot
 from multibot_rewrite.graph.pictures.marks import CLASH, MISSING, OK, Marks
+from multibot_rewrite.graph.rules.comparison import View
+from multibot_rewrite.graph.rules.trees import tree_of
 from multibot_rewrite.graph.snapshot import Frame
-from multibot_rewrite.graph.trees import tree_of
 
 # What is written beside a frame.
 WORDS = {

@@ -10,7 +10,6 @@ from functools import cache
 from importlib.resources import files
 from itertools import groupby
 
-from multibot_rewrite.graph.comparison import GraphFinding
 from multibot_rewrite.graph.environment import listed
 from multibot_rewrite.graph.pictures.lighter import rest
 from multibot_rewrite.graph.pictures.marks import MISSING, STATES
@@ -30,6 +29,7 @@ from multibot_rewrite.graph.pictures.parts import (
 from multibot_rewrite.graph.pictures.scene import Scene
 from multibot_rewrite.graph.pictures.svg import MEANING, Ids, graph, outline, safe
 from multibot_rewrite.graph.pictures.text import counted
+from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import QUIET
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.model import ERROR

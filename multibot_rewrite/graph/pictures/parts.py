@@ -6,12 +6,12 @@ from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
 from typing import NamedTuple, TypeVar
 
-from multibot_rewrite.graph.comparison import INCONCLUSIVE, GraphFinding
 from multibot_rewrite.graph.pictures.lighter import plain, troubled
 from multibot_rewrite.graph.pictures.marks import Targets
 from multibot_rewrite.graph.pictures.scene import Group, Scene
 from multibot_rewrite.graph.pictures.svg import Ids
 from multibot_rewrite.graph.pictures.text import counted
+from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding
 from multibot_rewrite.model import ERROR, WARNING
 
 LEVELS = (ERROR, WARNING, INCONCLUSIVE)

@@ -6,7 +6,6 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.comparison import GraphFinding, View, make_view
 from multibot_rewrite.graph.expectation import Expectation, Wanted
 from multibot_rewrite.graph.pictures.marks import (
     LEAK,
@@ -21,6 +20,7 @@ from multibot_rewrite.graph.pictures.marks import (
     make_marks,
 )
 from multibot_rewrite.graph.pictures.outlines import Outline, make_outlines
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View, make_view
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.watching import Verdict, judge
 

@@ -6,8 +6,8 @@ import time
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
-from multibot_rewrite.graph import gather
 from multibot_rewrite.graph.environment import listed
+from multibot_rewrite.graph.live import gather
 from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.remap.records import PUBLISHES
 

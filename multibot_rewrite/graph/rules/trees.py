@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import WantedRobot
-from multibot_rewrite.graph.owners import Owners
+from multibot_rewrite.graph.rules.owners import Owners
 from multibot_rewrite.graph.snapshot import Frame
 
 

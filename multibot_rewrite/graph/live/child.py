@@ -10,7 +10,7 @@ from collections.abc import Generator, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple
 
-from multibot_rewrite.graph.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
+from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.model import MultibotError
 
@@ -18,7 +18,7 @@ INSTALL = (
     "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, with Python 3.10 to 3.12,"
     " pip install 'multibot_rewrite[ros]'"
 )
-LOOK, PLAY = "multibot_rewrite.graph.look", "multibot_rewrite.graph.play"
+LOOK, PLAY = "multibot_rewrite.graph.live.look", "multibot_rewrite.graph.live.play"
 # For import and start, for the dear questions in a fleet of 500 nodes, and for tf.
 SLACK_SECONDS = 45.0
 _PATIENCE = 3.0

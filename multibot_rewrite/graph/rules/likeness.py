@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.owners import Owners
+from multibot_rewrite.graph.rules.owners import Owners
 
 # Among more names than these something always comes near.
 GUESSES = 50

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from multibot_rewrite.graph.comparison import View
 from multibot_rewrite.graph.expectation import Wanted
+from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.remap.records import ACTION
 from multibot_rewrite.rosnames import check_topic_name, expand
 

@@ -15,8 +15,8 @@ import threading
 from collections.abc import Callable
 from contextlib import suppress
 
-from multibot_rewrite.graph import ros
-from multibot_rewrite.graph.request import NO_RCLPY, framed
+from multibot_rewrite.graph.live import ros
+from multibot_rewrite.graph.live.request import NO_RCLPY, framed
 
 Tell = Callable[[bytes], None]
 Work = Callable[[str, threading.Event, Tell], int]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping
 
-from multibot_rewrite.graph.causes import how_to_give, no_rule, plugin, unremapped
-from multibot_rewrite.graph.comparison import GraphFinding, View
 from multibot_rewrite.graph.environment import listed
 from multibot_rewrite.graph.expectation import EVERYWHERE, Wanted
-from multibot_rewrite.graph.likeness import similar
+from multibot_rewrite.graph.rules.causes import how_to_give, no_rule, plugin, unremapped
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.rules.likeness import similar
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC

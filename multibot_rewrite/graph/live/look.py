@@ -1,4 +1,4 @@
-"""Looking at the live graph: ``python -m multibot_rewrite.graph.look``, a child of the command.
+"""Looking at the live graph: ``python -m multibot_rewrite.graph.live.look``, a child of the command.
 
 It tells one snapshot when the graph is settled or, watching, one whenever something changed.
 """
@@ -14,10 +14,11 @@ from contextlib import contextmanager
 from functools import partial
 from typing import Any, NamedTuple
 
-from multibot_rewrite.graph import ask, gather, ros
 from multibot_rewrite.graph import environment as surroundings
-from multibot_rewrite.graph.ears import Ears, Take
-from multibot_rewrite.graph.request import ENDED, Request, from_text
+from multibot_rewrite.graph.live import ask, gather, ros
+from multibot_rewrite.graph.live.ears import Ears, Take
+from multibot_rewrite.graph.live.request import ENDED, Request, from_text
+from multibot_rewrite.graph.live.worker import Tell, work
 from multibot_rewrite.graph.snapshot import (
     CHANGING,
     QUIET,
@@ -27,7 +28,6 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     to_json,
 )
-from multibot_rewrite.graph.worker import Tell, work
 from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 
 # How long to wait between two looks, and at least so many times as long as one took: a fleet of 100

@@ -1,6 +1,6 @@
 """rclpy: the only module that imports it, and what the others need of it.
 
-Runs in a process of its own (``graph.look``, ``graph.play``), since rcl may end its process.
+Runs in a process of its own (``graph.live.look``, ``graph.live.play``), since rcl may end its process.
 """
 
 from __future__ import annotations

@@ -7,9 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import inf
 
-from multibot_rewrite.graph.causes import some
-from multibot_rewrite.graph.comparison import GraphFinding, View
 from multibot_rewrite.graph.expectation import Wanted
+from multibot_rewrite.graph.rules.causes import some
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC

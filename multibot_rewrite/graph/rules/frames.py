@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
-from multibot_rewrite.graph.causes import plugin, some
-from multibot_rewrite.graph.comparison import GraphFinding, View
 from multibot_rewrite.graph.expectation import WantedRobot
-from multibot_rewrite.graph.likeness import similar
-from multibot_rewrite.graph.owners import JOINTS, one_less
+from multibot_rewrite.graph.rules.causes import plugin, some
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.rules.likeness import similar
+from multibot_rewrite.graph.rules.owners import JOINTS, one_less
+from multibot_rewrite.graph.rules.trees import TfTree, names_on, tree_of
 from multibot_rewrite.graph.snapshot import Frame
-from multibot_rewrite.graph.trees import TfTree, names_on, tree_of
 from multibot_rewrite.model import ERROR, WARNING
 
 

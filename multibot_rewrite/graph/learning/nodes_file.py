@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-from multibot_rewrite.graph.learn import Learned
+from multibot_rewrite.graph.learning.learn import Learned
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.remap.known import Library, extended, stack_of
 from multibot_rewrite.remap.records import ROLES, Endpoint

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.causes import not_named, plugin, some
-from multibot_rewrite.graph.comparison import GraphFinding, View, ignored
 from multibot_rewrite.graph.expectation import EVERYWHERE, WantedRobot
+from multibot_rewrite.graph.rules.causes import not_named, plugin, some
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View, ignored
 from multibot_rewrite.model import ERROR, WARNING
 
 

@@ -10,10 +10,10 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
-from multibot_rewrite.graph.likeness import stand_ins
-from multibot_rewrite.graph.owners import Owners, frame_owners, name_owners
+from multibot_rewrite.graph.rules.likeness import stand_ins
+from multibot_rewrite.graph.rules.owners import Owners, frame_owners, name_owners
+from multibot_rewrite.graph.rules.trees import TfTree, tf_trees
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
-from multibot_rewrite.graph.trees import TfTree, tf_trees
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 INCONCLUSIVE = "inconclusive"
@@ -93,7 +93,7 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
     strangers = [node for node in seen if node not in foreseen]
     unplanned = tuple(node for node in strangers if not ignored(node, plan.ignored_nodes))
     missing = {node: robot for node, robot in robot_of.items() if node not in seen}
-    owners = owners_of(plan)
+    owners = name_owners(plan)
     return View(
         plan=plan,
         graph=graph,
@@ -150,31 +150,3 @@ def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
     sides = ([p for p in every if "/" in p], [p for p in every if "/" not in p])
     full, last = (re.compile("|".join(map(translate, side))) for side in sides)
     return full, last
-
-
-class _Same:
-    """A plan that equals nothing but itself: comparing all of it would cost more than it saves."""
-
-    def __init__(self, plan: Expectation) -> None:
-        self.plan = plan
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.plan is self.plan
-
-    def __hash__(self) -> int:
-        return id(self.plan)
-
-
-@lru_cache(maxsize=2)
-def _owners(same: _Same) -> Owners:
-    return name_owners(same.plan)
-
-
-def owners_of(plan: Expectation) -> Owners:
-    """Whose the names of a plan are; made once for a plan."""
-    return _owners(_Same(plan))
-
-
-def owner(name: str, plan: Expectation) -> str:
-    """The robot whose name stands in a graph name, or that it is planned for; empty for none."""
-    return owners_of(plan).of(name)

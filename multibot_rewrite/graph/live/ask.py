@@ -1,6 +1,6 @@
 """What a node of rclpy is asked about the graph, and its answers as records.
 
-The node is handed in: rclpy itself is imported in ``graph.ros`` alone.
+The node is handed in: rclpy itself is imported in ``graph.live.ros`` alone.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from contextlib import suppress
 from functools import lru_cache
 from typing import Any
 
-from multibot_rewrite.graph import gather
+from multibot_rewrite.graph.live import gather
 from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
 from multibot_rewrite.remap.records import (
     ACTION,

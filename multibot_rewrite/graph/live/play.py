@@ -1,4 +1,4 @@
-"""Playing the nodes of a rehearsal: ``python -m multibot_rewrite.graph.play``, a child.
+"""Playing the nodes of a rehearsal: ``python -m multibot_rewrite.graph.live.play``, a child.
 
 Its order is a list of actors. Once all are on the graph it tells which types stand in for which.
 """
@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import cache
 from typing import Any, NamedTuple
 
-from multibot_rewrite.graph import ros
+from multibot_rewrite.graph.live import ros
+from multibot_rewrite.graph.live.worker import Tell, work
 from multibot_rewrite.graph.rehearsal import (
     TF,
     Actor,
@@ -23,7 +24,6 @@ from multibot_rewrite.graph.rehearsal import (
     stand_in,
 )
 from multibot_rewrite.graph.transforms import Edge
-from multibot_rewrite.graph.worker import Tell, work
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # As robot_state_publisher and most sources of odometry have it.

@@ -11,8 +11,8 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.choosing import Helpers, base_of, check_seen_name, helpers_of
-from multibot_rewrite.graph.folding import (
+from multibot_rewrite.graph.learning.choosing import Helpers, base_of, check_seen_name, helpers_of
+from multibot_rewrite.graph.learning.folding import (
     CLOCK,
     Key,
     Seen,

@@ -1,0 +1,1 @@
+"""Speaking to the live graph: a child process with rclpy, and the command's side of it."""

@@ -1,0 +1,1 @@
+"""The rules of the check, and the look-ups they share; all pure."""
