@@ -95,9 +95,9 @@ def write(path: Path, text: str) -> None:
 def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
     result = multibot("--help")
     assert result.code == 0
-    assert [command.name for command in COMMANDS if command.name not in result.out] == []
-    for command in COMMANDS:
-        assert f"usage: multibot {command.name}" in multibot(command.name, "--help").out
+    assert [name for name in COMMANDS if name not in result.out] == []
+    for name in COMMANDS:
+        assert f"usage: multibot {name}" in multibot(name, "--help").out
 
 
 @pytest.mark.parametrize(

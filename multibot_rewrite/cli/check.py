@@ -20,7 +20,6 @@ from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.graph.watching import Verdict, final, judge
 from multibot_rewrite.sources import read_file
 
-ABOUT = "is the running system what was planned?"
 MORE = """\
 examples:
   multibot check plan.yaml                         the graph that runs now

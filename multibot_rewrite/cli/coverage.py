@@ -34,7 +34,6 @@ from multibot_rewrite.rewriting.survey import (
 )
 from multibot_rewrite.sources import read_file, read_source
 
-ABOUT = "how much of a set of descriptions is known, and what is not"
 SUFFIXES = (".urdf", ".sdf")
 MORE = """\
 Folders are searched for *.urdf and *.sdf; a xacro file is read where it is named itself.

@@ -30,7 +30,6 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.sources import read_file
 
-ABOUT = "nodes and stacks for remap and plan, from nodes that are running now"
 MORE = """\
 examples:
   multibot learn --node /my_driver /my_planner --stack mine -o mine.yaml

@@ -1,65 +1,66 @@
-"""``multibot``: the commands around the rewrite, one module each."""
+"""``multibot``: the commands around the rewrite, one module of ``cli`` each.
+
+A module has ``options(parser)``, which declares its options, and ``run(options)``, which gives the
+exit code. Only the one that is called is imported: all of them cost more than most runs.
+"""
 
 from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
-from typing import NamedTuple
+from importlib import import_module
+from types import MappingProxyType
+from typing import Any
 
 from multibot_rewrite import __version__
-from multibot_rewrite.cli import check, coverage, learn, plan, rehearse, remap, snapshot, vocabulary
 from multibot_rewrite.cli.process import PROGRAM, Parser, guarded
 
-
-class Command(NamedTuple):
-    """``multibot NAME``: how its options are declared, and what runs it to an exit code."""
-
-    name: str
-    about: str
-    options: Callable[[argparse.ArgumentParser], None]
-    run: Callable[[argparse.Namespace], int]
-
-
-COMMANDS = (
-    Command("check", check.ABOUT, check.options, check.run),
-    Command("coverage", coverage.ABOUT, coverage.options, coverage.run),
-    Command("learn", learn.ABOUT, learn.options, learn.run),
-    Command("plan", plan.ABOUT, plan.options, plan.run),
-    Command("rehearse", rehearse.ABOUT, rehearse.options, rehearse.run),
-    Command("remap", remap.ABOUT, remap.options, remap.run),
-    Command("snapshot", snapshot.ABOUT, snapshot.options, snapshot.run),
-    Command("vocabulary", vocabulary.ABOUT, vocabulary.options, vocabulary.run),
+COMMANDS = MappingProxyType(
+    {
+        "check": "is the running system what was planned?",
+        "coverage": "how much of a set of descriptions is known, and what is not",
+        "learn": "nodes and stacks for remap and plan, from nodes that are running now",
+        "plan": "what the graph of a fleet is to look like",
+        "rehearse": "try a fleet's plan on a real graph, without robot or simulator",
+        "remap": "what every node of every robot must be remapped to",
+        "snapshot": "what runs in the ROS graph now: nodes, endpoints, tf, environment",
+        "vocabulary": "what is known of a plugin, hardware class or element",
+    }
 )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit code."""
-    return guarded(PROGRAM, partial(_run, arguments), own_process=arguments is None)
+    given = sys.argv[1:] if arguments is None else arguments
+    return guarded(PROGRAM, partial(_run, given), own_process=arguments is None)
 
 
-def _run(arguments: Sequence[str] | None) -> int:
-    options = parser().parse_args(arguments)
-    code: int = options.run(options)
+def _run(arguments: Sequence[str]) -> int:
+    name = next((word for word in arguments if word in COMMANDS), "")
+    module: Any = import_module(f"{__package__}.{name}") if name else None
+    options = parser(name, module).parse_args(arguments)
+    code: int = module.run(options)
     return code
 
 
-def parser() -> argparse.ArgumentParser:
-    """The command line; what it cannot read ends the process with one line."""
+def parser(called: str, module: Any) -> argparse.ArgumentParser:
+    """The command line, with the options of the command that is ``called``; what it cannot read
+    ends the process with one line."""
     result = Parser(prog=PROGRAM, description="Commands around urdf-postfix.", allow_abbrev=False)
     result.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
     below = result.add_subparsers(metavar="COMMAND", dest="command", required=True)
-    for command in COMMANDS:
+    for name, about in COMMANDS.items():
         one = below.add_parser(
-            command.name,
-            help=command.about,
-            description=command.about,
+            name,
+            help=about,
+            description=about,
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
         )
-        command.options(one)
-        one.set_defaults(run=command.run)
+        if name == called:
+            module.options(one)
     return result
 
 

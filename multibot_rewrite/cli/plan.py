@@ -8,7 +8,6 @@ from multibot_rewrite.cli import fleet
 from multibot_rewrite.fleet import expected
 from multibot_rewrite.graph.plan_file import to_yaml
 
-ABOUT = "what the graph of a fleet is to look like"
 MORE = """\
 examples:
   multibot plan rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot -o plan.yaml

@@ -26,7 +26,6 @@ from multibot_rewrite.graph.rehearsal import (
 from multibot_rewrite.graph.snapshot import to_json
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 
-ABOUT = "try a fleet's plan on a real graph, without robot or simulator"
 MORE = """\
 Starts the nodes of each robot's plugins and stack with the names of their code and hands rcl the
 rules of multibot remap; then looks at the graph as multibot check does. A type that is not installed

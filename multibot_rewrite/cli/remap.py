@@ -15,7 +15,6 @@ from multibot_rewrite.remap.forms import EVERY_ROBOT, FORMS
 from multibot_rewrite.remap.records import Table
 
 BRIDGE = "bridge"
-ABOUT = "what every node of every robot must be remapped to"
 MORE = """\
 examples:
   multibot remap rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot

@@ -24,7 +24,6 @@ from multibot_rewrite.remap.records import (
     TOPIC,
 )
 
-ABOUT = "what runs in the ROS graph now: nodes, endpoints, tf, environment"
 MORE = """\
 The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.
 exit codes: 0 done; 2 wrong use; 3 something may be missing in the view, which is written all the

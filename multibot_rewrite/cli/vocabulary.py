@@ -21,7 +21,6 @@ from multibot_rewrite.sources import read_source
 from multibot_rewrite.vocabulary import TYPES, Rewriter, Vocabulary
 from multibot_rewrite.vocabulary.describe import facts
 
-ABOUT = "what is known of a plugin, hardware class or element"
 MORE = """\
 examples:
   multibot vocabulary                                  all sections

@@ -31,8 +31,8 @@ from multibot_rewrite.graph.snapshot import (
 from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 
 # How long to wait between two looks, and at least so many times as long as one took: a fleet of 100
-# robots is not looked at as often as one of two.
-POLL_SECONDS, REST = 0.1, 15
+# robots is not looked at as often as one of two, and less often where nobody watches.
+POLL_SECONDS, REST, LONG_REST = 0.1, 10, 30
 # tf comes ten times a second or more; a shared topic of 100 robots took 1.3 s to be heard whole.
 TF_SECONDS = (1.5, 3.0)
 # Who watches is told this soon, since more may be told later,
@@ -131,7 +131,7 @@ def _settle(eye: _Eye) -> str:
     while not eye.stop.wait(max(POLL_SECONDS, pause)):
         began = eye.now()
         names, ends = _overview(eye)
-        pause = REST * (eye.now() - began)
+        pause = LONG_REST * (eye.now() - began)
         expected = [end for end in ends if end.node in request.expected]
         now = eye.now()
         if (names, ends) != before:
