@@ -19,7 +19,7 @@ from multibot_rewrite.graph.rehearsal import (
     stand_in,
     to_order,
 )
-from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of
+from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
 from multibot_rewrite.library import builtin_tree, rewrite
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.remap.known import stack_of
@@ -177,3 +177,17 @@ def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
     assert "odom/robot1" in frames
     assert "camera_link/robot1" in frames
     assert "map" not in frames
+
+
+def test_odometry_that_nobody_is_known_to_send_is_sent_and_told() -> None:
+    naming = make_naming("L2")
+    tree = [Edge("base", "arm", True)]
+    edges = {("r1", "robot_state_publisher"): tree, ("r1", "amcl"): [Edge("map", "odom", False)]}
+    filled, told = with_odometry(edges, "r1", naming)
+    assert told == "odom -> base"
+    assert filled["r1", "robot_state_publisher"] == [*tree, Edge("odom", "base", False)]
+    assert with_odometry(filled, "r1", naming) == (filled, "")
+    assert with_odometry({("r1", "robot_state_publisher"): tree}, "r1", naming)[1] == ""
+    assert with_odometry(edges, "r2", naming) == (edges, "")
+    standing = {**edges, ("r1", "robot_state_publisher"): [Edge("world", "base", True)]}
+    assert with_odometry(standing, "r1", naming) == (standing, "")

@@ -13,7 +13,7 @@ from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.fleet import expected
+from multibot_rewrite.fleet import Fleet, expected
 from multibot_rewrite.graph.live.child import PLAY, RosUnusable, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.rehearsal import (
@@ -24,7 +24,7 @@ from multibot_rewrite.graph.rehearsal import (
     to_order,
 )
 from multibot_rewrite.graph.snapshot import to_json
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, with_odometry
 
 MORE = """\
 Starts the nodes of each robot's plugins and stack with the names of their code and hands rcl the
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     """Play, look, compare, sum up; returns the exit code."""
     pictures.check(options)
     made = fleet.build(options, also=[STATE_PUBLISHER])
-    actors = list(cast(made.table, made.edges, not options.without_rules))
+    actors = list(cast(made.table, _edges(made), not options.without_rules))
     environ = stage(options.domain)
     try:
         with _playing(dealt(actors), environ) as replaced:
@@ -71,6 +71,16 @@ def run(options: argparse.Namespace) -> int:
     _tell(replaced)
     code = conclude(options, as_played(expected(made), replaced), graph)
     return code if code != DONE else fleet.verdict(made)
+
+
+def _edges(made: Fleet) -> Edges:
+    """What is sent, with the odometry of a driver that no stack names."""
+    edges = made.edges
+    for robot in made.inventories:
+        edges, added = with_odometry(edges, robot, made.naming)
+        if added:
+            say(f"note: no node of {robot} is known to send {added}; it is sent for it", PROGRAM)
+    return edges
 
 
 def stage(domain: int | None) -> dict[str, str]:

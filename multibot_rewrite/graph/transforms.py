@@ -66,6 +66,21 @@ def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:
         yield Edge(values[parent], root if base else values[child], False)
 
 
+def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]:
+    """``edges`` with odometry where nobody is known to send it: a driver would. Tells which, as
+    ``parent -> child``; empty where nothing is added, as for an arm that stands in the world."""
+    state = (robot, STATE_PUBLISHER)
+    tree = edges.get(state, ())
+    others = [it for key, own in edges.items() if key[0] == robot and key != state for it in own]
+    children = {edge.child for edge in (*tree, *others)}
+    roots = {edge.parent for edge in tree} - children - naming.shared_frames
+    loose = {edge.child for edge in others} - {edge.parent for edge in (*tree, *others)}
+    if len(roots) != 1 or len(loose) != 1:
+        return edges, ""
+    added = Edge(loose.pop(), roots.pop(), False)
+    return {**edges, state: [*tree, added]}, f"{added.parent} -> {added.child}"
+
+
 def frames_of(inventory: Inventory, sent: Iterable[Edge], naming: Naming) -> tuple[str, ...]:
     """A robot's own frames: what its description declares, and what its nodes send besides."""
     declared = (*inventory.declared["link"], *inventory.declared["frame"])
