@@ -71,7 +71,9 @@ def conclude(options: argparse.Namespace, plan: Expectation, graph: Snapshot) ->
 
 
 def _sum_up(plan: Expectation, found: Sequence[GraphFinding], verdict: Verdict) -> int:
-    say(f"{len(plan.robots)} robots, {len(found)} findings: {WORDS[verdict]}", PROGRAM)
+    robots, findings = len(plan.robots), len(found)
+    counted = f"{robots} robot{'s' * (robots != 1)}, {findings} finding{'s' * (findings != 1)}"
+    say(f"{counted}: {WORDS[verdict]}", PROGRAM)
     return CODES[verdict]
 
 

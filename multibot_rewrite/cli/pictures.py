@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Iterator, Sequence
 
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.mermaid import to_mermaid
@@ -57,4 +57,5 @@ def _wanted(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
         if target in ("", "-"):
             raise UsageError(f"--{name} {target!r} is no file; standard output has the findings")
         check_target(target, inputs, f"--{name}")
+        check_folder(target)
         yield name, target

@@ -13,7 +13,9 @@ from multibot_rewrite.cli.check import conclude
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM
+from multibot_rewrite.cli.walk import check_folder
 from multibot_rewrite.fleet import Fleet, expected
+from multibot_rewrite.graph.environment import listed
 from multibot_rewrite.graph.live.child import PLAY, RosUnusable, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.rehearsal import (
@@ -55,6 +57,8 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Play, look, compare, sum up; returns the exit code."""
     pictures.check(options)
+    if options.output:
+        check_folder(options.output)
     made = fleet.build(options, also=[STATE_PUBLISHER])
     actors = list(cast(made.table, _edges(made), not options.without_rules))
     environ = stage(options.domain)
@@ -108,9 +112,6 @@ def _playing(hands: list[list[Actor]], environ: dict[str, str]) -> Iterator[dict
 
 def _tell(replaced: dict[str, str]) -> None:
     if replaced:
-        few = ", ".join(sorted(replaced)[:3])
-        text = f"{len(replaced)} types are not installed here and had a stand-in: {few}"
-        say(
-            f"note: {text}{', ...' * (len(replaced) > 3)}; their names are proved all the same",
-            PROGRAM,
-        )
+        missing = "type is" if len(replaced) == 1 else "types are"
+        text = f"{len(replaced)} {missing} not installed here and had a stand-in"
+        say(f"note: {text}: {listed(sorted(replaced))}; the names are tried all the same", PROGRAM)

@@ -55,3 +55,11 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--json") -> 
     real = os.path.realpath(target)
     if any(os.path.realpath(path) == real for path in inputs):
         raise UsageError(f"{target} is a file that is read; choose another one for {option}")
+
+
+def check_folder(target: str) -> None:
+    """Raise UsageError where ``target`` is in no folder, before the work that makes it."""
+    folder = os.path.dirname(target) or "."
+    if not os.path.exists(folder):
+        reason = f"the folder {folder} does not exist, create it first"
+        raise UsageError(f"{target}: cannot be written: {reason}")

@@ -69,9 +69,13 @@ def from_yaml(data: bytes, file: str) -> Expectation:
 
     try:
         value = yaml.load(data, Loader=_fast("SafeLoader"))
-    except (yaml.YAMLError, UnicodeDecodeError) as error:
-        reason = " ".join(str(error).split())
-        raise InputError(f"{file}: not YAML: {reason}") from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
+        reason = getattr(error, "problem", None) or " ".join(str(error).split())
+        raise InputError(f"{place}: not YAML: {reason}; use what multibot plan wrote") from None
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise InputError(f"{file}: not YAML: {error}; use what multibot plan wrote") from None
     top = _mapping(value, KEYS, file, "the plan", MORE_KEYS)
     nodes, topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[1:4])
     robots: list[WantedRobot] = []
