@@ -46,10 +46,13 @@ def watched(graphs: Iterable[Snapshot]) -> list[Moment]:
 
 
 def test_a_fleet_that_comes_up_and_stays_is_as_planned() -> None:
-    nothing = moving(healthy()._replace(nodes=(), endpoints=(), frames=()))
-    moments = watched([nothing, moving(half()), half(), moving(healthy()), healthy()])
-    assert [moment.whole for moment in moments] == [False, False, False, True, True]
-    assert moments[2].verdict == Verdict.WRONG
+    nothing = healthy()._replace(nodes=(), endpoints=(), frames=())
+    unseen = nothing._replace(environment=environment(Caveat("nothing-seen", True, "no node")))
+    graphs = [moving(nothing), unseen, moving(half()), half(), moving(healthy()), healthy()]
+    moments = watched(graphs)
+    assert [moment.whole for moment in moments] == [False] * 4 + [True] * 2
+    assert moments[1].verdict == Verdict.INCONCLUSIVE
+    assert moments[3].verdict == Verdict.WRONG
     assert final(moments[-1]) == Verdict.PLANNED
 
 

@@ -83,8 +83,8 @@ def _beyond(
 def _counted(found: Iterable[GraphFinding], graph: Snapshot, whole: bool) -> Verdict:
     """What a moment adds to the worst: neither what is not started yet nor that things move."""
     judged = judge([it for it in found if whole or it.code not in ABSENCE], graph)
-    moving = graph.environment.settled == CHANGING
-    return Verdict.PLANNED if judged == Verdict.INCONCLUSIVE and moving else judged
+    coming = not whole or graph.environment.settled == CHANGING
+    return Verdict.PLANNED if judged == Verdict.INCONCLUSIVE and coming else judged
 
 
 def final(moment: Moment) -> Verdict:
