@@ -87,7 +87,7 @@ def _held(unshare: Sequence[str]) -> Iterator[int]:
 
 
 def _inside(pid: int) -> tuple[str, ...]:
-    return ("nsenter", "--target", str(pid), *_ENTER, "--net", "--mount")
+    return ("nsenter", "--target", str(pid), *_ENTER, "--net", "--mount", "--wd")
 
 
 def _run(inside: tuple[str, ...], script: str) -> None:

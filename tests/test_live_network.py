@@ -127,6 +127,23 @@ def test_a_super_client_sees_forty_participants_and_a_plain_one_says_why_not(
 
 
 @pytest.mark.deep
+def test_the_profile_of_the_page_lifts_the_limit(tmp_path: Path) -> None:
+    page = Path(__file__).parent.parent / "docs" / "large-fleets.md"
+    profile = tmp_path / "look.xml"
+    profile.write_text(page.read_text().partition("```xml\n")[2].partition("```")[0])
+    plan = write_plan(tmp_path / "plan.yaml", MANY)
+    settings = {
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+    }
+    with hosts(2) as (robots, base), crowd(robots, MANY, **LOCALHOST):
+        # The page names the first host, and every host itself.
+        for host in (robots, base):
+            done = run(host, "check", plan, **settings)
+            assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+@pytest.mark.deep
 def test_a_discovery_server_that_is_not_there(plan: Path) -> None:
     with hosts(1) as (base,):
         server = {"ROS_DISCOVERY_SERVER": f"{base.address}:11811", "ROS_SUPER_CLIENT": "TRUE"}
