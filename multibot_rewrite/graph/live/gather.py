@@ -18,6 +18,8 @@ from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: less quiet than that says nothing.
 QUIET_SECONDS = 3.5
+# A look that comes later than this was held up.
+HELD_UP_SECONDS = 0.5
 # The endpoints of one participant come in a burst; a busy machine may pause in it.
 BURST_SECONDS = 0.5
 # The second stands in for the first in a rehearsal on a machine without tf2_msgs.
@@ -40,6 +42,21 @@ class Changes(NamedTuple):
 
     all: float
     expected: float
+
+
+class Clock(NamedTuple):
+    """Seconds of looking, and when the last look was.
+
+    A pause of this process or of the machine is no quiet of the graph: what came meanwhile has not
+    been read yet.
+    """
+
+    looked: float = 0.0
+    last: float = 0.0
+
+    def after(self, now: float, waited: float) -> Clock:
+        """The clock at a look, which came ``waited`` seconds after the last one by intention."""
+        return Clock(self.looked + min(now - self.last, waited + HELD_UP_SECONDS), now)
 
 
 def settled(

@@ -33,6 +33,8 @@ from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 # How long to wait between two looks, and at least so many times as long as one took: a fleet of 100
 # robots is not looked at as often as one of two, and less often where nobody watches.
 POLL_SECONDS, REST, LONG_REST = 0.1, 10, 30
+# No longer than this, since a look may only have been slow because the machine was.
+LONGEST_REST_SECONDS = 1.0
 # tf comes ten times a second or more; a shared topic of 100 robots took 1.3 s to be heard whole.
 TF_SECONDS = (1.5, 3.0)
 # Who watches is told this soon, since more may be told later,
@@ -95,13 +97,15 @@ def watch(eye: _Eye) -> Iterator[Snapshot]:
     memory: ask.Memory = {}
     before: object = None
     told: object = None
-    changed = told_at = pause = 0.0
+    changed = told_at = 0.0
+    pause, clock = POLL_SECONDS, gather.Clock()
     while not eye.stop.is_set():
-        ros.spin(eye.session, max(POLL_SECONDS, pause))
+        ros.spin(eye.session, pause)
         began = eye.now()
         state = (*_overview(eye), ears.edges())
-        now = eye.now()
-        pause = REST * (now - began)
+        clock = clock.after(eye.now(), pause)
+        now = clock.looked
+        pause = _rest(eye.now() - began, REST)
         if state != before:
             before, changed = state, now
         quiet = now - changed >= gather.QUIET_SECONDS
@@ -112,7 +116,8 @@ def watch(eye: _Eye) -> Iterator[Snapshot]:
                 memory.clear()
             names, endpoints = _view(eye, memory)
             ears.attend(endpoints, eye.request.stand_ins)
-            yield _snapshot(eye, names, endpoints, ears, (QUIET if quiet else CHANGING, now))
+            why = QUIET if quiet else CHANGING
+            yield _snapshot(eye, names, endpoints, ears, (why, eye.now()))
 
 
 def _overview(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
@@ -127,13 +132,14 @@ def _settle(eye: _Eye) -> str:
     before: object = None
     expected_before: object = None
     changed = gather.Changes(0.0, 0.0)
-    pause = 0.0
-    while not eye.stop.wait(max(POLL_SECONDS, pause)):
+    pause, clock = POLL_SECONDS, gather.Clock()
+    while not eye.stop.wait(pause):
         began = eye.now()
         names, ends = _overview(eye)
-        pause = LONG_REST * (eye.now() - began)
+        clock = clock.after(eye.now(), pause)
+        now = clock.looked
+        pause = _rest(eye.now() - began, LONG_REST)
         expected = [end for end in ends if end.node in request.expected]
-        now = eye.now()
         if (names, ends) != before:
             before, changed = (names, ends), changed._replace(all=now)
         if expected != expected_before:
@@ -143,6 +149,11 @@ def _settle(eye: _Eye) -> str:
         if why:
             return why
     return ""
+
+
+def _rest(took: float, times: int) -> float:
+    """How long to wait after a look that took so many seconds."""
+    return min(max(POLL_SECONDS, times * took), LONGEST_REST_SECONDS)
 
 
 def _taken(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
