@@ -183,6 +183,49 @@ def test_after_its_lease_a_dead_node_is_gone(ros: None, plan: Path) -> None:
         wait_for(lines, "2/2 nodes", "0 findings", "as planned")
 
 
+def test_a_node_killed_while_it_is_looked_at_is_no_twin(ros: None, plan: Path) -> None:
+    own = domain(88)
+    robots = [node("robot1")], [node("robot2")]
+    with live_fleet.running(own, *robots) as (one, _), ExitStack() as up:
+        command = [*COMMAND, "check", str(plan), *PATIENTLY]
+        look = subprocess.Popen(command, env=live_fleet.environ(own), stdout=subprocess.PIPE)
+        up.enter_context(look)
+        time.sleep(3.4)
+        one.kill()
+        up.enter_context(live_fleet.running(own, [node("robot1")]))
+        out, _ = look.communicate()
+    assert (look.returncode, out) == (0, b"")
+
+
+# --- a looking process that is held up
+
+
+def child_of(pid: int) -> int:
+    """The one child of a process, waited for."""
+    children = Path(f"/proc/{pid}/task/{pid}/children")
+    while not children.read_text():
+        time.sleep(0.01)
+    return int(children.read_text())
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="no /proc to look for children")
+def test_a_pause_of_the_looking_process_is_no_quiet(ros: None, tmp_path: Path) -> None:
+    """A busy machine may hold it up while the graph comes in."""
+    names, nodes = crowd(30)
+    plan = write_plan(tmp_path / "plan.yaml", names, ("drive", "pilot"))
+    with live_fleet.running(domain(89), nodes):
+        command = [*COMMAND, "check", str(plan), *PATIENTLY]
+        env = live_fleet.environ(domain(89))
+        with subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True) as look:
+            child = child_of(look.pid)
+            time.sleep(0.7)
+            os.kill(child, signal.SIGSTOP)
+            time.sleep(4)
+            os.kill(child, signal.SIGCONT)
+            out, _ = look.communicate()
+    assert (look.returncode, out) == (0, "")
+
+
 def free_port() -> int:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind((THIS.address, 0))
