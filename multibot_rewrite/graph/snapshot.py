@@ -21,6 +21,8 @@ SCHEMA = 1
 EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
 # What rmw says of an endpoint whose participant has not told its nodes yet.
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
+# What tf2 calls the nodes that listen beside another one; the rest is an address.
+LISTENER = "transform_listener_impl_"
 
 
 class Qos(NamedTuple):

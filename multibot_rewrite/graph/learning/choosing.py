@@ -7,12 +7,12 @@ from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.snapshot import LISTENER, Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.rosnames import check_full_name, check_namespace
 
 # A tf2 listener that was made without a node makes one of its own, called by its address.
-HELPER = re.compile(r"transform_listener_impl_[0-9a-f]+")
+HELPER = re.compile(LISTENER + "[0-9a-f]+")
 # What people look with, no part of a robot. A leading underscore hides a node.
 TOOL = re.compile(r"_.*|launch_ros_\d+|rqt_.*|rviz.*|rosbag2_.*|foxglove_bridge")
 

@@ -23,14 +23,13 @@ from multibot_rewrite.graph.rehearsal import (
     from_order,
     stand_in,
 )
+from multibot_rewrite.graph.snapshot import LISTENER
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
 # As robot_state_publisher and most sources of odometry have it.
 SEND_SECONDS = 0.1
 STATIC = "tf_static"
-# What tf2 calls its helper nodes; the rest is an address.
-HELPER = "transform_listener_impl_"
 Send = Callable[[], None]
 
 
@@ -65,7 +64,7 @@ def _enter(stage: _Stage, actor: Actor, number: int) -> Iterator[Send]:
         if part.helper and helper is None:
             words = [word for word in actor.arguments if not word.startswith("__node:=")]
             helper = ros.add_node(
-                stage.session, f"{HELPER}{os.getpid():x}{number:04x}", arguments=_paired(words)
+                stage.session, f"{LISTENER}{os.getpid():x}{number:04x}", arguments=_paired(words)
             )
         yield from _ask(stage, helper if part.helper else node, part, actor.edges)
 

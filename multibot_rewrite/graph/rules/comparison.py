@@ -13,14 +13,14 @@ from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
 from multibot_rewrite.graph.rules.likeness import stand_ins
 from multibot_rewrite.graph.rules.owners import Owners, frame_owners, name_owners
 from multibot_rewrite.graph.rules.trees import TfTree, tf_trees
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.graph.snapshot import LISTENER, GraphEndpoint, Snapshot
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 INCONCLUSIVE = "inconclusive"
 # Nodes that come and go beside any fleet; no plan names them. Without a slash: in any namespace.
 IGNORED = (
     # The tools' own: hidden ones, ros2 CLI, launch, tf listeners, spawners, containers.
-    "_*", "launch_ros_*", "transform_listener_impl_*", "spawner_*", "spawn_entity*", "*_container",
+    "_*", "launch_ros_*", f"{LISTENER}*", "spawner_*", "spawn_entity*", "*_container",
     "static_transform_publisher_*", "*_rclcpp_node", "*_service_client",
     # What people look with, drive with and record with.
     "rqt_*", "rviz*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_*", "tf2_*", "view_frames",

@@ -10,13 +10,11 @@ from multibot_rewrite.graph.expectation import EVERYWHERE, Wanted
 from multibot_rewrite.graph.rules.causes import how_to_give, no_rule, plugin, unremapped
 from multibot_rewrite.graph.rules.comparison import GraphFinding, View
 from multibot_rewrite.graph.rules.likeness import similar
-from multibot_rewrite.graph.snapshot import GraphEndpoint
+from multibot_rewrite.graph.snapshot import LISTENER, GraphEndpoint
 from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
 SHOULD = {PUBLISHES: "publish", SUBSCRIBES: "subscribe", SERVES: "serve", CALLS: "call"}
-# What tf2 listens with beside a node; rules for the node alone do not reach it.
-LISTENER = "transform_listener_impl_"
 # What Nav2's costmaps are called.
 COSTMAP = "costmap"
 # Publishers by their name without a robot's.
