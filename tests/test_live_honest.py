@@ -186,15 +186,18 @@ def test_after_its_lease_a_dead_node_is_gone(ros: None, plan: Path) -> None:
 def test_a_node_killed_while_it_is_looked_at_is_no_twin(ros: None, plan: Path) -> None:
     own = domain(88)
     robots = [node("robot1")], [node("robot2")]
+    command = [*COMMAND, "check", str(plan), *PATIENTLY]
     with live_fleet.running(own, *robots) as (one, _), ExitStack() as up:
-        command = [*COMMAND, "check", str(plan), *PATIENTLY]
-        look = subprocess.Popen(command, env=live_fleet.environ(own), stdout=subprocess.PIPE)
+        env = live_fleet.environ(own)
+        look = subprocess.Popen(command, env=env, stdout=subprocess.PIPE, text=True)
         up.enter_context(look)
         time.sleep(3.4)
         one.kill()
         up.enter_context(live_fleet.running(own, [node("robot1")]))
         out, _ = look.communicate()
-    assert (look.returncode, out) == (0, b"")
+    # Killed before it told its name, it is endpoints without a node: inconclusive, no error either.
+    assert look.returncode in (0, 3)
+    assert out == ""
 
 
 # --- a looking process that is held up
