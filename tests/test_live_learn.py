@@ -119,8 +119,8 @@ def test_names_are_spelled_as_they_were_seen(files: dict[str, Path]) -> None:
 @pytest.mark.parametrize(
     ("learned", "layout"),
     [
-        ("root", "tf-per-robot"),
-        ("root", "frames-per-robot"),
+        pytest.param("root", "tf-per-robot", marks=pytest.mark.deep),
+        pytest.param("root", "frames-per-robot", marks=pytest.mark.deep),
         ("root", "postfix"),
         ("below", "frames-per-robot"),
     ],
