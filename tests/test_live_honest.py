@@ -325,3 +325,13 @@ def test_a_domain_that_is_none(word: str, plan: Path) -> None:
     (line,) = done.stderr.splitlines()
     assert word in line
     assert "give 0 to 232" in line
+
+
+@pytest.mark.parametrize("peers", ["10.0.0.1,10.0.0.2", "10.0.0.1; 10.0.0.2", "one two"])
+def test_peers_that_are_none(peers: str, plan: Path) -> None:
+    """rmw gives up on these without a message of its own."""
+    done = check(plan, 87, ROS_STATIC_PEERS=peers)
+    assert (done.returncode, done.stdout) == (2, "")
+    (line,) = done.stderr.splitlines()
+    assert f"ROS_STATIC_PEERS={peers!r}" in line
+    assert "with nothing but ; between them" in line

@@ -40,6 +40,8 @@ _FAST_DDS = "010f"
 _SHOWN = 5
 _NUMBER = re.compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 
+_NO_PEER = re.compile(r"[,\s]")
+
 
 class Settings(NamedTuple):
     """What the environment variables ask of the middleware; ``rmw`` is empty for the default."""
@@ -57,7 +59,7 @@ def settings(environ: Mapping[str, str]) -> Settings:
     return Settings(
         _domain(environ.get("ROS_DOMAIN_ID", "")),
         _range(environ),
-        tuple(filter(None, environ.get("ROS_STATIC_PEERS", "").split(";"))),
+        _peers(environ.get("ROS_STATIC_PEERS", "")),
         environ.get("RMW_IMPLEMENTATION", ""),
         environ.get("ROS_DISCOVERY_SERVER", ""),
         environ.get("ROS_SUPER_CLIENT", "").lower() in ("true", "1"),
@@ -80,6 +82,15 @@ def _domain(text: str) -> int:
             " keeps clear of the ports Linux hands out)"
         )
     return domain
+
+
+def _peers(text: str) -> tuple[str, ...]:
+    peers = tuple(filter(None, text.split(";")))
+    for peer in peers:
+        if _NO_PEER.search(peer):
+            hint = "give host names or IPv4 addresses with nothing but ; between them"
+            raise UsageError(f"ROS_STATIC_PEERS={text!r}: {peer!r} is no host, {hint}")
+    return peers
 
 
 def _range(environ: Mapping[str, str]) -> str:
