@@ -183,6 +183,7 @@ def test_after_its_lease_a_dead_node_is_gone(ros: None, plan: Path) -> None:
         wait_for(lines, "2/2 nodes", "0 findings", "as planned")
 
 
+@pytest.mark.deep
 def test_a_node_killed_while_it_is_looked_at_is_no_twin(ros: None, plan: Path) -> None:
     own = domain(88)
     robots = [node("robot1")], [node("robot2")]

@@ -39,7 +39,7 @@ LOCAL_LIMIT, PEER_LIMIT = 32, 4
 _FAST_DDS = "010f"
 _SHOWN = 5
 _NUMBER = re.compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
-
+# rmw gives up on a host that it cannot look up; these are never one.
 _NO_PEER = re.compile(r"[,\s]")
 
 
