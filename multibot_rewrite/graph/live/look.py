@@ -9,7 +9,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any, NamedTuple
@@ -35,6 +35,8 @@ from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 POLL_SECONDS, REST, LONG_REST = 0.1, 10, 30
 # No longer than this, since a look may only have been slow because the machine was.
 LONGEST_REST_SECONDS = 1.0
+# After so long without change it is likely that there is none to come.
+IDLE_SECONDS = 1.0
 # tf comes ten times a second or more; a shared topic of 100 robots took 1.3 s to be heard whole.
 TF_SECONDS = (1.5, 3.0)
 # Who watches is told this soon, since more may be told later,
@@ -81,9 +83,10 @@ def _opened(request: Request, stop: threading.Event) -> Iterator[_Eye]:
 
 def look(eye: _Eye) -> Snapshot:
     """A snapshot, once the graph is settled; of no use where ``stop`` was set meanwhile."""
-    why = _settle(eye)
+    memory: ask.Memory = {}
+    why = _settle(eye, memory)
     seconds = eye.now()
-    names, endpoints = _taken(eye)
+    names, endpoints = _taken(eye, memory)
     ears = Ears(partial(_subscribe, eye))
     ears.attend(endpoints, eye.request.stand_ins)
     while not eye.stop.is_set() and ears.waiting(*TF_SECONDS):
@@ -101,11 +104,11 @@ def watch(eye: _Eye) -> Iterator[Snapshot]:
     pause, clock = POLL_SECONDS, gather.Clock()
     while not eye.stop.is_set():
         ros.spin(eye.session, pause)
-        began = eye.now()
+        began = time.thread_time()
         state = (*_overview(eye), ears.edges())
         clock = clock.after(eye.now(), pause)
         now = clock.looked
-        pause = _rest(eye.now() - began, REST)
+        pause = _rest(time.thread_time() - began, REST)
         if state != before:
             before, changed = state, now
         quiet = now - changed >= gather.QUIET_SECONDS
@@ -126,29 +129,50 @@ def _overview(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
     return names, sorted(ask.by_node(eye.node, names, ask.QUESTIONS, ros.gone()))
 
 
-def _settle(eye: _Eye) -> str:
-    """Wait until the graph is settled; why it is, empty where the looking was stopped."""
+def _settle(eye: _Eye, memory: ask.Memory) -> str:
+    """Wait until the graph is settled; why it is, empty where the looking was stopped.
+
+    The dear questions are asked while there is nothing to do but to wait; ``memory`` grows.
+    """
     request = eye.request
-    before: object = None
-    expected_before: object = None
-    changed = gather.Changes(0.0, 0.0)
-    pause, clock = POLL_SECONDS, gather.Clock()
+    since = _Since()
+    asked: object = None
+    pause, spent, clock = POLL_SECONDS, 0.0, gather.Clock()
     while not eye.stop.wait(pause):
-        began = eye.now()
-        names, ends = _overview(eye)
-        clock = clock.after(eye.now(), pause)
+        began = time.thread_time()
+        view = _overview(eye)
+        clock = clock.after(eye.now(), pause + spent)
         now = clock.looked
-        pause = _rest(eye.now() - began, LONG_REST)
-        expected = [end for end in ends if end.node in request.expected]
-        if (names, ends) != before:
-            before, changed = (names, ends), changed._replace(all=now)
-        if expected != expected_before:
-            expected_before, changed = expected, changed._replace(expected=now)
-        seen = {end.node for end in ends}
+        pause = _rest(time.thread_time() - began, LONG_REST)
+        changed = since.seen(now, view, request.expected)
+        seen = {end.node for end in view[1]}
         why = gather.settled(now, changed, seen, request.expected, request.timeout)
         if why:
             return why
+        began = eye.now()
+        if asked != view and now - changed.all >= IDLE_SECONDS:
+            asked = view
+            _view(eye, memory)
+        spent = eye.now() - began
     return ""
+
+
+class _Since:
+    """When the view last changed, all of it and that of the expected nodes."""
+
+    def __init__(self) -> None:
+        self._before: tuple[object, object] = (None, None)
+        self._changed = gather.Changes(0.0, 0.0)
+
+    def seen(
+        self, now: float, view: tuple[list[str], list[GraphEndpoint]], expected: Collection[str]
+    ) -> gather.Changes:
+        """What holds after a look at ``now``."""
+        parts = (view, [end for end in view[1] if end.node in expected])
+        times = zip(self._changed, self._before, parts, strict=True)
+        self._changed = gather.Changes(*(old if was == is_ else now for old, was, is_ in times))
+        self._before = parts
+        return self._changed
 
 
 def _rest(took: float, times: int) -> float:
@@ -156,11 +180,11 @@ def _rest(took: float, times: int) -> float:
     return min(max(POLL_SECONDS, times * took), LONGEST_REST_SECONDS)
 
 
-def _taken(eye: _Eye) -> tuple[list[str], list[GraphEndpoint]]:
+def _taken(eye: _Eye, memory: ask.Memory) -> tuple[list[str], list[GraphEndpoint]]:
     """Names and endpoints, again for a while where they have not found one another."""
     limit = min(eye.request.timeout, eye.now() + gather.QUIET_SECONDS)
     while True:
-        names, endpoints = _view(eye, {})
+        names, endpoints = _view(eye, memory)
         owners = {end.node for end in endpoints}
         whole = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
         if whole or eye.now() >= limit or eye.stop.wait(POLL_SECONDS):
