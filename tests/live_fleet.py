@@ -4,7 +4,7 @@ Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "n
 "publishers", "subscriptions", "services", "clients", "actions" of [name, type, QoS words],
 "frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
 brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a process of its own.
-"arguments": what a command line tells the node.
+"arguments": what a command line tells the node. "wait": seconds until the next node is made.
 """
 
 from __future__ import annotations
@@ -79,7 +79,10 @@ def main(spec: str) -> None:
     rclpy.init(args=[], signal_handler_options=rclpy.signals.SignalHandlerOptions.NO)
     executor = SingleThreadedExecutor()
     specs = json.loads(spec)
-    nodes = [_node(one, executor) for one in specs]
+    nodes = []
+    for one in specs:
+        nodes.append(_node(one, executor))
+        time.sleep(one.get("wait", 0))
     # Nobody is answered; a large fleet that spins would keep the machine busy.
     sends = any(one.get("frames") for one in specs)
     print(READY, flush=True)

@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple
 
 from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
+from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, Snapshot, from_json
 from multibot_rewrite.model import MultibotError
 
 INSTALL = (
@@ -57,12 +57,14 @@ def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
     """
     seen = _observe(request, environ)
     # A node killed while it was looked at stays for 20 s; who looks anew does not see it.
-    return _observe(request, environ) if _twins(seen) else seen
+    return _observe(request, environ) if _haunted(seen) else seen
 
 
-def _twins(seen: Snapshot) -> bool:
+def _haunted(seen: Snapshot) -> bool:
+    """Whether a dead node may be in the view: under a name that is there again, or without one."""
     names = [node.name for node in seen.nodes]
-    return len(set(names)) < len(names)
+    nameless = any(UNKNOWN_NODE in end.node for end in seen.endpoints)
+    return nameless or len(set(names)) < len(names)
 
 
 def _observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
@@ -138,7 +140,8 @@ def _end(process: subprocess.Popen[bytes]) -> None:
 def _explained(code: int, said: str, environ: Mapping[str, str]) -> str:
     """Why the child ended with ``code``, in one line with what to do."""
     lines = [line.strip() for line in said.splitlines() if line.strip()]
-    last = lines[-1] if lines else "it said nothing"
+    # rclpy ends its reason with lines of places.
+    last = next((line for line in reversed(lines) if not line.startswith(",")), "it said nothing")
     if code == NO_RCLPY:
         return f"rclpy cannot be imported ({last}); {INSTALL}"
     if code == RMW_MISMATCH:
