@@ -879,3 +879,11 @@ def test_time_grows_with_the_fleet_and_not_faster() -> None:
         return min(times)
 
     assert seconds(800) < 10 * seconds(200)
+
+
+def test_services_that_a_twin_may_hide_are_not_missed() -> None:
+    graph = healthy()
+    left = tuple(end for end in graph.endpoints if end.name != "/robot1/reset")
+    twins = (*graph.nodes, GraphNode("/robot1/driver", "other"))
+    assert "MG102" in codes(graph._replace(endpoints=left))
+    assert codes(graph._replace(endpoints=left, nodes=twins)) == ["MG105"]

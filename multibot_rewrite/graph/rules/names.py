@@ -27,6 +27,9 @@ def missing_endpoints(view: View) -> Iterator[GraphFinding]:
         robot = view.robot_of.get(wanted.node)
         if robot is None or wanted.node not in view.seen or end in view.types:
             continue
+        # Of two nodes of one name, rcl shows the services of one only.
+        if view.seen[wanted.node] > 1 and wanted.kind != TOPIC:
+            continue
         message = f"it should {SHOULD[wanted.role]} {wanted.kind} {wanted.name}, and does not"
         cause = _why_missing(view, wanted, robot)
         yield GraphFinding("MG102", ERROR, robot, wanted.node, message, cause, (wanted.name,))
