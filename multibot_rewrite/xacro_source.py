@@ -5,11 +5,15 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from xml.dom import DOMException
 from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriting.document import MAX_BYTES
 
+# What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
+# missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
+_UNWORDED = (OSError, ValueError, RuntimeError, TypeError)
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
 _HINTS = (
     ("Undefined substitution argument", "give it as {}:=VALUE"),
@@ -32,11 +36,14 @@ def expand(path: str, arguments: Mapping[str, str]) -> bytes:
     """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason."""
     _check_file(path)
     import xacro
+    from xacro.substitution_args import SubstitutionException
 
+    # What a file can be at fault for; anything else is no fault of the file and must be seen whole.
+    said = (xacro.XacroException, SubstitutionException, ExpatError, DOMException)
     try:
         document = xacro.process_file(path, mappings=dict(arguments))
         text: str = document.toprettyxml(indent="  ")
-    except Exception as error:  # xacro runs the file's own Python: anything may come; it is chained
+    except (*said, *_UNWORDED) as error:
         inner = (xacro.filestack or [path])[-1]
         raise InputError(_message(path, inner, error)) from error
     return text.encode()
