@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+import tf2_build
 from hypothesis import HealthCheck, Phase, settings
 from robots import CORPUS, WHEELS, corpus_files, wheel_files
 
@@ -34,3 +36,11 @@ def wheels() -> dict[str, Path]:
     if not files:
         pytest.skip(f"no description wheel installed: pip install {' '.join(WHEELS)}")
     return files
+
+
+@pytest.fixture(scope="session")
+def tf2(pytestconfig: pytest.Config) -> dict[str, str]:
+    """What makes tf2_msgs importable in children; empty where it cannot be had."""
+    if find_spec("tf2_msgs") or tf2_build.missing():
+        return {}
+    return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))

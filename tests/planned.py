@@ -65,7 +65,7 @@ def multibot(
         capture_output=True,
         text=True,
         check=False,
-        timeout=90,
+        timeout=100,
     )
 
 

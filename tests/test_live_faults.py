@@ -5,9 +5,6 @@ Side by side, each on a domain of its own; 20 times in a row in the deep run.
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -16,6 +13,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import live_fleet
+import planned
 import pytest
 import tf2_build
 
@@ -178,16 +176,12 @@ class Outcome(NamedTuple):
 
 def check(at: int, scenario: Scenario, more: Mapping[str, str]) -> Outcome:
     """What the command finds while the scenario's processes run."""
-    domain = 1 + (os.getpid() * 7 + at) % 100
+    domain = planned.domain(at)
     fleet = fleet_of(scenario.layout)
     scenario.fault(fleet)
-    command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check"]
+    env = {**live_fleet.environ(domain), **more}
     with live_fleet.running(domain, *(list(nodes.values()) for nodes in fleet.values()), **more):
-        done = subprocess.run(
-            [*command, str(plan_of(scenario.layout)), "--timeout", "40"],
-            env={**live_fleet.environ(domain), **more},
-            capture_output=True, text=True, check=False, timeout=100,
-        )  # fmt: skip
+        done = planned.multibot("check", plan_of(scenario.layout), *planned.PATIENTLY, env=env)
     return Outcome(done.returncode, frozenset(_found(done.stdout)), done.stdout + done.stderr)
 
 
@@ -198,14 +192,11 @@ def _found(lines: str) -> Iterator[tuple[str, str]]:
 
 
 @pytest.fixture(scope="module")
-def tf2(pytestconfig: pytest.Config) -> Mapping[str, str]:
-    """What makes tf2_msgs importable in children."""
-    if find_spec("tf2_msgs"):
-        return {}
-    reason = tf2_build.missing()
-    if reason:
-        pytest.skip(f"tf2_msgs is not there and not built: {reason}")
-    return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))
+def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
+    """What makes tf2_msgs importable in children; a loud skip where it cannot be had."""
+    if not tf2 and not find_spec("tf2_msgs"):
+        pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
+    return tf2
 
 
 def checked(more: Mapping[str, str]) -> dict[str, Outcome]:
@@ -216,8 +207,8 @@ def checked(more: Mapping[str, str]) -> dict[str, Outcome]:
 
 
 @pytest.fixture(scope="module")
-def once(tf2: Mapping[str, str]) -> dict[str, Outcome]:
-    return checked(tf2)
+def once(needed: Mapping[str, str]) -> dict[str, Outcome]:
+    return checked(needed)
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.name)
@@ -230,10 +221,10 @@ def test_a_fault_is_found_and_named_and_nothing_else(
 
 
 @pytest.mark.deep
-def test_the_same_is_found_many_times_in_a_row(tf2: Mapping[str, str]) -> None:
+def test_the_same_is_found_many_times_in_a_row(needed: Mapping[str, str]) -> None:
     odd: dict[str, list[str]] = defaultdict(list)
     for _ in range(ROUNDS):
-        outcomes = checked(tf2)
+        outcomes = checked(needed)
         for it in SCENARIOS:
             if outcomes[it.name].found != it.found:
                 odd[it.name].append(outcomes[it.name].said)

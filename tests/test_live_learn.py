@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
-import sys
 from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import live_fleet
+import planned
 import pytest
-import tf2_build
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.naming import make_naming
@@ -25,7 +23,6 @@ from multibot_rewrite.remap.table import build_table
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )
-COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot"]
 ROBOTS = ("robot1", "robot2")
 ALWAYS = {"/rosout", "/parameter_events"}
 Build = dict[str, str]
@@ -51,22 +48,12 @@ TF = {
 
 def domain(offset: int) -> int:
     """A domain of this test's own."""
-    return 1 + (os.getpid() * 7 + 25 + offset) % 100
+    return planned.domain(25 + offset)
 
 
 def multibot(offset: int, *words: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    return subprocess.run(
-        [*COMMAND, *words], env=env, capture_output=True, text=True, check=False, timeout=60
-    )
-
-
-@pytest.fixture(scope="module")
-def tf2(pytestconfig: pytest.Config) -> Build:
-    """What makes tf2_msgs importable in children; empty where it cannot be had."""
-    if find_spec("tf2_msgs") or tf2_build.missing():
-        return {}
-    return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))
+    return planned.multibot(*words, env=env)
 
 
 @pytest.fixture(scope="module")

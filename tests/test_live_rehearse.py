@@ -13,6 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import live_fleet
+import planned
 import pytest
 import tf2_build
 
@@ -30,23 +31,13 @@ LAYOUTS = ("L1", "L2", "L3", "L4")
 
 def domain(offset: int) -> int:
     """A domain of this test's own."""
-    return 1 + (os.getpid() * 7 + 80 + offset) % 100
+    return planned.domain(80 + offset)
 
 
 def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    command = [*COMMAND, *arguments, "--domain", str(domain(offset))]
-    return subprocess.run(
-        command, env=env, capture_output=True, text=True, check=False, timeout=100
-    )
-
-
-@pytest.fixture(scope="module")
-def tf2(pytestconfig: pytest.Config) -> dict[str, str]:
-    """What makes tf2_msgs importable in children; empty where it cannot be had."""
-    if find_spec("tf2_msgs") or tf2_build.missing():
-        return {}
-    return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))
+    words = ("rehearse", *arguments, "--domain", domain(offset))
+    return planned.multibot(*words, env=env)
 
 
 @pytest.fixture(scope="module")

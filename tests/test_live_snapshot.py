@@ -13,8 +13,10 @@ from pathlib import Path
 from typing import Any
 
 import live_fleet
+import planned
 import pytest
 import tf2_build
+from planned import domain
 
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -36,24 +38,9 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 Build = dict[str, str]
 
 
-def domain(offset: int) -> int:
-    """A domain that another run on this machine hardly uses; below 101 as ROS advises."""
-    return 1 + (os.getpid() * 7 + offset) % 100
-
-
 def multibot(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    return subprocess.run(
-        [*COMMAND, *arguments], env=env, capture_output=True, text=True, check=False, timeout=60
-    )
-
-
-@pytest.fixture(scope="module")
-def tf2(pytestconfig: pytest.Config) -> Build:
-    """What makes tf2_msgs importable in children; empty where it cannot be had."""
-    if find_spec("tf2_msgs") or tf2_build.missing():
-        return {}
-    return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))
+    return planned.multibot("snapshot", *arguments, env=env)
 
 
 @pytest.fixture(scope="module")
