@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Mapping
+from contextlib import nullcontext
+from typing import Any
 from xml.dom import DOMException
 from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriting.document import MAX_BYTES
+from multibot_rewrite.xacro_trace import Origin, Trace, tracing
 
 # What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
@@ -34,6 +37,18 @@ _HINTS = (
 
 def expand(path: str, arguments: Mapping[str, str]) -> bytes:
     """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason."""
+    return _expanded(path, arguments, None)[0]
+
+
+def expand_traced(
+    path: str, arguments: Mapping[str, str], trace: Trace
+) -> tuple[bytes, tuple[Origin | None, ...]]:
+    """The same, and the origin of each element in document order; ``trace`` gets the sources."""
+    data, document = _expanded(path, arguments, trace)
+    return data, trace.origins(document)
+
+
+def _expanded(path: str, arguments: Mapping[str, str], trace: Trace | None) -> tuple[bytes, Any]:
     _check_file(path)
     import xacro
     from xacro.substitution_args import SubstitutionException
@@ -41,12 +56,13 @@ def expand(path: str, arguments: Mapping[str, str]) -> bytes:
     # What a file can be at fault for; anything else is no fault of the file and must be seen whole.
     said = (xacro.XacroException, SubstitutionException, ExpatError, DOMException)
     try:
-        document = xacro.process_file(path, mappings=dict(arguments))
+        with tracing(xacro, trace) if trace else nullcontext():
+            document = xacro.process_file(path, mappings=dict(arguments))
         text: str = document.toprettyxml(indent="  ")
     except (*said, *_UNWORDED) as error:
         inner = (xacro.filestack or [path])[-1]
         raise InputError(_message(path, inner, error)) from error
-    return text.encode()
+    return text.encode(), document
 
 
 def _check_file(path: str) -> None:

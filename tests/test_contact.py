@@ -191,7 +191,7 @@ def test_a_number_that_hangs_on_the_robots_name_is_refused() -> None:
     source = robot(links, contact("base_fixed_joint_lump__a_collision_1"))
     with pytest.raises(RewriteRefused) as caught:
         rewrite(source, "r1")
-    assert "MB306" in {finding.code for finding in caught.value.findings}
+    assert "MB424" in {finding.code for finding in caught.value.findings}
     prefixed = rewrite(source, "r1", affix="prefix").text
     assert "r1/base_fixed_joint_lump__r1/a_collision_1</collision>" in prefixed
 

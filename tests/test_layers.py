@@ -25,6 +25,7 @@ FLOORS = (
     ("vocabulary",),
     ("rewriters",),
     ("rewriting", "companions"),
+    ("xacro_trace",),
     ("xacro_source", "config"),
     ("sources",),
     ("library",),

@@ -68,7 +68,7 @@ def true_reasons(robot: Robot, words: Options, name: str) -> set[str]:
     table = new_names(root, words, name)
     reasons = {"MB104"} if robot.style.escapes or b"&" in robot.text else set()
     if any(len(set(kind.values())) < len(kind) for kind in table) or dangling_meets(root, table):
-        reasons.add("MB302")
+        reasons.add("MB420")
     if all(rewritten(old, new, name) for kind in table for old, new in kind.items()):
         reasons.add("MB106")
     return reasons

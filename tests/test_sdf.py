@@ -193,7 +193,7 @@ def test_every_refusal_is_true(models: dict[str, Path]) -> None:
 
 def is_true(why: str, data: bytes) -> bool:
     """The reason, seen by other means than the package's; False for a reason not known here."""
-    if found := re.fullmatch(r"MB206 world '(.*)' cannot be rewritten for one robot", why):
+    if found := re.fullmatch(r"MB109 world '(.*)' cannot be rewritten for one robot", why):
         worlds = ElementTree.fromstring(data).findall("world")
         return found[1] in [world.get("name", "") for world in worlds]
     for message, fault in FAULTS.items():
@@ -214,8 +214,8 @@ def expat_says(data: bytes) -> str:
 @pytest.mark.parametrize(
     ("why", "data"),
     [
-        ("MB206 world 'w' cannot be rewritten for one robot", "<sdf><model name='w'/></sdf>"),
-        ("MB206 world 'w' cannot be rewritten for one robot", "<sdf><world name='v'/></sdf>"),
+        ("MB109 world 'w' cannot be rewritten for one robot", "<sdf><model name='w'/></sdf>"),
+        ("MB109 world 'w' cannot be rewritten for one robot", "<sdf><world name='v'/></sdf>"),
         ("InputError not well-formed XML: Namespace prefix a on b is not defined", "<sdf/>"),
         ("MB105 xacro element <arg>", "<sdf><arg/></sdf>"),
         ("MB104 something else", "<sdf/>"),
@@ -462,5 +462,5 @@ def test_a_world_is_refused_with_a_way_out(tmp_path: Path) -> None:
     (tmp_path / "w.sdf").write_bytes(world)
     done = run(tmp_path, "w.sdf", ROBOT, "-o", "out.urdf")
     check_refusal(
-        tmp_path, done, STOPPED, ("w.sdf:1:20:", "MB206", "'w'", "model.sdf", "<include>")
+        tmp_path, done, STOPPED, ("w.sdf:1:20:", "MB109", "'w'", "model.sdf", "<include>")
     )

@@ -97,7 +97,7 @@ def worlds(inventory: Inventory) -> Iterator[Finding]:
         if element.tag == "world":
             message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
             hint = "give the model.sdf of the robot, and <include> the results in the world"
-            yield finding(document, start, "MB206", ERROR, message, hint)
+            yield finding(document, start, "MB109", ERROR, message, hint)
 
 
 def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:

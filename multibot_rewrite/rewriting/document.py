@@ -54,7 +54,7 @@ def read_document(source: bytes, file: str) -> Document:
         root = etree.fromstring(source, _PARSER)
     except etree.XMLSyntaxError as error:
         raise InputError(_syntax_message(error, file)) from None
-    document = Document(source, file, root, _starts(source))
+    document = Document(source, file, root, start_offsets(source))
     _refuse_tree(document)
     return document
 
@@ -91,7 +91,8 @@ def _refuse_tree(document: Document) -> None:
         )
 
 
-def _starts(source: bytes) -> list[int]:
+def start_offsets(source: bytes) -> list[int]:
+    """The byte offsets of the start tags of a well-formed text, in document order."""
     after_declaration = 5 if source.startswith(b"<?xml ") else 0
     if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
         # Blanks of the same length, so that every offset still holds.

@@ -48,7 +48,7 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                 "postfix cannot reach them"
             )
             yield finding(
-                inventory.document, claim.start, "MB304", WARNING, message, "use --affix prefix"
+                inventory.document, claim.start, "MB422", WARNING, message, "use --affix prefix"
             )
 
 
@@ -72,7 +72,7 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
         if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
             message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
             hint = "drop the rule, or use --layout both"
-            yield finding(inventory.document, claim.start, "MB305", WARNING, message, hint)
+            yield finding(inventory.document, claim.start, "MB423", WARNING, message, hint)
 
 
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
@@ -86,7 +86,7 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                 "it may find another robot's"
             )
             hint = f"--layout both spells {kind}s per robot"
-            yield finding(inventory.document, start, "MB307", WARNING, message, hint)
+            yield finding(inventory.document, start, "MB425", WARNING, message, hint)
 
 
 def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
@@ -100,7 +100,7 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                 f"remap rules of {rewriter.names[0]} hold for the whole process, other robots' too"
             )
             hint = "with several robots in one Gazebo use --topics namespace"
-            yield finding(inventory.document, start, "MB308", WARNING, message, hint)
+            yield finding(inventory.document, start, "MB426", WARNING, message, hint)
         return
     inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.rewriter)}
     for claim in inventory.claims if inside else ():
@@ -110,7 +110,7 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
         if rule.target.startswith("/"):
             message = f"{claim.value!r} holds for the whole process, other robots' nodes too"
             hint = "a relative target ends in each robot's own namespace"
-            yield finding(inventory.document, claim.start, "MB308", WARNING, message, hint)
+            yield finding(inventory.document, claim.start, "MB426", WARNING, message, hint)
 
 
 def hardwired(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
@@ -123,7 +123,7 @@ def hardwired(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                     f"{rewriter.names[0]} looks for a {kind} called {name!r}, which is renamed"
                 )
                 hint = "its code knows no other name: use --layout tf-per-robot"
-                yield finding(inventory.document, start, "MB310", WARNING, message, hint)
+                yield finding(inventory.document, start, "MB428", WARNING, message, hint)
 
 
 def _holds_for_all(rewriter: Rewriter | None) -> bool:
@@ -148,7 +148,7 @@ def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
                     f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
                 )
                 hint = f"--shared-frames world,map,{claim.value} keeps it"
-                yield finding(inventory.document, claim.start, "MB309", WARNING, message, hint)
+                yield finding(inventory.document, claim.start, "MB427", WARNING, message, hint)
 
 
 def reordered(inventory: Inventory, naming: Naming) -> Iterator[Finding]:

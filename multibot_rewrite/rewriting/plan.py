@@ -73,7 +73,7 @@ def _unstable(
         finding(
             document,
             claim.start,
-            "MB306",
+            "MB424",
             ERROR,
             f"the number in {claim.value!r} would depend on how the robot's name sorts",
             "use --affix prefix, or keep the fixed joints apart with preserveFixedJoint",

@@ -95,7 +95,7 @@ def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
 def _collision(inventory: Inventory, kind: str, claim: Claim, name: str, robot: str) -> Finding:
     message = f"another {kind} becomes {name!r} for {robot}, which is there already"
     hint = "choose another separator"
-    return finding(inventory.document, claim.start, "MB302", ERROR, message, hint)
+    return finding(inventory.document, claim.start, "MB420", ERROR, message, hint)
 
 
 def meeting(
@@ -109,7 +109,7 @@ def meeting(
         for kind, both in sorted(ours & {(n[0], _spelled(naming, other, *n)) for n in names}):
             message = f"{kind} {both!r} comes out for {robot} and for {other}"
             hint = "rename a robot or choose another separator"
-            found.append(finding(inventory.document, 0, "MB303", ERROR, message, hint))
+            found.append(finding(inventory.document, 0, "MB421", ERROR, message, hint))
     return found
 
 

@@ -40,7 +40,7 @@ that topics are made of, a ``subtopic`` stands below a stem or namespace.
     form=member      ``link::sensor``, ``world::model::link::sensor``, ``link/sensor``: below a link
     form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
     form=regex       a regular expression for whole names, alternatives affixed one by one
-    form=prefix      put in front of names in code: a postfix cannot reach them (MB304)
+    form=prefix      put in front of names in code: a postfix cannot reach them (MB422)
     form=remap       a ROS remap rule ``from:=to``: ``to`` is the name
     form=argument    the same as an argument, ``__ns:=`` and ``__node:=`` among them
     form=collision   a collision, scoped or not, recomputed when its link is renamed

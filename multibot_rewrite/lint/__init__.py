@@ -1,0 +1,1 @@
+"""Findings about robot descriptions: a file -> subjects -> rules -> findings -> a report."""

@@ -1,0 +1,89 @@
+"""One file -> its findings. Nothing that a file holds ends in a traceback or without an end."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import NoReturn
+
+from multibot_rewrite.lint.failures import crash, failure, too_long
+from multibot_rewrite.lint.places import numbered, placed
+from multibot_rewrite.lint.records import LintFinding, Rule, Subject
+from multibot_rewrite.lint.registry import active_rules
+from multibot_rewrite.lint.settings import Settings, level_of
+from multibot_rewrite.lint.subjects import read_subjects
+from multibot_rewrite.lint.suppress import unsuppressed
+from multibot_rewrite.model import InputError
+
+
+class _TooLongError(BaseException):
+    """The time of a file is over; no ``except Exception`` on the way may swallow it."""
+
+
+def lint_file(path: str, settings: Settings) -> list[LintFinding]:
+    """All findings of a file, in order; a file that cannot be read is a finding."""
+    found: list[LintFinding] = []
+    sources: dict[str, bytes] = {}
+    try:
+        with _limited(settings.seconds):
+            for subject in read_subjects(path, settings):
+                found += lint_subject(subject)
+                sources |= subject.sources or {path: subject.document.source}
+            return sorted(unsuppressed(_merged(found), sources, settings), key=_order)
+    except InputError as error:
+        found.append(failure(path, str(error), settings))
+    except _TooLongError:
+        found.append(too_long(path, settings.seconds))
+    return sorted(_merged(found), key=_order)
+
+
+def lint_subject(subject: Subject) -> list[LintFinding]:
+    """What the rules that are on find in one document."""
+    rules = active_rules(subject.settings, subject.format)
+    return [finding for rule in rules for finding in _asked(rule, subject)]
+
+
+def _asked(rule: Rule, subject: Subject) -> list[LintFinding]:
+    try:
+        problems = list(rule.check(subject))
+    except Exception as error:  # a rule that crashes is told, and the others are asked all the same
+        return [crash(rule, subject, error)]
+    if not problems:
+        return []
+    numbers = numbered(subject)
+    rule = rule._replace(level=level_of(subject.settings, rule.code, rule.level))
+    return [placed(subject, numbers, problem, rule) for problem in problems]
+
+
+def _merged(found: Iterable[LintFinding]) -> list[LintFinding]:
+    """What several expansions have in common is told once, of the first of them."""
+    first: dict[LintFinding, LintFinding] = {}
+    for finding in found:
+        first.setdefault(finding._replace(arguments=""), finding)
+    return list(first.values())
+
+
+def _order(finding: LintFinding) -> tuple[str, int, int, str, str, str]:
+    it = finding
+    return it.file, it.line, it.column, it.code, it.message, it.arguments
+
+
+@contextmanager
+def _limited(seconds: float) -> Iterator[None]:
+    """Raise _TooLongError after that time; only a process's main thread can be stopped like that."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = signal.signal(signal.SIGALRM, _stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _stop(*_: object) -> NoReturn:
+    raise _TooLongError

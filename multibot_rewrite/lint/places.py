@@ -1,0 +1,93 @@
+"""A problem's element -> file, line and column, through xacro where the document was expanded."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from lxml.etree import _Element
+
+from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
+from multibot_rewrite.rewriting.document import tag_end
+from multibot_rewrite.xacro_trace import Call
+
+Numbers = Mapping[_Element, int]
+_BLANK = re.compile(rb"\s*")
+
+
+class Place(NamedTuple):
+    """A byte offset of a file that was read, and the macro calls that led there."""
+
+    file: str
+    source: bytes
+    offset: int
+    calls: tuple[Call, ...] = ()
+
+
+def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> LintFinding:
+    """The finding for a problem; ``numbers`` are those of ``numbered``."""
+    it = _place(subject, numbers[problem.element], problem.attribute)
+    line, column = _locate(it.source, it.offset)
+    return LintFinding(
+        rule.code,
+        rule.level,
+        " ".join(problem.message.split()),
+        problem.hint,
+        it.file,
+        line,
+        column,
+        tuple(_told(subject, call) for call in it.calls),
+        subject.arguments,
+        () if subject.origins else problem.edits,
+    )
+
+
+def numbered(subject: Subject) -> Numbers:
+    """The elements of a document and their numbers in document order."""
+    return {element: at for at, element in enumerate(subject.document.root.iter("*"))}
+
+
+def _place(subject: Subject, number: int, attribute: str | None) -> Place:
+    origin = subject.origins[number] if subject.origins else None
+    if origin is None:
+        document = subject.document
+        start = document.starts[number]
+        offset = start + _within(document.source, start, attribute)
+        return Place(document.file, document.source, offset)
+    source = subject.sources[origin.file]
+    offset = origin.start + _within(source, origin.start, attribute)
+    return Place(origin.file, source, offset, origin.calls)
+
+
+@lru_cache(maxsize=8)
+def _line_starts(source: bytes) -> list[int]:
+    return [0, *(found.end() for found in re.finditer(rb"\n", source))]
+
+
+def _locate(source: bytes, offset: int) -> tuple[int, int]:
+    """As ``document.locate``, for many places of one text."""
+    starts = _line_starts(source)
+    line = bisect_right(starts, offset)
+    before = source[starts[line - 1] : offset]
+    return line, len(before.decode("utf-8", "replace")) + 1
+
+
+def _within(source: bytes, start: int, attribute: str | None) -> int:
+    """How far behind the start of its tag a value stands; an attribute that is not there: 0."""
+    if attribute is None:
+        return 0
+    end = tag_end(source, start)
+    if not attribute:
+        blank = _BLANK.match(source, end)
+        return (blank.end() if blank else end) - start
+    name = re.escape(attribute.rpartition("}")[2].encode())
+    found = re.compile(rb"[\s:](" + name + rb"\s*=)").search(source, start, end)
+    return found.start(1) - start if found else 0
+
+
+def _told(subject: Subject, call: Call) -> str:
+    line, _ = _locate(subject.sources[call.file], call.start)
+    return f"{call.file}:{line}: {call.macro}"

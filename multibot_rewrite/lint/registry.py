@@ -1,0 +1,39 @@
+"""All rules, by code; which of them a lint asks."""
+
+from __future__ import annotations
+
+from types import ModuleType
+
+from multibot_rewrite.lint.records import Rule
+from multibot_rewrite.lint.rules import (
+    files,
+    meshes,
+    multirobot,
+    names,
+    physics,
+    references,
+    rewriting,
+    semantics,
+    structure,
+)
+from multibot_rewrite.lint.settings import Settings, is_on
+
+GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
+    ("MB1", "file and encoding", files),
+    ("MB2", "references", references),
+    ("MB3", "names", names),
+    ("MB4", "several robots", multirobot),
+    ("MB5", "structure", structure),
+    ("MB6", "physics", physics),
+    ("MB7", "meshes and packages", meshes),
+    ("MB8", "SRDF against URDF", semantics),
+    ("MB9", "rewriting", rewriting),
+)
+_FOUND = [it for *_, module in GROUPS for it in vars(module).values() if isinstance(it, Rule)]
+RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
+assert len(RULES) == len(_FOUND), "two rules have one code"
+
+
+def active_rules(settings: Settings, format_: str) -> list[Rule]:
+    """The rules that are asked about a subject of that format."""
+    return [it for it in RULES.values() if format_ in it.formats and is_on(settings, it.code)]

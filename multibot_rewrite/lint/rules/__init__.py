@@ -1,0 +1,1 @@
+"""The rules: one module a group, one function a rule, its words and examples above it."""

@@ -1,0 +1,3 @@
+"""MB3: how names are spelled."""
+
+from __future__ import annotations

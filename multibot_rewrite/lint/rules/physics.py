@@ -1,0 +1,3 @@
+"""MB6: mass and inertia."""
+
+from __future__ import annotations

@@ -1,0 +1,3 @@
+"""MB8: an SRDF against its URDF."""
+
+from __future__ import annotations

@@ -1,0 +1,106 @@
+"""Where in the xacro files each element of an expansion was written, and through which macro calls.
+
+xacro expands a DOM tree: its elements carry their origin as user data, which minidom hands on to
+every copy, and a macro's body is copied while its call is the innermost one.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+from xml.dom import UserDataHandler
+
+from multibot_rewrite.rewriting.document import start_offsets
+
+_KEY = "multibot_origin"
+_CALL = "xacro:call"
+
+
+class Call(NamedTuple):
+    """A macro call: the macro's name, the file of the call and the byte offset of its tag."""
+
+    macro: str
+    file: str
+    start: int
+
+
+class Origin(NamedTuple):
+    """The file an element was written in, the byte offset of its tag, the innermost call first."""
+
+    file: str
+    start: int
+    calls: tuple[Call, ...]
+
+
+class Trace:
+    """What one expansion knows of its origins.
+
+    ``sources`` are the files that were read, ``calls`` the macro calls under way, ``failed`` those
+    that were when an error passed.
+    """
+
+    def __init__(self) -> None:
+        self.sources: dict[str, bytes] = {}
+        self.calls: list[Call] = []
+        self.failed: tuple[Call, ...] = ()
+
+    def handle(self, operation: int, key: str, data: Origin, source: Any, copy: Any) -> None:
+        """Called by minidom for every copy of an element."""
+        if operation == UserDataHandler.NODE_CLONED and copy is not None:
+            copy.setUserData(key, data._replace(calls=tuple(reversed(self.calls))), self)
+
+    def mark(self, document: Any, file: str) -> None:
+        """Give the elements of a file that was just parsed their origins."""
+        with open(file, "rb") as opened:
+            self.sources[file] = source = opened.read()
+        starts = start_offsets(source)
+        elements = document.getElementsByTagName("*")
+        if len(elements) == len(starts):
+            for element, start in zip(elements, starts, strict=True):
+                element.setUserData(_KEY, Origin(file, start, ()), self)
+
+    def origins(self, document: Any) -> tuple[Origin | None, ...]:
+        """The origins of an expanded document's elements, in document order."""
+        return tuple(element.getUserData(_KEY) for element in document.getElementsByTagName("*"))
+
+
+@contextmanager
+def tracing(xacro: Any, trace: Trace) -> Iterator[None]:
+    """While it lasts, what ``xacro`` reads and calls is noted in ``trace``."""
+    parse, handle = xacro.parse, xacro.handle_macro_call
+    xacro.parse, xacro.handle_macro_call = _reader(parse, trace), _caller(handle, trace)
+    try:
+        yield
+    finally:
+        xacro.parse, xacro.handle_macro_call = parse, handle
+
+
+def _reader(parse: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
+    def read(given: Any, filename: str | None = None) -> Any:
+        document = parse(given, filename)
+        if given is None and filename is not None and os.path.isfile(filename):
+            trace.mark(document, filename)
+        return document
+
+    return read
+
+
+def _caller(handle: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
+    def called(node: Any, macros: Any, symbols: Any) -> Any:
+        origin = node.getUserData(_KEY)
+        # A dynamic call comes back under the name of its macro.
+        if origin is None or node.tagName == _CALL or not node.tagName.startswith("xacro:"):
+            return handle(node, macros, symbols)
+        depth = len(trace.calls)
+        trace.calls.append(Call(node.tagName[6:], origin.file, origin.start))
+        try:
+            return handle(node, macros, symbols)
+        except BaseException:
+            trace.failed = trace.failed or tuple(reversed(trace.calls))
+            raise
+        finally:
+            del trace.calls[depth:]
+
+    return called
