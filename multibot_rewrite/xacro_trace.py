@@ -7,7 +7,7 @@ every copy, and a macro's body is copied while its call is the innermost one.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, NamedTuple
 from xml.dom import UserDataHandler
@@ -37,12 +37,12 @@ class Origin(NamedTuple):
 class Trace:
     """What one expansion knows of its origins.
 
-    ``sources`` are the files that were read, ``calls`` the macro calls under way, ``failed`` those
-    that were when an error passed.
+    ``sources`` are the files that were read, or whose text was at hand, ``calls`` the macro calls
+    under way, ``failed`` those that were when an error passed.
     """
 
-    def __init__(self) -> None:
-        self.sources: dict[str, bytes] = {}
+    def __init__(self, sources: Mapping[str, bytes] = {}) -> None:
+        self.sources = dict(sources)
         self.calls: list[Call] = []
         self.failed: tuple[Call, ...] = ()
 
@@ -53,9 +53,10 @@ class Trace:
 
     def mark(self, document: Any, file: str) -> None:
         """Give the elements of a file that was just parsed their origins."""
-        with open(file, "rb") as opened:
-            self.sources[file] = source = opened.read()
-        starts = start_offsets(source)
+        if file not in self.sources:
+            with open(file, "rb") as opened:
+                self.sources[file] = opened.read()
+        starts = start_offsets(self.sources[file])
         elements = document.getElementsByTagName("*")
         if len(elements) == len(starts):
             for element, start in zip(elements, starts, strict=True):
@@ -79,9 +80,11 @@ def tracing(xacro: Any, trace: Trace) -> Iterator[None]:
 
 def _reader(parse: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
     def read(given: Any, filename: str | None = None) -> Any:
-        document = parse(given, filename)
-        if given is None and filename is not None and os.path.isfile(filename):
-            trace.mark(document, filename)
+        if given is not None or filename is None:
+            return parse(given, filename)
+        at_hand = trace.sources.get(filename)
+        document = parse(None if at_hand is None else at_hand.decode(), filename)
+        trace.mark(document, filename if at_hand is not None else os.path.normpath(filename))
         return document
 
     return read

@@ -16,6 +16,7 @@ from multibot_rewrite.lint.settings import Settings, level_of
 from multibot_rewrite.lint.subjects import read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError
+from multibot_rewrite.sources import read_file
 
 
 class _TooLongError(BaseException):
@@ -24,14 +25,23 @@ class _TooLongError(BaseException):
 
 def lint_file(path: str, settings: Settings) -> list[LintFinding]:
     """All findings of a file, in order; a file that cannot be read is a finding."""
+    try:
+        data = read_file(path)
+    except InputError as error:
+        return [failure(path, str(error), settings)]
+    return lint_data(path, data, settings)
+
+
+def lint_data(path: str, data: bytes, settings: Settings) -> list[LintFinding]:
+    """The same for text that is at hand; ``path`` is its name, and where its xacro is."""
     found: list[LintFinding] = []
-    sources: dict[str, bytes] = {}
+    sources = {path: data}
     try:
         with _limited(settings.seconds):
-            for subject in read_subjects(path, settings):
+            for subject in read_subjects(path, data, settings):
                 found += lint_subject(subject)
-                sources |= subject.sources or {path: subject.document.source}
-            return sorted(unsuppressed(_merged(found), sources, settings), key=_order)
+                sources = {**subject.sources, **sources}
+            found = unsuppressed(_merged(found), sources, settings)
     except InputError as error:
         found.append(failure(path, str(error), settings))
     except _TooLongError:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.included import included
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 
@@ -23,7 +24,7 @@ def lint_files(
     ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` sees the
     files' findings pass, for a progress bar.
     """
-    settings = _with_urdfs(paths, settings)
+    settings = _with_urdfs(paths, settings)._replace(included=included(paths))
     found = watch(_linted(paths, settings, jobs or os.cpu_count() or 1))
     # An included file may be reached from several.
     return list(dict.fromkeys(finding for findings in found for finding in findings))

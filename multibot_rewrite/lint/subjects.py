@@ -5,38 +5,67 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fnmatch import fnmatch
 
+from lxml.etree import _Element
+
 from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import Robot, read_robot
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
+from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting.collect import NOTHING, collect
 from multibot_rewrite.rewriting.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.rewriting.document import Document, read_document
-from multibot_rewrite.sources import read_file, read_source
+from multibot_rewrite.sources import read_source
 from multibot_rewrite.xacro_source import expand_traced
 from multibot_rewrite.xacro_trace import Trace
 
 DEFAULT = ArgumentSet("*", ())
+MISSING = "Undefined substitution argument"
+DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
 
 
-def read_subjects(path: str, settings: Settings) -> Iterator[Subject]:
-    """Every subject of a file; raises InputError where it cannot be read or expanded."""
+def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject]:
+    """Every subject of a file; raises InputError where it cannot be read or expanded.
+
+    A xacro file that others include, or that only defines what others use, is not expanded alone.
+    """
+    written = _subject(read_document(data, path), settings)
     if not path.endswith(".xacro"):
-        yield _subject(read_document(read_file(path), path), settings)
+        yield written
         return
-    source = _subject(read_document(read_file(path), path), settings)
-    yield source._replace(format=XACRO)
-    for given in (DEFAULT, *settings.arguments):
-        if fnmatch(path, given.pattern):
-            yield _expanded(path, given, settings)
+    yield written._replace(format=XACRO)
+    if path not in settings.included and not _only_defines(written.document.root):
+        yield from _expansions(path, data, settings)
 
 
-def _expanded(path: str, given: ArgumentSet, settings: Settings) -> Subject:
-    trace = Trace()
-    data, origins = expand_traced(path, dict(given.arguments), trace)
-    subject = _subject(read_document(data, f"{path} (expanded)"), settings)
+def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject]:
+    sets = [given for given in settings.arguments if fnmatch(path, given.pattern)]
+    try:
+        yield _expanded(path, data, DEFAULT, settings)
+    except InputError as error:
+        # With arguments that have no default there is no default expansion.
+        if not sets or MISSING not in str(error):
+            raise
+    for given in sets:
+        yield _expanded(path, data, given, settings)
+
+
+def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
+    trace = Trace({path: data})
+    expanded, origins = expand_traced(path, dict(given.arguments), trace)
+    subject = _subject(read_document(expanded, f"{path} (expanded)"), settings)
     return subject._replace(origins=origins, sources=trace.sources, arguments=str(given))
+
+
+def _only_defines(root: _Element) -> bool:
+    """Nothing but definitions for other files: expanded alone it is an empty robot."""
+    return all(_local(child) in DEFINITIONS for child in root.iterchildren("*"))
+
+
+def _local(element: _Element) -> str:
+    space, _, name = str(element.tag).rpartition("}")
+    return name if "xacro" in space else ""
 
 
 def _subject(document: Document, settings: Settings) -> Subject:

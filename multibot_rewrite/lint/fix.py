@@ -1,0 +1,81 @@
+"""Safe edits -> the mended text, proved: nothing else changed, and the findings are gone."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from lxml.etree import _Element
+
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.model import Edit, ProofError
+from multibot_rewrite.rewriting.apply import cut
+from multibot_rewrite.rewriting.document import Document, read_document
+
+# A fix may uncover another one; what is not done by then goes round in circles.
+ROUNDS = 5
+
+
+def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[LintFinding]]:
+    """The text with every safe fix made, and what is left to find in it.
+
+    Raises InputError where the file cannot be read, ProofError where the result does not hold.
+    """
+    findings = lint_data(path, source, settings)
+    for _ in range(ROUNDS):
+        edits = list(_apart(_edits(path, findings)))
+        if not edits:
+            return source, findings
+        mended = b"".join(cut(source, edits))
+        after = lint_data(path, mended, settings)
+        _prove(path, (source, findings), (mended, after), edits)
+        source, findings = mended, after
+    raise ProofError(f"{path}: fixes come back after {ROUNDS} rounds")
+
+
+def _edits(path: str, findings: Iterable[LintFinding]) -> set[Edit]:
+    return {edit for finding in findings if finding.file == path for edit in finding.edits}
+
+
+def _apart(edits: Iterable[Edit]) -> Iterator[Edit]:
+    """In source order, without those that would change what another one changes."""
+    end = -1
+    for edit in sorted(edits, key=lambda it: (it.start, it.end)):
+        if edit.start >= max(end, 0) and edit.end > edit.start:
+            yield edit
+            end = edit.end
+
+
+def _prove(
+    path: str,
+    old: tuple[bytes, Sequence[LintFinding]],
+    new: tuple[bytes, Sequence[LintFinding]],
+    edits: Sequence[Edit],
+) -> None:
+    """Every element without an edit in its tag or text is what it was, and no finding is new."""
+    before, after = (read_document(data, path) for data, _ in (old, new))
+    spans = _spans(before)
+    touched = [any(start <= it.start < end for it in edits) for start, end in spans]
+    pairs = zip(before.root.iter("*"), after.root.iter("*"), touched, strict=False)
+    same = len(before.starts) == len(after.starts)
+    if not same or not all(_same(old, new, there) for old, new, there in pairs):
+        raise ProofError(f"{path}: a fix changes more than it may")
+    more = _counted(new[1]) - _counted(old[1])
+    if more:
+        raise ProofError(f"{path}: a fix makes a new finding: {next(iter(more))}")
+
+
+def _spans(document: Document) -> Iterator[tuple[int, int]]:
+    """From each start tag to the next one; before the first is the first's."""
+    starts = document.starts
+    yield from zip([0, *starts[1:]], [*starts[1:], len(document.source) + 1], strict=True)
+
+
+def _same(old: _Element, new: _Element, touched: bool) -> bool:
+    return old.tag == new.tag and (touched or (old.attrib, old.text) == (new.attrib, new.text))
+
+
+def _counted(findings: Iterable[LintFinding]) -> Counter[tuple[str, str]]:
+    return Counter((it.code, it.message) for it in findings)

@@ -1,0 +1,46 @@
+"""Which xacro files others include: their content is linted where it is used."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
+
+from multibot_rewrite.model import InputError
+from multibot_rewrite.sources import read_file
+
+_INCLUDE = re.compile(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
+# What stands before the last substitution of a path is not known.
+_KNOWN = re.compile(r".*[)}]")
+
+
+def included(paths: Sequence[str]) -> frozenset[str]:
+    """Those of the xacro files that another one of them includes, by the known end of its path."""
+    files = {os.path.realpath(path): path for path in paths if path.endswith(".xacro")}
+    ends: dict[str, set[str]] = {}
+    for path in files.values():
+        for asked in _asked_for(path):
+            ends.setdefault(os.path.basename(asked), set()).add(asked)
+    return frozenset(
+        path
+        for real, path in files.items()
+        if any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
+    )
+
+
+def _asked_for(path: str) -> Iterator[str]:
+    """The paths that a file includes, without what only xacro can fill in; never itself."""
+    own = os.path.realpath(path)
+    for name in _names(path):
+        known = _KNOWN.sub("", name)
+        asked = os.path.normpath(known).lstrip("./") if known.strip("/. ") else ""
+        if asked and not own.endswith(f"/{asked}"):
+            yield asked
+
+
+def _names(path: str) -> Iterable[str]:
+    try:
+        data = read_file(path)
+    except InputError:  # told when it is linted
+        return ()
+    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(data))
