@@ -17,6 +17,7 @@ from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
 from multibot_rewrite.rewriting.hazards import hazards
+from multibot_rewrite.rewriting.remarks import Remark, told
 from multibot_rewrite.vocabulary import Rewriter
 
 
@@ -28,8 +29,8 @@ def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
         *duplicates(inventory),
         *dangling(inventory, naming),
         *ambiguous(inventory),
-        *unknown_plugins(inventory, tree),
-        *unknown_hardware(inventory, tree),
+        *told(inventory.document, unknown_plugins(inventory, tree), WARNING),
+        *told(inventory.document, unknown_hardware(inventory, tree), WARNING),
         *hazards(inventory, naming),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
@@ -168,7 +169,7 @@ def is_unknown(rewriter: Rewriter) -> bool:
     return rewriter.select == "plugin" or rewriter.names[0] == ANY_WITH_ROS
 
 
-def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
+def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
     """Plugins no section knows: what their parameters name can only be guessed."""
     known = {}
     for host in inventory.hosts:
@@ -179,17 +180,17 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
         if name not in known:
             known[name] = nearest(library_key(name), tree.vocabulary.names("plugin"))
         near = known[name]
-        yield finding(
-            inventory.document,
+        yield Remark(
+            host.element,
             host.start,
+            None,
             "MB902",
-            WARNING,
             f"plugin {name!r} is not in the vocabulary: its own parameters stay as they are",
             f"the nearest known one is {near!r}" if near else "",
         )
 
 
-def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
+def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
     """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
     for host in inventory.hosts:
         rewriter = host.node.rewriter
@@ -199,11 +200,11 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Finding]:
         if not name or host.element.find("hardware/param") is None:
             continue
         near = nearest(name, tree.vocabulary.names("hardware"))
-        yield finding(
-            inventory.document,
+        yield Remark(
+            host.element,
             host.start,
+            None,
             "MB903",
-            WARNING,
             f"hardware class {name!r} is not in the vocabulary: its own parameters stay as they are",
             f"the nearest known one is {near!r}" if near else "",
         )

@@ -12,7 +12,8 @@ from lxml import etree
 from multibot_rewrite.model import WARNING, Finding, Site
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import Document, finding, value_slot
+from multibot_rewrite.rewriting.document import finding, value_slot
+from multibot_rewrite.rewriting.remarks import Remark
 
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("//text()[normalize-space()]", smart_strings=False)
@@ -40,9 +41,15 @@ class Mention(NamedTuple):
 def find_mentions(
     inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
 ) -> list[Finding]:
-    """A warning for each of ``unclaimed_mentions``."""
+    """A warning for each of ``unclaimed_mentions``, at the value itself."""
     document = inventory.document
-    return [_finding(document, it) for it in unclaimed_mentions(inventory, values, names, tree)]
+    found = []
+    for it in unclaimed_mentions(inventory, values, names, tree):
+        slot = value_slot(document.source, it.start, it.attribute, it.value)
+        said = remark(it)
+        at = slot[0] if slot else it.start
+        found.append(finding(document, at, said.code, WARNING, said.message, said.hint))
+    return found
 
 
 def unclaimed_mentions(
@@ -109,16 +116,11 @@ def node_of(element: etree._Element, tree: Tree) -> Node | None:
     return node.select(element) if node is not None and node.select is not None else node
 
 
-def _finding(document: Document, mention: Mention) -> Finding:
+def remark(mention: Mention) -> Remark:
+    """What to say about one."""
     element, start, attribute, value, name = mention
-    slot = value_slot(document.source, start, attribute, value)
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
-    return finding(
-        document,
-        slot[0] if slot else start,
-        "MB901",
-        WARNING,
-        f"unclaimed mention: {text}, and nothing known says what it means: it stays as it is",
-        "add a line to a vocabulary file: a uses/declares site, or keep",
-    )
+    message = f"unclaimed mention: {text}, and nothing known says what it means: it stays as it is"
+    hint = "add a line to a vocabulary file: a uses/declares site, or keep"
+    return Remark(element, start, attribute, "MB901", message, hint)

@@ -17,6 +17,7 @@ from multibot_rewrite.rewriters.spelling import (
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import finding
 from multibot_rewrite.rewriting.inserted import markers
+from multibot_rewrite.rewriting.remarks import Remark, about, told
 
 
 def already_rewritten(
@@ -56,13 +57,17 @@ def _renamed(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, b
 
 def collisions(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> list[Finding]:
     """Names that stay as they are and are what another name becomes for some robot."""
+    return list(told(inventory.document, taken_names(inventory, naming, robots), ERROR))
+
+
+def taken_names(inventory: Inventory, naming: Naming, robots: Iterable[str]) -> Iterator[Remark]:
+    """The same as remarks."""
     kept = list(_kept(inventory, naming))
-    return [
-        _collision(inventory, kind, claim, name, robot)
-        for robot in (robots if kept else ())
-        for kind, name, claim in kept
-        if _stem(naming, robot, kind, name) in inventory.declared.get(kind, ())
-    ]
+    for robot in robots if kept else ():
+        for kind, name, claim in kept:
+            if _stem(naming, robot, kind, name) in inventory.declared.get(kind, ()):
+                message = f"another {kind} becomes {name!r} for {robot}, which is there already"
+                yield about(claim, "MB420", message, "choose another separator")
 
 
 def _kept(inventory: Inventory, naming: Naming) -> Iterator[tuple[str, str, Claim]]:
@@ -90,12 +95,6 @@ def _declarations(inventory: Inventory) -> Iterator[tuple[str, str, Claim]]:
 def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
     span = removal(naming, robot, kind, name)
     return name[: span[0]] + name[span[1] :] if span else ""
-
-
-def _collision(inventory: Inventory, kind: str, claim: Claim, name: str, robot: str) -> Finding:
-    message = f"another {kind} becomes {name!r} for {robot}, which is there already"
-    hint = "choose another separator"
-    return finding(inventory.document, claim.start, "MB420", ERROR, message, hint)
 
 
 def meeting(
