@@ -22,8 +22,9 @@ from lxml import etree
 from robots import robot
 
 from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.apply import cut, fill
 from multibot_rewrite.rewriting.collect import collect

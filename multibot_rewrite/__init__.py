@@ -1,16 +1,22 @@
 """Rewrite a robot description for one robot or many, and prove that nothing was missed."""
 
-from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
-from multibot_rewrite.model import (
-    Change,
-    Finding,
-    InputError,
-    MultibotError,
-    ProofError,
-    RewriteRefused,
-    UsageError,
-    VocabularyError,
-)
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
+    from multibot_rewrite.model import (
+        Change,
+        Finding,
+        InputError,
+        MultibotError,
+        ProofError,
+        RewriteRefused,
+        UsageError,
+        VocabularyError,
+    )
 
 __version__ = "0.1.0"
 
@@ -29,3 +35,12 @@ __all__ = [
     "rewrite_all",
     "strip",
 ]
+_LIBRARY = frozenset({"Rewrite", "explain", "rewrite", "rewrite_all", "strip"})
+
+
+def __getattr__(name: str) -> object:
+    # A command loads what it needs: each of them starts by importing this package.
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module = "library" if name in _LIBRARY else "model"
+    return getattr(import_module(f"{__name__}.{module}"), name)

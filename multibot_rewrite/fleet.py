@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
 from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
-from multibot_rewrite.library import Rewrite, builtin_tree, rewrite_all
+from multibot_rewrite.library import Rewrite, rewrite_all
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.remap.known import stack_of
 from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
 from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.sources import Source

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from multibot_rewrite.model import Change, Finding, UsageError, VocabularyError
+from multibot_rewrite.model import Change, Finding, UsageError
 from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
-from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
 from multibot_rewrite.sources import Source, args_for, read_source
-from multibot_rewrite.vocabulary import advice, load_vocabulary
 
 if TYPE_CHECKING:
     from multibot_rewrite.rewriting.explain import Explanation
@@ -153,16 +151,3 @@ def _check_robots(robots: Sequence[str]) -> None:
         if robot in seen:
             raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
         seen.add(robot)
-
-
-@lru_cache(maxsize=8)
-def builtin_tree(vocabulary: tuple[str, ...] = ()) -> Tree:
-    """The tree of the vocabulary built in, installed, and named in ``vocabulary``; made once."""
-    sections = load_vocabulary(vocabulary)
-    try:
-        tree = Tree(sections)
-        if sections.extended:
-            tree.check()
-        return tree
-    except VocabularyError as error:
-        raise VocabularyError(f"{error}{advice(str(error))}") from None

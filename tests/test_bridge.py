@@ -6,9 +6,10 @@ import pytest
 import yaml
 from robots import FIXTURES
 
-from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.bridge import Bridged, as_yaml, bridge, known_topics
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.vocabulary import load_vocabulary

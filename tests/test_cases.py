@@ -13,9 +13,10 @@ from case_files import Case, CaseError, load_cases
 from lxml import etree
 
 from multibot_rewrite import Rewrite, RewriteRefused, rewrite, strip
-from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import ERROR, Finding, Site
 from multibot_rewrite.naming import POSTFIX, Naming, make_naming
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rewriting.apply import fill

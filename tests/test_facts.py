@@ -14,8 +14,8 @@ from typing import NamedTuple
 import pytest
 from lxml import etree
 
-from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.model import Site
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Node, qualified
 from multibot_rewrite.vocabulary import Rewriter, load_vocabulary, split_path, split_step
 

@@ -13,7 +13,7 @@ import pytest
 from case_files import read_case
 
 from multibot_rewrite import VocabularyError, rewrite, strip
-from multibot_rewrite.library import builtin_tree
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.vocabulary import load_vocabulary
 from multibot_rewrite.vocabulary.__main__ import page
 from multibot_rewrite.vocabulary.installed import announcing, installed

@@ -20,8 +20,9 @@ import tf2_build
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.transforms import description_edges
-from multibot_rewrite.library import builtin_tree, rewrite
+from multibot_rewrite.library import rewrite
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import read_document
 

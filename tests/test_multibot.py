@@ -17,7 +17,8 @@ from robots import CORPUS
 import multibot_rewrite
 from multibot_rewrite.cli.multibot import COMMANDS, main
 from multibot_rewrite.cli.tables import Grid, render
-from multibot_rewrite.library import builtin_tree, rewrite
+from multibot_rewrite.library import rewrite
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import look_up
 from multibot_rewrite.vocabulary import TYPES, load_vocabulary
 

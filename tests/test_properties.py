@@ -29,8 +29,8 @@ from robots import (
 )
 
 from multibot_rewrite import Rewrite, RewriteRefused, UsageError, rewrite, rewrite_all, strip
-from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting import pipeline
 from multibot_rewrite.rosnames import check_robot_name, propose_token
 

@@ -20,7 +20,7 @@ from multibot_rewrite.graph.rehearsal import (
     to_order,
 )
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
-from multibot_rewrite.library import builtin_tree, rewrite
+from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.remap.known import stack_of
 from multibot_rewrite.remap.plugins import plugin_nodes
@@ -40,6 +40,7 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 

@@ -12,7 +12,7 @@ import yaml
 from lxml import etree
 from robots import FIXTURES
 
-from multibot_rewrite.library import builtin_tree, rewrite_all
+from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.forms import FORMS, as_data
@@ -32,6 +32,7 @@ from multibot_rewrite.remap.records import (
     Table,
 )
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import read_document
 

@@ -8,7 +8,7 @@ import pytest
 
 import multibot_rewrite
 from multibot_rewrite import rewrite
-from multibot_rewrite.library import builtin_tree
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.audit import is_unknown
 from multibot_rewrite.rewriting.collect import Inventory, collect

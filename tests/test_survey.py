@@ -9,8 +9,8 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite import InputError
-from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.rewriting.mentions import find_mentions, slot_values

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import VocabularyError, rewrite
-from multibot_rewrite.library import builtin_tree
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.vocabulary import TYPES, Rewriter, check_vocabulary, load_vocabulary
 
 HEAD = "[plugin mine]\nabout: a test\n"

@@ -13,8 +13,8 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED, UNUSABLE
 from multibot_rewrite.cli.tables import Grid, clip, json_bytes, print_report
 from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import read_document

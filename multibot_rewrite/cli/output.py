@@ -36,7 +36,8 @@ def deliver(
         return
     write_all(more)
     for robot, data in results:
-        print_bytes(_diff(before, data, input_name(options), robot) if options.diff else data)
+        name = input_name(options)
+        print_bytes(diff(before, data, name, f"{name} for {robot}") if options.diff else data)
 
 
 def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
@@ -49,13 +50,14 @@ def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:
     return track(items, doing, total, console=Console(stderr=True), transient=True)
 
 
-def _diff(old: bytes, new: bytes, name: str, robot: str) -> bytes:
+def diff(old: bytes, new: bytes, name: str, new_name: str) -> bytes:
+    """A unified diff that patch reads."""
     from difflib import diff_bytes, unified_diff
 
     # Unlike splitlines, this ends lines at line feeds only, as patch does.
     before, after = io.BytesIO(old).readlines(), io.BytesIO(new).readlines()
-    there = os.fsencode(name)
-    lines = diff_bytes(unified_diff, before, after, there, there + f" for {robot}".encode())
+    names = os.fsencode(name), os.fsencode(new_name)
+    lines = diff_bytes(unified_diff, before, after, *names)
     cut_short = b"\n\\ No newline at end of file\n"
     return b"".join(line if line.endswith(b"\n") else line + cut_short for line in lines)
 

@@ -38,7 +38,7 @@ def _run(options: argparse.Namespace) -> int:
     robots = [word for word in options.words if ":=" not in word]
     check_use(options, robots)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
-    source: Source = _standard_input() if options.input == "-" else options.input
+    source: Source = standard_input() if options.input == "-" else options.input
     if not options.strip:
         return _rewrite(options, source, robots)
     # Read once: it may be a pipe, and --diff shows it again.
@@ -49,7 +49,8 @@ def _run(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _standard_input() -> bytes:
+def standard_input() -> bytes:
+    """All of standard input; raises InputError."""
     if sys.stdin is None:
         raise InputError("<stdin>: standard input is closed; name a file instead of -")
     try:

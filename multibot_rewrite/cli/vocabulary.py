@@ -11,8 +11,8 @@ from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, json_bytes, print_report
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.model import Site, UsageError
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import block_of, look_up, near_names
 from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import read_document

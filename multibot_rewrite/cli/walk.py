@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
 from multibot_rewrite.model import InputError, UsageError
 
 
-def find_files(paths: Sequence[str], suffixes: tuple[str, ...]) -> list[str]:
+def _refuse(error: OSError) -> NoReturn:
+    raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
+
+
+def find_files(
+    paths: Sequence[str],
+    suffixes: tuple[str, ...],
+    unreadable: Callable[[OSError], None] = _refuse,
+) -> list[str]:
     """The files named, and those with one of the suffixes below the folders named; each file once.
 
-    Raises UsageError where a path is not there or nothing is found, InputError for a folder that
-    cannot be read.
+    ``unreadable`` is told of folders that cannot be read. Raises UsageError where a path is not
+    there or nothing is found; InputError for such a folder unless ``unreadable`` goes on.
     """
     found: dict[str, str] = {}
     for path in paths:
         if not os.path.exists(path):
             raise UsageError(f"{path}: there is no such file or folder")
-        for file in _below(path, suffixes) if os.path.isdir(path) else (path,):
+        for file in _below(path, suffixes, unreadable) if os.path.isdir(path) else (path,):
             found.setdefault(os.path.realpath(file), file)
     if not found:
         wanted = " or ".join(f"*{suffix}" for suffix in suffixes)
@@ -27,10 +35,12 @@ def find_files(paths: Sequence[str], suffixes: tuple[str, ...]) -> list[str]:
     return list(found.values())
 
 
-def _below(top: str, suffixes: tuple[str, ...]) -> Iterator[str]:
+def _below(
+    top: str, suffixes: tuple[str, ...], unreadable: Callable[[OSError], None]
+) -> Iterator[str]:
     """In order of names; links to folders are followed, each folder is visited once."""
     seen = set()
-    for folder, folders, files in os.walk(top, onerror=_refuse, followlinks=True):
+    for folder, folders, files in os.walk(top, onerror=unreadable, followlinks=True):
         real = os.path.realpath(folder)
         if real in seen:
             folders.clear()
@@ -44,10 +54,6 @@ def _below(top: str, suffixes: tuple[str, ...]) -> Iterator[str]:
 
 def _named(files: Iterable[str], suffixes: tuple[str, ...]) -> Iterator[str]:
     return (name for name in files if name.lower().endswith(suffixes))
-
-
-def _refuse(error: OSError) -> NoReturn:
-    raise InputError(f"{error.filename}: cannot be read: {error.strerror}") from None
 
 
 def check_target(target: str, inputs: Iterable[str], option: str = "--json") -> None:

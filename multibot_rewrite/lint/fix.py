@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -56,8 +57,7 @@ def _prove(
 ) -> None:
     """Every element without an edit in its tag or text is what it was, and no finding is new."""
     before, after = (read_document(data, path) for data, _ in (old, new))
-    spans = _spans(before)
-    touched = [any(start <= it.start < end for it in edits) for start, end in spans]
+    touched = _touched(before, edits)
     pairs = zip(before.root.iter("*"), after.root.iter("*"), touched, strict=False)
     same = len(before.starts) == len(after.starts)
     if not same or not all(_same(old, new, there) for old, new, there in pairs):
@@ -67,10 +67,10 @@ def _prove(
         raise ProofError(f"{path}: a fix makes a new finding: {next(iter(more))}")
 
 
-def _spans(document: Document) -> Iterator[tuple[int, int]]:
-    """From each start tag to the next one; before the first is the first's."""
-    starts = document.starts
-    yield from zip([0, *starts[1:]], [*starts[1:], len(document.source) + 1], strict=True)
+def _touched(document: Document, edits: Sequence[Edit]) -> list[bool]:
+    """Has each element an edit between its start tag and the next one?"""
+    numbers = {max(bisect_right(document.starts, it.start) - 1, 0) for it in edits}
+    return [number in numbers for number in range(len(document.starts))]
 
 
 def _same(old: _Element, new: _Element, touched: bool) -> bool:

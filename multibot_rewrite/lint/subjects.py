@@ -7,11 +7,11 @@ from fnmatch import fnmatch
 
 from lxml.etree import _Element
 
-from multibot_rewrite.library import builtin_tree
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import Robot, read_robot
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting.collect import NOTHING, collect
 from multibot_rewrite.rewriting.collect import SRDF as SRDF_SECTION

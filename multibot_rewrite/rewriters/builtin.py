@@ -1,0 +1,22 @@
+"""The tree of rewriters that every job starts from."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from multibot_rewrite.model import VocabularyError
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.vocabulary import advice, load_vocabulary
+
+
+@lru_cache(maxsize=8)
+def builtin_tree(vocabulary: tuple[str, ...] = ()) -> Tree:
+    """The tree of the vocabulary built in, installed, and named in ``vocabulary``; made once."""
+    sections = load_vocabulary(vocabulary)
+    try:
+        tree = Tree(sections)
+        if sections.extended:
+            tree.check()
+        return tree
+    except VocabularyError as error:
+        raise VocabularyError(f"{error}{advice(str(error))}") from None
