@@ -1,0 +1,1 @@
+"""Files beside a description that name what it declares: the same rename map, the same care."""

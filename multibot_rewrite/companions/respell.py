@@ -1,0 +1,55 @@
+"""The rename map of one robot, for names that stand in other files than its description."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from multibot_rewrite.naming import NOT_PLAIN, Naming, affix
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import resolve
+
+# What a word of the facts may be, tried in order.
+KINDS = {
+    "frame": ("link", "frame"),
+    "link": ("link",),
+    "joint": ("joint",),
+    "sensor": ("sensor",),
+    "gpio": ("gpio",),
+    "hardware": ("hardware",),
+    "group": ("group",),
+    "topic": ("topic",),
+    "service": ("service",),
+    # The left part of ``elbow/position``: a joint, a sensor or a gpio.
+    "component": ("joint", "sensor", "gpio"),
+}
+
+
+class Names(NamedTuple):
+    """What the description declares (not rewritten), how it is spelled, and for whom."""
+
+    declared: Declared
+    naming: Naming
+    robot: str
+
+
+def respell(names: Names, word: str, value: str, namespaced: bool = True) -> str:
+    """``value``, a name of the kind ``word``, as the robot spells it; what is no name stays.
+
+    ``namespaced`` tells that a relative topic ends below the robot's namespace.
+    """
+    if not value or not NOT_PLAIN.isdisjoint(value) or "<" in value:
+        return value
+    kind = resolve(value, KINDS[word], "uses", names.declared)
+    there = affix(names.naming, kind, value, namespaced) if kind else None
+    return there.spell(value, names.robot) if there else value
+
+
+def respell_interface(names: Names, value: str) -> str:
+    """``elbow/position`` with the component spelled for the robot."""
+    component, slash, interface = value.partition("/")
+    return respell(names, "component", component) + slash + interface
+
+
+def is_declared(names: Names, word: str, value: str) -> bool:
+    """Does the description declare this link, joint, sensor, gpio or hardware?"""
+    return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

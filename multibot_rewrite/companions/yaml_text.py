@@ -1,0 +1,140 @@
+"""YAML as text with positions: parse to know where scalars stand, change those and nothing else.
+
+Comments, quoting, order and line ends stay. Positions are character offsets.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.model import InputError
+
+MAX_BYTES = 16 * 1024 * 1024
+# Reads back as the same text wherever it stands, and as no number, date, boolean or null.
+_PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")
+_WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
+_ANCHOR = re.compile(r"(?:^|[\s\[{,:-])[&*][^\s,\[\]{}]")
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+class YamlText(NamedTuple):
+    """A YAML file; ``root`` is PyYAML's node of its document, None where it holds nothing.
+
+    ``bom`` is what stood before the text.
+    """
+
+    file: str
+    text: str
+    root: yaml.Node | None
+    bom: str = ""
+
+
+class Splice(NamedTuple):
+    """Replace the characters ``start:end`` by ``new``."""
+
+    start: int
+    end: int
+    new: str
+
+
+def read_yaml(data: bytes, file: str) -> YamlText:
+    """Parse one document; raises InputError with place, cause and remedy."""
+    if len(data) > MAX_BYTES:
+        raise InputError(f"{file}: {len(data):,} bytes, over the limit of {MAX_BYTES:,}")
+    try:
+        text = data.decode()
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise InputError(f"{file}:{line}: it is not UTF-8; save it as UTF-8") from None
+    bom = text[:1] if text.startswith("\ufeff") else ""
+    text = text[len(bom) :]
+    try:
+        root = yaml.compose(text, Loader=_LOADER)
+    except yaml.MarkedYAMLError as error:
+        raise InputError(_broken(error, file)) from None
+    except (yaml.YAMLError, RecursionError) as error:
+        raise InputError(f"{file}: not YAML: {' '.join(str(error).split())}; mend it") from None
+    return YamlText(file, text, root, bom)
+
+
+def _broken(error: yaml.MarkedYAMLError, file: str) -> str:
+    mark = error.problem_mark or error.context_mark
+    place = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
+    problem = " ".join(str(error.problem or error.context).split())
+    hint = "mend the YAML and try again"
+    if "expected a single document" in str(error.context):
+        problem, hint = "there is more than one document", "delete what stands behind the ---"
+    elif "\\t" in problem or "tab" in problem:
+        hint = "indent with spaces, YAML takes no tabs"
+    return f"{file}{place}: not YAML: {problem}; {hint}"
+
+
+def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
+    """Line and text of anchors and aliases, which rcl's parser refuses (rcl_yaml_param_parser)."""
+    if not _ANCHOR.search(document.text):
+        return
+    for token in yaml.scan(document.text, Loader=_LOADER):
+        if isinstance(token, yaml.AnchorToken | yaml.AliasToken):
+            mark = "&" if isinstance(token, yaml.AnchorToken) else "*"
+            yield token.start_mark.line + 1, f"{mark}{token.value}"
+
+
+def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
+    """Keys and values of a mapping, repeated keys included; nothing for any other node."""
+    if not isinstance(node, yaml.MappingNode):
+        return []
+    return [(key, value) for key, value in node.value if isinstance(key, yaml.ScalarNode)]
+
+
+def items(node: yaml.Node | None) -> list[yaml.Node]:
+    """The items of a list; a scalar is a list of itself, anything else has none."""
+    if isinstance(node, yaml.SequenceNode):
+        return list(node.value)
+    return [node] if isinstance(node, yaml.ScalarNode) else []
+
+
+def is_text(node: yaml.Node) -> bool:
+    """A scalar that rcl reads as a string, and that holds one: quoted, or no number and no word."""
+    if not isinstance(node, yaml.ScalarNode):
+        return False
+    return node.style in ("'", '"') or node.tag == "tag:yaml.org,2002:str"
+
+
+def line_of(node: yaml.Node) -> int:
+    """The line of a node, from 1."""
+    return int(node.start_mark.line) + 1
+
+
+def replaced(node: yaml.ScalarNode, new: str) -> Splice:
+    """The splice that gives a scalar another value, quoted as it was or as it must be.
+
+    Raises ValueError for a block scalar, which has no one place.
+    """
+    if node.style in ("|", ">"):
+        raise ValueError("a block scalar is not one name")
+    return Splice(node.start_mark.index, node.end_mark.index, quoted(new, node.style or ""))
+
+
+def quoted(value: str, style: str = "") -> str:
+    """A string as YAML text, in the style it had if that can hold it."""
+    if style == "'" and value.isprintable():
+        return "'" + value.replace("'", "''") + "'"
+    if not style and _PLAIN.fullmatch(value) and value.lower() not in _WORDS:
+        return value
+    if value.isprintable():
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
+
+
+def spliced(document: YamlText, splices: Iterable[Splice]) -> str:
+    """The text with the splices made; they do not overlap."""
+    parts = []
+    at = 0
+    for start, end, new in sorted(splices):
+        parts += [document.text[at:start], new]
+        at = end
+    return document.bom + "".join([*parts, document.text[at:]])
