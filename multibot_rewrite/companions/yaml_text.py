@@ -55,21 +55,21 @@ def read_yaml(data: bytes, file: str) -> YamlText:
     try:
         root = yaml.compose(text, Loader=_LOADER)
     except yaml.MarkedYAMLError as error:
-        raise InputError(_broken(error, file)) from None
+        raise InputError(_broken(error, file, text)) from None
     except (yaml.YAMLError, RecursionError) as error:
         raise InputError(f"{file}: not YAML: {' '.join(str(error).split())}; mend it") from None
     return YamlText(file, text, root, bom)
 
 
-def _broken(error: yaml.MarkedYAMLError, file: str) -> str:
+def _broken(error: yaml.MarkedYAMLError, file: str, text: str) -> str:
     mark = error.problem_mark or error.context_mark
     place = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
     problem = " ".join(str(error.problem or error.context).split())
     hint = "mend the YAML and try again"
     if "expected a single document" in str(error.context):
         problem, hint = "there is more than one document", "delete what stands behind the ---"
-    elif "\\t" in problem or "tab" in problem:
-        hint = "indent with spaces, YAML takes no tabs"
+    elif mark and text[mark.index : mark.index + 1] == "\t":
+        problem, hint = "a tab", "indent with spaces, YAML takes no tabs"
     return f"{file}{place}: not YAML: {problem}; {hint}"
 
 
