@@ -32,6 +32,7 @@ FLOORS = (
     ("remap",),
     ("graph", "lint", "companions"),
     ("fleet",),
+    ("fleets",),
     ("__init__", "launch"),
     ("cli",),
 )

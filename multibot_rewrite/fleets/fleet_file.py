@@ -139,7 +139,7 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
 @cache
 def schema() -> dict[str, Any]:
     """The published JSON Schema of fleet files."""
-    text = files("multibot_rewrite.companions").joinpath(SCHEMA).read_text()
+    text = files("multibot_rewrite.fleets").joinpath(SCHEMA).read_text()
     return dict(json.loads(text))
 
 

@@ -1,0 +1,1 @@
+"""A fleet file -> everything its robots need: rewritten descriptions, tables, companion files."""
