@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 
 from lxml import etree
 
-from multibot_rewrite.lint.formats import text
 from multibot_rewrite.lint.formats.shared import by_file, one_line, path_below, said
+from multibot_rewrite.lint.formats.text import lines
 from multibot_rewrite.lint.records import NOTE, LintFinding, Rule
 
 _PASSED = "no findings"
@@ -53,7 +53,7 @@ def _names(findings: Sequence[LintFinding]) -> list[str]:
 
 
 def _tell(case: etree._Element, finding: LintFinding) -> None:
-    whole = "\n".join(text.lines(finding))
+    whole = "\n".join(lines(finding))
     if finding.level == NOTE:
         etree.SubElement(case, "system-out").text = whole
         return

@@ -1,0 +1,618 @@
+"""Every format holds real findings of nasty documents, by its own schema or parser."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tarfile
+from collections import Counter
+from pathlib import Path
+from typing import Any, NamedTuple
+from urllib.parse import unquote_to_bytes
+
+import jsonschema
+import pytest
+from junitparser import Failure, JUnitXml
+from lxml import etree
+from markdown_it import MarkdownIt
+from pydantic import BaseModel
+from sarif_pydantic import Sarif
+
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.formats import FORMATS, rendered, text
+from multibot_rewrite.lint.formats.markdown import ROOM
+from multibot_rewrite.lint.records import LEVELS, NOTE, LintFinding
+from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.lint.settings import ArgumentSet, Settings
+from multibot_rewrite.model import ERROR, WARNING, Edit
+
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+NASTY = ("<b>", '"', "|", "a\nb", "%0A", "::error::x", "é😀\u2028", "`*_[x](1)_*`", "\\|", "&amp;")
+SPECIAL = str.maketrans({"<": "&lt;", ">": "&gt;", '"': "&quot;", "&": "&amp;", "\n": "&#10;"})
+# Bytes of a name that are no UTF-8 reach Python as lone surrogates.
+FILES = (
+    "plain.urdf",
+    "with space, colon: and %41#?.urdf",
+    "new\nline|`.urdf",
+    "日本😀.urdf",
+    os.fsdecode(b"b\xff\xfe.urdf"),
+)
+ARM = f"""<robot name="r" {XACRO}>
+  <xacro:arg name="sim" default="0"/>
+  <xacro:macro name="wheel" params="side"><link name="${{side}}"/></xacro:macro>
+  <xacro:macro name="axle" params="at">
+    <xacro:wheel side="${{at}}_left"/>
+  </xacro:macro>
+  <link name="base"/>
+  <xacro:axle at="front"/>
+  <xacro:if value="$(arg sim)"><link name="ground"/></xacro:if>
+</robot>
+"""
+SETTINGS = Settings(select=("MB101", "MB501"), levels={"MB101": WARNING})
+
+
+class Linted(NamedTuple):
+    """Findings and the files they are of."""
+
+    findings: list[LintFinding]
+    files: list[str]
+
+
+def pieces(*names: str) -> str:
+    """A robot whose links hang together by nothing: all but the first are findings."""
+    links = "\n  ".join(f'<link name="{name.translate(SPECIAL)}"/>' for name in names)
+    return f'<robot name="r">\n  {links}\n</robot>'
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def nasty(here: Path) -> Linted:
+    """Nasty files with findings of every level, one without any, and one through macros."""
+    for name in FILES:
+        Path(name).write_text(pieces("base", *NASTY), encoding="utf-8")
+    Path("clean.urdf").write_text(pieces("base"))
+    Path("broken.urdf").write_bytes(b'<robot name="r"><link name="\xff"')
+    Path("arm.urdf.xacro").write_text(ARM)
+    files = ["clean.urdf", *FILES, "broken.urdf", "arm.urdf.xacro"]
+    simulated = ArgumentSet("*", (("sim", "1"),))
+    found = lint_files(files, SETTINGS._replace(arguments=(simulated,)), jobs=1)
+    notes = [it._replace(level=NOTE, hint="why\nnot") for it in found[:3]]
+    return Linted([*notes, *found[3:]], files)
+
+
+@pytest.fixture
+def thousand(here: Path) -> Linted:
+    Path("many.urdf").write_text(pieces(*(f"link_{at}" for at in range(1001))))
+    return Linted(lint_files(["many.urdf"], SETTINGS, jobs=1), ["many.urdf"])
+
+
+@pytest.fixture(params=["nasty", "thousand", "none", "nothing"])
+def linted(request: pytest.FixtureRequest, here: Path) -> Linted:
+    if request.param == "none":
+        return Linted([], ["a.urdf", "b.urdf"])
+    if request.param == "nothing":
+        return Linted([], [])
+    found: Linted = request.getfixturevalue(request.param)
+    return found
+
+
+def report(name: str, linted: Linted) -> Any:
+    return json.loads(rendered(name, *linted))
+
+
+def test_the_nasty_findings_are_what_the_tests_need(nasty: Linted) -> None:
+    found = nasty.findings
+    assert {it.level for it in found} == set(LEVELS)
+    assert {it.file for it in found} == {*nasty.files} - {"clean.urdf"}
+    assert [len(it.calls) for it in found if it.calls] == [2]
+    assert [it.arguments for it in found if it.arguments] == ["sim:=1"]
+    assert any("😀" in it.message for it in found)
+    assert any("|" in it.message and "\\" in it.message for it in found)
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_report_is_utf8_and_the_same_each_time(name: str, linted: Linted) -> None:
+    once = rendered(name, *linted)
+    assert once.encode("utf-8").decode("utf-8") == once
+    assert once == rendered(name, *linted)
+    assert once.endswith("\n") or not linted.findings
+
+
+def test_only_the_module_of_a_format_is_loaded() -> None:
+    code = """if True:
+        import sys
+        from multibot_rewrite.lint.formats import FORMATS, rendered
+        for name in FORMATS:
+            rendered(name, [], [])
+            loaded = {it for it in sys.modules if ".lint.formats." in it}
+            print(name, *(it.rpartition(".")[2] for it in loaded))
+            for it in loaded: del sys.modules[it]
+    """
+    command = [sys.executable, "-c", code]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    loaded = {name: {*modules} for name, *modules in map(str.split, printed.splitlines())}
+    expected = {name: {module, "shared"} for name, module in FORMATS.items()}
+    # A failure in JUnit holds the finding as text.
+    expected["junit"].add("text")
+    assert loaded == expected
+
+
+# text
+
+
+def test_text_is_a_line_a_finding(here: Path) -> None:
+    Path("a.urdf").write_text(pieces("base", "arm", "é😀"))
+    Path("arm.urdf.xacro").write_text(ARM)
+    simulated = ArgumentSet("*", (("sim", "1"),))
+    files = ["a.urdf", "arm.urdf.xacro"]
+    found = lint_files(files, SETTINGS._replace(arguments=(simulated,)), jobs=1)
+    found[0] = found[0]._replace(hint="join it")
+    assert rendered("text", found, files).splitlines() == [
+        "a.urdf:3:3: MB501 link 'arm' is a second root beside 'base' (join it)",
+        "a.urdf:4:3: MB501 link 'é😀' is a second root beside 'base'",
+        "arm.urdf.xacro:3:43: MB501 link 'front_left' is a second root beside 'base'",
+        "    via arm.urdf.xacro:5: wheel",
+        "    via arm.urdf.xacro:8: axle",
+        "arm.urdf.xacro:9:32: MB501 link 'ground' is a second root beside 'base' [with sim:=1]",
+    ]
+
+
+def test_text_holds_on_to_its_lines(nasty: Linted) -> None:
+    calls = sum(len(it.calls) for it in nasty.findings)
+    printed = rendered("text", *nasty)
+    assert len(printed.splitlines()) == len(nasty.findings) + calls
+    assert "new\\nline|`.urdf:" in printed
+    assert "b\\udcff\\udcfe.urdf:" in printed
+
+
+def test_text_in_colour_is_the_same_text(nasty: Linted) -> None:
+    coloured = rendered("text", *nasty, colour=True)
+    assert coloured.count("\033[31m") == sum(it.level == ERROR for it in nasty.findings)
+    for mark in ("\033[31m", "\033[33m", "\033[36m", "\033[0m"):
+        assert mark in coloured
+        coloured = coloured.replace(mark, "")
+    assert coloured == rendered("text", *nasty)
+
+
+# json
+
+NUMBER = {"type": "integer", "minimum": 0}
+PLACE = {"type": "integer", "minimum": 1}
+STRING = {"type": "string"}
+
+
+def object_of(**properties: Any) -> dict[str, Any]:
+    required = sorted(properties)
+    return {
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": False,
+    }
+
+
+def list_of(item: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": item}
+
+
+JSON_FINDING = object_of(
+    code={"pattern": r"^MB\d{3}$"},
+    name=STRING,
+    level={"enum": list(LEVELS)},
+    message=STRING,
+    hint=STRING,
+    file=STRING,
+    line=PLACE,
+    column=PLACE,
+    calls=list_of(object_of(file=STRING, line=PLACE, macro=STRING)),
+    arguments=STRING,
+    edits=list_of(object_of(start=NUMBER, end=NUMBER, text=STRING)),
+)
+JSON = object_of(
+    version={"const": 1},
+    files=NUMBER,
+    counts=object_of(**dict.fromkeys(LEVELS, NUMBER)),
+    findings=list_of(JSON_FINDING),
+)
+
+
+def test_json_is_the_documented_object(linted: Linted) -> None:
+    told = report("json", linted)
+    jsonschema.validate(told, JSON)
+    assert told["files"] == len(linted.files)
+    assert sum(told["counts"].values()) == len(told["findings"]) == len(linted.findings)
+    for it, finding in zip(told["findings"], linted.findings, strict=True):
+        assert (it["code"], it["line"], it["column"]) == (
+            finding.code,
+            finding.line,
+            finding.column,
+        )
+        assert (it["message"], it["hint"]) == (finding.message, finding.hint)
+
+
+def test_json_tells_of_macros_and_edits(nasty: Linted) -> None:
+    at = next(at for at, it in enumerate(nasty.findings) if it.calls)
+    nasty.findings[at] = nasty.findings[at]._replace(edits=(Edit(3, 5, "é".encode(), None),))
+    told = report("json", nasty)["findings"][at]
+    assert told["edits"] == [{"start": 3, "end": 5, "text": "é"}]
+    assert told["calls"] == [
+        {"file": "arm.urdf.xacro", "line": 5, "macro": "wheel"},
+        {"file": "arm.urdf.xacro", "line": 8, "macro": "axle"},
+    ]
+
+
+def test_json_has_no_lone_surrogate(nasty: Linted) -> None:
+    files = {it["file"] for it in report("json", nasty)["findings"]}
+    assert "b\\udcff\\udcfe.urdf" in files
+    assert "new\nline|`.urdf" in files
+
+
+# SARIF
+
+
+@pytest.fixture(scope="session")
+def sarif_schema(pytestconfig: pytest.Config) -> dict[str, Any]:
+    """The official schema, out of the source distribution of cfn-lint, which has it for its tests."""
+    kept = pytestconfig.cache.mkdir("sarif") / "schema-2.1.0.json"
+    if not kept.exists():
+        command = [
+            sys.executable,
+            "-m",
+            "pip",
+            "download",
+            "-q",
+            "--no-deps",
+            "--no-build-isolation",
+        ]
+        command += ["--no-binary", ":all:", "--dest", str(kept.parent), "cfn-lint==1.58.0"]
+        ended = subprocess.run(command, capture_output=True, text=True, check=False)
+        if ended.returncode:
+            pytest.skip(f"no SARIF schema: cfn-lint cannot be downloaded: {ended.stderr[-200:]}")
+        kept.write_bytes(from_archive(next(kept.parent.glob("*.tar.gz")), kept.name))
+    schema: dict[str, Any] = json.loads(kept.read_bytes())
+    return schema
+
+
+def from_archive(path: Path, name: str) -> bytes:
+    with tarfile.open(path) as archive:
+        member = next(it for it in archive.getmembers() if it.name.endswith(f"/sarif/{name}"))
+        file = archive.extractfile(member)
+        assert file is not None
+        return file.read()
+
+
+def with_fixes(linted: Linted) -> Linted:
+    """Every finding in a plain file with an edit of its own."""
+    edit = Edit(1, 3, "é".encode(), None)
+    mended = [it._replace(edits=(edit,)) if it.file == FILES[0] else it for it in linted.findings]
+    return linted._replace(findings=mended)
+
+
+@pytest.mark.deep
+def test_sarif_holds_by_the_official_schema(linted: Linted, sarif_schema: dict[str, Any]) -> None:
+    checker = jsonschema.Draft7Validator.FORMAT_CHECKER
+    validator = jsonschema.Draft7Validator(sarif_schema, format_checker=checker)
+    assert list(validator.iter_errors(report("sarif", with_fixes(linted)))) == []
+    wrong = report("sarif", linted) | {"version": "2.0.0"}
+    assert list(validator.iter_errors(wrong)) != []
+
+
+def unknown(model: object) -> set[str]:
+    """Keys that the models of SARIF do not know."""
+    if isinstance(model, list):
+        return {key for item in model for key in unknown(item)}
+    if not isinstance(model, BaseModel):
+        return set()
+    inside = (getattr(model, name) for name in type(model).model_fields)
+    return {*(model.model_extra or ()), *(key for value in inside for key in unknown(value))}
+
+
+def test_sarif_holds_by_its_models(linted: Linted) -> None:
+    log = Sarif.model_validate_json(rendered("sarif", *with_fixes(linted)))
+    # They lack this one, which the schema has.
+    assert unknown(log) - {"columnKind"} == set()
+    assert log.version == "2.1.0"
+
+
+def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
+    (run,) = report("sarif", nasty)["runs"]
+    rules = run["tool"]["driver"]["rules"]
+    assert [it["id"] for it in rules] == list(RULES)
+    for it in rules:
+        rule = RULES[it["id"]]
+        assert it["defaultConfiguration"]["level"] == rule.level
+        assert all(len(it[key]["text"]) <= 1024 for key in ("shortDescription", "fullDescription"))
+        words = (rule.what, rule.why, rule.fix, rule.bad, rule.good)
+        for told in it["help"].values():
+            assert all(word in told for word in words)
+
+
+def test_sarif_results_say_what_and_where(nasty: Linted) -> None:
+    (run,) = report("sarif", nasty)["runs"]
+    assert run["columnKind"] == "unicodeCodePoints"
+    for it, finding in zip(run["results"], nasty.findings, strict=True):
+        assert run["tool"]["driver"]["rules"][it["ruleIndex"]]["id"] == it["ruleId"] == finding.code
+        assert it["level"] == finding.level
+        assert it["message"]["text"].startswith(finding.message)
+        ((place,),) = (spot.values() for spot in it["locations"])
+        assert unquote_to_bytes(place["artifactLocation"]["uri"]) == os.fsencode(finding.file)
+        region = place["region"]
+        assert (region["startLine"], region["startColumn"]) == (finding.line, finding.column)
+
+
+def test_sarif_links_to_the_calls_of_macros(nasty: Linted) -> None:
+    (it,) = (it for it in report("sarif", nasty)["runs"][0]["results"] if "relatedLocations" in it)
+    assert it["message"]["text"].endswith("beside 'base' via [wheel](1), [axle](2)")
+    places = [place["physicalLocation"] for place in it["relatedLocations"]]
+    assert [place["id"] for place in it["relatedLocations"]] == [1, 2]
+    assert [place["region"]["startLine"] for place in places] == [5, 8]
+
+
+def test_sarif_lists_the_files_that_were_linted(nasty: Linted) -> None:
+    (run,) = report("sarif", nasty)["runs"]
+    uris = [it["location"]["uri"] for it in run["artifacts"]]
+    assert [os.fsdecode(unquote_to_bytes(uri)) for uri in uris] == nasty.files
+
+
+def replaced(lines: list[str], region: dict[str, int], text: str) -> str:
+    """The text with the characters of a region replaced, as SARIF counts them."""
+    offsets = [
+        sum(len(line) for line in lines[: region[f"{end}Line"] - 1]) + region[f"{end}Column"] - 1
+        for end in ("start", "end")
+    ]
+    whole = "".join(lines)
+    return whole[: offsets[0]] + text + whole[offsets[1] :]
+
+
+def test_a_sarif_fix_mends_as_the_edit_does(here: Path) -> None:
+    source = pieces("base", "é😀", "arm").encode()
+    Path("a.urdf").write_bytes(source)
+    (finding, _) = lint_file("a.urdf", SETTINGS)
+    start = source.index("😀".encode())
+    edit = Edit(start, source.index(b"arm") + 1, "ü\n".encode(), None)
+    finding = finding._replace(edits=(edit,), hint="so")
+    (fix,) = report("sarif", Linted([finding], ["a.urdf"]))["runs"][0]["results"][0]["fixes"]
+    (change,) = fix["artifactChanges"]
+    (replacement,) = change["replacements"]
+    lines = source.decode().splitlines(keepends=True)
+    inserted = replacement["insertedContent"]["text"]
+    mended = replaced(lines, replacement["deletedRegion"], inserted)
+    assert mended.encode() == source[: edit.start] + edit.before + source[edit.end :]
+
+
+def test_a_sarif_fix_of_a_file_that_went_is_left_out(here: Path) -> None:
+    finding = LintFinding(
+        "MB501", ERROR, "m", "", "gone.urdf", 1, 1, edits=(Edit(0, 1, b"", None),)
+    )
+    assert "fixes" not in report("sarif", Linted([finding], []))["runs"][0]["results"][0]
+
+
+# paths
+
+
+@pytest.mark.parametrize("spelled", ["a/b.urdf", "./a/b.urdf", "a/../a/b.urdf", "{here}/a/b.urdf"])
+def test_services_get_paths_relative_to_where_the_lint_runs(spelled: str, here: Path) -> None:
+    path = spelled.format(here=here)
+    linted = Linted([LintFinding("MB501", ERROR, "m", "", path, 1, 1)], [path])
+    result = report("sarif", linted)["runs"][0]["results"][0]
+    location = result["locations"][0]["physicalLocation"]["artifactLocation"]
+    assert location == {"uri": "a/b.urdf", "uriBaseId": "%SRCROOT%"}
+    assert report("gitlab", linted)[0]["location"]["path"] == "a/b.urdf"
+    assert "file=a/b.urdf," in rendered("github", *linted)
+    assert rendered("text", *linted).startswith(f"{path}:1:1: ")
+    assert report("json", linted)["findings"][0]["file"] == path
+
+
+def test_a_path_elsewhere_is_absolute_in_sarif(here: Path) -> None:
+    linted = Linted([LintFinding("MB501", ERROR, "m", "", "../é a.urdf", 1, 1)], [])
+    result = report("sarif", linted)["runs"][0]["results"][0]
+    location = result["locations"][0]["physicalLocation"]["artifactLocation"]
+    assert location == {"uri": f"file://{here.parent}/%C3%A9%20a.urdf"}
+    assert report("gitlab", linted)[0]["location"]["path"] == "../é a.urdf"
+
+
+# fingerprints
+
+
+def prints(linted: Linted) -> list[tuple[str, str]]:
+    results = report("sarif", linted)["runs"][0]["results"]
+    there = [it["partialFingerprints"]["urdfLint/v1"] for it in results]
+    return list(zip(there, [it["fingerprint"] for it in report("gitlab", linted)], strict=True))
+
+
+def test_no_two_fingerprints_are_equal(linted: Linted) -> None:
+    twice = linted._replace(findings=[*linted.findings, *linted.findings])
+    assert len(set(prints(twice))) == 2 * len(linted.findings)
+
+
+def test_a_fingerprint_survives_a_moved_line_and_another_path_to_it(here: Path) -> None:
+    Path("a.urdf").write_text(pieces("base", "x", "y"))
+    before = Linted(lint_files(["a.urdf"], SETTINGS, jobs=1), [])
+    Path("a.urdf").write_text("<!-- new -->\n\n" + pieces("base", "x", "y"))
+    after = Linted(lint_files([str(here / "a.urdf")], SETTINGS, jobs=1), [])
+    assert before.findings[0].line != after.findings[0].line
+    assert prints(before) == prints(after)
+
+
+@pytest.mark.parametrize("change", [{"code": "MB502"}, {"file": "b"}, {"message": "n"}])
+def test_a_fingerprint_is_of_code_file_and_message(change: dict[str, str], here: Path) -> None:
+    finding = LintFinding("MB501", ERROR, "m", "", "a", 1, 1)
+    other = finding._replace(**change)  # type: ignore[arg-type]
+    assert prints(Linted([finding], [])) != prints(Linted([other], []))
+
+
+# GitHub
+
+UNESCAPES = (("%0D", "\r"), ("%0A", "\n"), ("%3A", ":"), ("%2C", ","), ("%25", "%"))
+
+
+def unescaped(text: str, marks: str) -> str:
+    for escape, mark in UNESCAPES:
+        text = text.replace(escape, mark) if mark in marks else text
+    return text
+
+
+def parsed(line: str) -> tuple[str, dict[str, str], str]:
+    """A workflow command as the runner reads it: name, properties, message."""
+    line = line.lstrip()
+    assert line.startswith("::")
+    head, _, message = line[2:].partition("::")
+    name, _, told = head.partition(" ")
+    pairs = [pair.split("=", 1) for pair in told.strip().split(",") if pair]
+    properties = {key: unescaped(value, "\r\n:,%") for key, value in pairs}
+    return name, properties, unescaped(message, "\r\n%")
+
+
+def test_github_reads_back_every_finding(linted: Linted) -> None:
+    commands = [parsed(line) for line in rendered("github", *linted).split("\n")[:-1]]
+    for (name, properties, message), finding in zip(commands, linted.findings, strict=True):
+        assert name == {ERROR: "error", WARNING: "warning", NOTE: "notice"}[finding.level]
+        assert message.split("\n")[0].startswith(finding.message)
+        assert len(message.split("\n")) == 1 + len(finding.calls)
+        assert properties.pop("file") in (finding.file, text.one_line(finding.file))
+        assert properties == {
+            "line": str(finding.line),
+            "col": str(finding.column),
+            "title": f"{finding.code} {RULES[finding.code].name}",
+        }
+
+
+def test_github_escapes_are_as_documented() -> None:
+    finding = LintFinding("MB501", ERROR, "50%: a,b", "", "a%,:.urdf", 1, 1)
+    assert rendered("github", [finding], []) == (
+        "::error file=a%25%2C%3A.urdf,line=1,col=1,title=MB501 several-roots::50%25: a,b\n"
+    )
+
+
+# GitLab
+
+GITLAB = list_of(
+    object_of(
+        description=STRING,
+        check_name=STRING,
+        fingerprint={"type": "string", "minLength": 1},
+        severity={"enum": ["info", "minor", "major", "critical", "blocker"]},
+        location=object_of(path={"pattern": r"^(?!\./)"}, lines=object_of(begin=PLACE)),
+    )
+)
+
+
+def test_gitlab_is_a_code_quality_report(linted: Linted) -> None:
+    told = report("gitlab", linted)
+    jsonschema.validate(told, GITLAB)
+    for it, finding in zip(told, linted.findings, strict=True):
+        assert it["severity"] == {ERROR: "critical", WARNING: "major", NOTE: "info"}[finding.level]
+        assert it["description"].startswith(f"{finding.code}: {finding.message}")
+        assert it["location"]["lines"]["begin"] == finding.line
+
+
+# JUnit
+
+
+def test_junit_has_a_suite_a_file_and_a_case_a_finding(linted: Linted) -> None:
+    suites = list(JUnitXml.fromstring(rendered("junit", *linted).encode()))
+    assert len(suites) == len(linted.files)
+    cases = [case for suite in suites for case in suite]
+    clean = len(set(linted.files) - {it.file for it in linted.findings})
+    assert len(cases) == len(linted.findings) + clean
+    failed = [case for case in cases if any(isinstance(it, Failure) for it in case.result)]
+    assert len(failed) == sum(it.level != NOTE for it in linted.findings)
+    names = Counter((case.classname, case.name) for case in cases)
+    assert set(names.values()) <= {1}
+
+
+def test_junit_counts_are_those_of_its_cases(linted: Linted) -> None:
+    root = etree.fromstring(rendered("junit", *linted).encode())
+    for element in (root, *root.iter("testsuite")):
+        assert int(element.get("tests")) == len(list(element.iter("testcase")))
+        assert int(element.get("failures")) == len(list(element.iter("failure")))
+
+
+def test_junit_cases_hold_the_whole_text(nasty: Linted) -> None:
+    root = etree.fromstring(rendered("junit", *nasty).encode())
+    told = [it.text for it in root.iter("failure", "system-out")]
+    assert sorted(told) == sorted("\n".join(text.lines(it)) for it in nasty.findings)
+    kinds = Counter(it.get("type") for it in root.iter("failure"))
+    assert kinds == Counter(it.level for it in nasty.findings if it.level != NOTE)
+
+
+@pytest.mark.parametrize("code", [*range(0x20), 0x7F, 0x85, 0xFFFE, 0xFFFF, 0xD800, 0xDFFF])
+def test_junit_holds_characters_that_xml_does_not(code: int) -> None:
+    finding = LintFinding("MB501", ERROR, f"a{chr(code)}b", "", f"{chr(code)}.urdf", 1, 1)
+    (case,) = etree.fromstring(rendered("junit", [finding], []).encode()).iter("failure")
+    assert case.get("message") == "a" + chr(code).encode("unicode_escape").decode() + "b"
+
+
+# Markdown
+
+
+def cells(markdown: str) -> list[list[str]]:
+    """The rows of all tables as a reader sees them, headings of tables left out."""
+    tokens = MarkdownIt("commonmark").enable("table").parse(markdown)
+    rows: list[list[str]] = []
+    for at, token in enumerate(tokens):
+        if token.type == "tr_open":
+            rows.append([])
+        if token.type == "td_open":
+            told = tokens[at + 1].children or []
+            assert {it.type for it in told} <= {"text", "html_inline"}
+            rows[-1].append("".join(it.content for it in told))
+    return [row for row in rows if row]
+
+
+def test_markdown_shows_what_was_found(nasty: Linted) -> None:
+    told = Counter(tuple(row) for row in cells(rendered("markdown", *nasty)))
+    expected = Counter()
+    for it in nasty.findings:
+        first, *calls = text.lines(it)
+        what = "<br>".join([first.partition(f" {it.code} ")[2], *(line.strip() for line in calls)])
+        expected[(str(it.line), it.level, f"{it.code} {RULES[it.code].name}", what)] += 1
+    assert told == expected
+
+
+def test_markdown_has_a_heading_a_file_with_findings(nasty: Linted) -> None:
+    tokens = MarkdownIt().parse(rendered("markdown", *nasty))
+    heads = [tokens[at + 1].children for at, it in enumerate(tokens) if it.type == "heading_open"]
+    shown = ["".join(it.content for it in head or ()) for head in heads]
+    assert shown == [text.one_line(file) for file in nasty.files if file != "clean.urdf"]
+
+
+def test_markdown_of_many_findings_fits_into_a_comment(thousand: Linted) -> None:
+    markdown = rendered("markdown", *thousand)
+    assert ROOM - 1000 < len(markdown) < ROOM + 100
+    shown = len(cells(markdown))
+    assert 0 < shown < 1000
+    assert f"\n{1000 - shown} more are not shown here.\n" in markdown
+    assert markdown.startswith("**urdf-lint**: 1000 errors in 1 file\n")
+
+
+@pytest.mark.parametrize(
+    ("levels", "files", "line"),
+    [
+        ("", 0, "no findings in 0 files"),
+        ("", 1, "no findings in 1 file"),
+        ("E", 1, "1 error in 1 file"),
+        ("NEEWN", 3, "2 errors, 1 warning, 2 notes in 3 files"),
+    ],
+)
+def test_markdown_begins_with_the_counts(levels: str, files: int, line: str) -> None:
+    names = {"E": ERROR, "W": WARNING, "N": NOTE}
+    found = [LintFinding("MB501", names[it], "m", "", "a", 1, 1) for it in levels]
+    assert rendered("markdown", found, ["a"] * files).startswith(f"**urdf-lint**: {line}\n")
+
+
+# Codes that no rule has
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_finding_of_an_unknown_rule_is_told_all_the_same(name: str, here: Path) -> None:
+    finding = LintFinding("MB999", ERROR, "odd", "", "a.urdf", 1, 1)
+    assert "odd" in rendered(name, [finding], ["a.urdf"])
