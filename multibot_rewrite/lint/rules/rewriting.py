@@ -1,3 +1,71 @@
-"""MB9: what a rewrite would not reach."""
+"""MB9: what a rewrite for several robots would leave as it is, because nothing says what it means."""
 
 from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.lint.records import NOTE, SRDF, URDF, Problem, Subject, rule
+from multibot_rewrite.model import WARNING
+from multibot_rewrite.rewriting.audit import unknown_hardware, unknown_plugins
+from multibot_rewrite.rewriting.mentions import remark, slot_values, unclaimed_mentions
+
+
+@rule(
+    "MB901",
+    "unclaimed-mention",
+    WARNING,
+    what="A value holds the name of a link or joint, and nothing in the vocabulary says what it "
+    "means.",
+    why="Where links and joints are renamed for each robot this value keeps the old name: the "
+    "plugin that reads it looks for a link or joint that is not there any more.",
+    fix="Add a line to a vocabulary file that says it is a name, or that it is to be kept.",
+    bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
+    good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
+    formats=(URDF, SRDF),
+)
+def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
+    """Values that no site claims and that hold a declared name."""
+    inventory = subject.inventory
+    names = inventory.declared["link"].keys() | inventory.declared["joint"].keys()
+    if not names:
+        return
+    values = slot_values(subject.document.root)
+    for mention in unclaimed_mentions(inventory, values, names, subject.tree):
+        said = remark(mention)
+        yield Problem(said.element, said.message, said.attribute, said.hint)
+
+
+@rule(
+    "MB902",
+    "unknown-plugin",
+    NOTE,
+    what="A plugin is not in the vocabulary.",
+    why="Its parameters that name links, joints, frames or topics stay as they are for every robot, "
+    "unless they are called as other plugins call them.",
+    fix="Add a section for it to a vocabulary file.",
+    bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
+    good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
+)
+def unknown_plugin(subject: Subject) -> Iterator[Problem]:
+    """Plugins without a section of their own."""
+    for it in unknown_plugins(subject.inventory, subject.tree):
+        yield Problem(it.element, it.message, it.attribute, it.hint)
+
+
+@rule(
+    "MB903",
+    "unknown-hardware",
+    NOTE,
+    what="A ros2_control hardware class with parameters is not in the vocabulary.",
+    why="One of its parameters may be a name, or a prefix that the driver puts in front of names: "
+    "it stays as it is for every robot.",
+    fix="Add a section for it to a vocabulary file.",
+    bad='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin>'
+    '<param name="side">left</param></hardware></ros2_control>',
+    good='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin></hardware>'
+    "</ros2_control>",
+)
+def unknown_hardware_class(subject: Subject) -> Iterator[Problem]:
+    """Hardware classes with parameters and without a section."""
+    for it in unknown_hardware(subject.inventory, subject.tree):
+        yield Problem(it.element, it.message, it.attribute, it.hint)
