@@ -251,4 +251,4 @@ def test_a_block_for_a_link_and_joint_of_one_name_is_reported() -> None:
 def test_a_block_for_nobody_stays_and_is_reported() -> None:
     result = rewrite(robot([BASE], '<gazebo reference="bsae"/>'), "r1")
     assert '<gazebo reference="bsae"/>' in result.text
-    assert [finding.code for finding in result.findings] == ["MB202"]
+    assert [finding.code for finding in result.findings] == ["MB212"]

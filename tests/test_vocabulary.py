@@ -221,7 +221,7 @@ def test_a_new_plugin_is_rewritten(tmp_path: Path, library: str) -> None:
     assert "<brakes>lift_r1, other</brakes>" in inside
     assert "<label>hook</label>" in inside
     assert "<spool_frame>spool/r1</spool_frame>" in inside
-    assert [finding.code for finding in result.findings] == ["MB202"]
+    assert [finding.code for finding in result.findings] == ["MB215"]
 
 
 def test_without_its_file_the_plugin_is_reported() -> None:

@@ -2,35 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 
-from lxml.etree import _Element
-
-from multibot_rewrite.model import ERROR, WARNING, Claim, Finding, Site
-from multibot_rewrite.naming import (
-    CLOSED_KINDS,
-    Naming,
-    is_keyword,
-)
-from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
+from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document, finding
 from multibot_rewrite.rewriting.hazards import hazards
+from multibot_rewrite.rewriting.references import (
+    ambiguous,
+    doubtful,
+    duplicates,
+    loose_ends,
+    nearest,
+    remark,
+)
 from multibot_rewrite.rewriting.remarks import Remark, told
 from multibot_rewrite.vocabulary import Rewriter
+
+__all__ = ["audit", "is_unknown", "nearest", "unknown_hardware", "unknown_plugins"]
 
 
 def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
     """All findings that do not depend on the robot's name, in source order."""
+    document = inventory.document
     found = [
         *leftover_xacro(inventory),
         *worlds(inventory),
-        *duplicates(inventory),
-        *dangling(inventory, naming),
-        *ambiguous(inventory),
-        *told(inventory.document, unknown_plugins(inventory, tree), WARNING),
-        *told(inventory.document, unknown_hardware(inventory, tree), WARNING),
+        *told(document, duplicates(inventory), ERROR),
+        *told(document, undeclared(inventory, naming), WARNING),
+        *told(document, ambiguous(inventory), WARNING),
+        *told(document, unknown_plugins(inventory, tree), WARNING),
+        *told(document, unknown_hardware(inventory, tree), WARNING),
         *hazards(inventory, naming),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
@@ -70,26 +74,6 @@ def _uses_xacro(document: Document) -> bool:
     return any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
 
 
-def duplicates(inventory: Inventory) -> Iterator[Finding]:
-    """Two declarations of one name in one model; a <gazebo> block may repeat a URDF joint (PR2)."""
-    seen: dict[tuple[Site, _Element | None, str], Claim] = {}
-    for claim in inventory.claims:
-        kind = claim.site.kinds[0]
-        if claim.site.role != "declares" or kind not in CLOSED_KINDS:
-            continue
-        key = claim.site, _scope(claim.element), claim.value.strip()
-        first = seen.setdefault(key, claim)
-        if first is not claim:
-            line = finding(inventory.document, first.start, "", "", "").line
-            message = f"{kind} {claim.value!r} is declared twice, first at line {line}"
-            yield finding(inventory.document, claim.start, "MB201", ERROR, message, "rename one")
-
-
-def _scope(element: _Element) -> _Element | None:
-    """The model that a declaration stands in: names of nested SDF models are their own."""
-    return next(element.iterancestors("model", "robot"), None)
-
-
 def worlds(inventory: Inventory) -> Iterator[Finding]:
     """A world holds several models: which of them is the robot, nobody can tell."""
     document = inventory.document
@@ -101,67 +85,12 @@ def worlds(inventory: Inventory) -> Iterator[Finding]:
             yield finding(document, start, "MB109", ERROR, message, hint)
 
 
-def dangling(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     """Uses of a link or joint that nothing declares: they stay as they are."""
-    declared = inventory.declared
-    for claim in inventory.claims:
-        site = claim.site
-        if site.role != "uses" or not must_be_declared(site):
-            continue
-        if any(claim.value in declared.get(kind, ()) for kind in site.kinds):
-            continue
-        for part in names_in(claim, declared):
-            if part.text in naming.shared_frames or is_keyword(part.text):
-                continue
-            if not kind_of(part, site.role, declared):
-                yield _dangling(inventory, claim, part.text, part.kinds)
-
-
-def _dangling(inventory: Inventory, claim: Claim, name: str, kinds: tuple[str, ...]) -> Finding:
-    words = " or ".join(kinds)
-    known = [known for kind in kinds for known in inventory.declared.get(kind, ())]
-    near = nearest(name, known)
-    return finding(
-        inventory.document,
-        claim.start,
-        "MB202",
-        WARNING,
-        f"{_where(claim)} names the {words} {name!r}, which is not declared: it stays as it is",
-        f"did you mean {near!r}?" if near else "",
-    )
-
-
-def _where(claim: Claim) -> str:
-    """``<tag>`` or ``tag@attribute``; all parameters have one tag, so theirs has the name in it."""
-    tag = str(claim.element.tag)
-    if claim.attribute:
-        return f"{tag}@{claim.attribute}"
-    name = claim.element.get("name") if tag == "param" else None
-    return f'<{tag} name="{name}">' if name else f"<{tag}>"
-
-
-def nearest(name: str, known: Collection[str]) -> str:
-    """The known name most like ``name``, or an empty string."""
-    from difflib import get_close_matches  # only a message needs it
-
-    return next(iter(get_close_matches(name, known, 1, 0.7)), "")
-
-
-def ambiguous(inventory: Inventory) -> Iterator[Finding]:
-    """A ``<gazebo reference>`` that is the name of a link and of a joint: the link is taken."""
-    for claim in inventory.claims:
-        if claim.site.kinds != ("link", "joint"):
-            continue
-        if all(claim.value in inventory.declared[kind] for kind in claim.site.kinds):
-            message = f"{claim.value!r} is both a link and a joint; it is taken for the link"
-            yield finding(
-                inventory.document,
-                claim.start,
-                "MB203",
-                WARNING,
-                message,
-                "SDF refuses such a pair",
-            )
+    claims = doubtful(inventory)
+    for loose in loose_ends(claims, inventory.declared, naming.shared_frames):
+        it = remark(loose, inventory.declared)
+        yield it._replace(message=f"{it.message}: it stays as it is")
 
 
 def is_unknown(rewriter: Rewriter) -> bool:
