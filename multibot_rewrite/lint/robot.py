@@ -134,3 +134,60 @@ def _bodies(
                 body[joint.child] = body[name] if merged else joint.child
                 todo.append(joint.child)
     return body
+
+
+def roots(robot: Robot) -> list[Link]:
+    """The links that are no joint's child; of two with one name the first."""
+    return [it for name, it in robot.link.items() if name and name not in robot.above]
+
+
+def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
+    """The names that hang on ``starts``, themselves first; ``seen`` are left out and grow."""
+    found = [it for it in starts if it not in seen]
+    seen.update(found)
+    for name in found:  # grows
+        below = [it.child for it in robot.below.get(name, ()) if it.child not in seen and it.child]
+        seen.update(below)
+        found += dict.fromkeys(below)
+    return found
+
+
+def loops(robot: Robot) -> list[list[Joint]]:
+    """Closed ways down the tree, each as its joints; a joint from a link to itself is none.
+
+    Of loops that share links one is found.
+    """
+    rest = _not_of_a_tree(robot)
+    done: set[str] = set()
+    found = []
+    for start in rest:
+        way: dict[str, Joint] = {}
+        name = start
+        while name not in done:
+            done.add(name)
+            way[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
+            name = way[name].parent
+        if name in way:
+            found.append(_from(way, name)[::-1])
+    return found
+
+
+def _from(way: Mapping[str, Joint], name: str) -> list[Joint]:
+    """The joints of a way from the one above ``name`` on."""
+    return list(way.values())[list(way).index(name) :]
+
+
+def _not_of_a_tree(robot: Robot) -> dict[str, None]:
+    """The links of loops and those below them, in document order."""
+    open_ = {name: sum(map(_ties, joints)) for name, joints in robot.above.items()}
+    ready = [it for it in robot.below if not open_.get(it)]
+    for name in ready:  # grows
+        for joint in filter(_ties, robot.below.get(name, ())):
+            open_[joint.child] -= 1
+            if not open_[joint.child]:
+                ready.append(joint.child)
+    return {name: None for name, count in open_.items() if count}
+
+
+def _ties(joint: Joint) -> bool:
+    return bool(joint.parent) and bool(joint.child) and joint.parent != joint.child
