@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import re
 import sys
+from collections.abc import Iterator
 
 from multibot_rewrite.model import UsageError
 
@@ -25,43 +26,46 @@ def configured_vocabulary(near: str) -> tuple[str, ...]:
     ``near`` is the input file, a folder, or ``-`` for standard input: then the working directory
     counts. Raises UsageError, naming the pyproject.toml, for whatever is wrong with its table.
     """
-    project = _nearest(near)
+    above = (os.path.join(folder, "pyproject.toml") for folder in folders_above(near))
+    project = next(filter(os.path.isfile, above), "")
     if not project:
         return ()
-    data = _read(project)
+    data = read(project)
     if not any(mark in data for mark in MARKS):
         return ()
-    return _vocabulary(project, _table(project, data))
+    table = _table(project, data)
+    where = f"{project}: [tool.{TABLE}] vocabulary"
+    return listed_files(where, os.path.dirname(project), table.get("vocabulary", []))
 
 
-def _nearest(near: str) -> str:
-    """The pyproject.toml of the closest folder that has one, or an empty string."""
+def folders_above(near: str) -> Iterator[str]:
+    """``near`` and the folders above it, the closest first; ``-`` is the working directory."""
     folder = os.path.abspath("." if near == "-" else near)
     above = ""
     while folder != above:
-        path = os.path.join(folder, "pyproject.toml")
-        if os.path.isfile(path):
-            return path
+        yield folder
         folder, above = os.path.dirname(folder), folder
-    return ""
 
 
-def _read(project: str) -> bytes:
+def read(path: str) -> bytes:
+    """The bytes of a configuration file; raises UsageError with the reason."""
     try:
-        with open(project, "rb") as file:
+        with open(path, "rb") as file:
             return file.read()
-    except OSError as error:
-        raise UsageError(f"{project}: cannot be read: {error.strerror}") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", "") or error
+        raise UsageError(f"{path}: cannot be read: {reason}") from None
 
 
 def _table(project: str, data: bytes) -> dict[str, object]:
-    tool = _parse(project, data).get("tool", {})
+    tool = parse(project, data).get("tool", {})
     tool = tool if isinstance(tool, dict) else {}
     if "multibot_rewrite" in tool:
         raise UsageError(f"{project}: [tool.multibot_rewrite] is not read, write [tool.{TABLE}]")
     table = tool.get(TABLE, {})
     if not isinstance(table, dict):
-        raise UsageError(f"{project}: tool.{TABLE} is {_type(table)}, write a table [tool.{TABLE}]")
+        what = type_name(table)
+        raise UsageError(f"{project}: tool.{TABLE} is {what}, write a table [tool.{TABLE}]")
     unknown = next((key for key in table if key not in KEYS), None)
     if unknown is not None:
         raise UsageError(
@@ -70,7 +74,8 @@ def _table(project: str, data: bytes) -> dict[str, object]:
     return table
 
 
-def _parse(project: str, data: bytes) -> dict[str, object]:
+def parse(path: str, data: bytes) -> dict[str, object]:
+    """A TOML file's content; raises UsageError with the place of what is wrong."""
     if sys.version_info >= (3, 11):
         import tomllib
     else:
@@ -79,30 +84,31 @@ def _parse(project: str, data: bytes) -> dict[str, object]:
         return tomllib.loads(data.decode())
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise UsageError(f"{project}:{line}: it is not UTF-8; save it as UTF-8") from None
+        raise UsageError(f"{path}:{line}: it is not UTF-8; save it as UTF-8") from None
     except tomllib.TOMLDecodeError as error:
         at = _PLACE.search(str(error))
         place = f":{at[1]}:{at[2]}" if at else ""
         reason = _PLACE.sub("", str(error))
-        raise UsageError(f"{project}{place}: broken TOML, correct it: {reason}") from None
+        raise UsageError(f"{path}{place}: broken TOML, correct it: {reason}") from None
+    except (RecursionError, ValueError) as error:
+        # Brackets in thousands, a number of thousands of digits: no parser's own error.
+        raise UsageError(f"{path}: TOML that cannot be read: {error}") from None
 
 
-def _vocabulary(project: str, table: dict[str, object]) -> tuple[str, ...]:
-    listed = table.get("vocabulary", [])
-    where = f"{project}: [tool.{TABLE}] vocabulary"
+def listed_files(where: str, folder: str, listed: object) -> tuple[str, ...]:
+    """A value that is a list of files, below ``folder`` or absolute; ``where`` names it."""
     if not isinstance(listed, list):
-        raise UsageError(f'{where} is {_type(listed)}, write a list: ["acme.vocab"]')
+        raise UsageError(f'{where} is {type_name(listed)}, write a list: ["acme.vocab"]')
     wrong = next((item for item in listed if not isinstance(item, str)), None)
     if wrong is not None:
-        raise UsageError(f"{where} holds {_type(wrong)}, write paths in quotes")
-    folder = os.path.dirname(project)
+        raise UsageError(f"{where} holds {type_name(wrong)}, write paths in quotes")
     for item in listed:
         if not os.path.isfile(os.path.join(folder, item)):
             raise UsageError(f"{where}: no file {item!r} in {folder}; correct the path")
     return tuple(os.path.join(folder, item) for item in listed)
 
 
-def _type(value: object) -> str:
+def type_name(value: object) -> str:
     """What a value is, in TOML's words."""
     words = {str: "a string", bool: "a boolean", dict: "a table", list: "a list"}
     return words.get(type(value), "a number" if isinstance(value, int | float) else "a date")

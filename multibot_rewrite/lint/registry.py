@@ -7,6 +7,7 @@ from types import ModuleType
 from multibot_rewrite.lint.records import Rule
 from multibot_rewrite.lint.rules import (
     files,
+    itself,
     meshes,
     multirobot,
     names,
@@ -19,6 +20,7 @@ from multibot_rewrite.lint.rules import (
 from multibot_rewrite.lint.settings import Settings, is_on
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
+    ("MB0", "the lint itself", itself),
     ("MB1", "file and encoding", files),
     ("MB2", "references", references),
     ("MB3", "names", names),

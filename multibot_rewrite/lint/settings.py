@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from multibot_rewrite.naming import Naming, make_naming
@@ -11,10 +13,13 @@ ALL = ("MB",)
 NO_LEVELS: Mapping[str, str] = {}
 TARGETS = ("usd", "mjcf")
 TIME_LIMIT = 60.0
+# In the place of a level: the rule is not asked.
+OFF = "off"
+EVERY_FILE = "*"
 
 
 class ArgumentSet(NamedTuple):
-    """xacro arguments for the files whose path matches ``pattern`` (as ``fnmatch`` does)."""
+    """xacro arguments for the files that ``pattern`` matches."""
 
     pattern: str
     arguments: tuple[tuple[str, str], ...]
@@ -26,13 +31,14 @@ class ArgumentSet(NamedTuple):
 class Settings(NamedTuple):
     """``select`` and ``ignore`` are codes or their beginnings; the longer one wins.
 
-    ``levels`` maps them to levels. ``per_file`` are (pattern, codes). Each of ``arguments`` is one
-    more expansion of a xacro file, beside the default one. ``robots`` are who will share a system,
-    spelled by ``naming``; without robots nothing is asked that hangs on them. ``targets`` are other
-    formats the names must suit (``TARGETS``). ``roots`` are folders in which ``package://NAME`` is
-    looked for. ``urdf`` is the description that SRDF files belong to, where it is not the one with
-    the same robot name. ``included`` are xacro files that are linted through those which include
-    them. ``seconds`` is what one file may take.
+    ``levels`` maps them to levels or ``OFF``. ``per_file`` are (pattern, codes): rules that are
+    silent in files that the pattern ``matches``. Each of ``arguments`` is one more expansion of a
+    xacro file, beside the default one. ``robots`` are who will share a system, spelled by
+    ``naming``; without robots nothing is asked that hangs on them. ``targets`` are other formats
+    the names must suit (``TARGETS``). ``roots`` are folders in which ``package://NAME`` is looked
+    for. ``urdf`` is the description that SRDF files belong to, where it is not the one with the
+    same robot name. ``included`` are xacro files that are linted through those which include them.
+    ``seconds`` is what one file may take.
     """
 
     select: tuple[str, ...] = ALL
@@ -56,11 +62,29 @@ def decides(codes: Sequence[str], code: str) -> int:
 
 
 def is_on(settings: Settings, code: str) -> bool:
-    """Is a rule asked at all?"""
-    return decides(settings.select, code) > decides(settings.ignore, code)
+    """Is a rule asked at all? What selects it has to say more than what ignores it."""
+    decided = _level_key(settings, code)
+    off = len(decided) if settings.levels.get(decided) == OFF else -1
+    return decides(settings.select, code) > max(decides(settings.ignore, code), off)
 
 
 def level_of(settings: Settings, code: str, default: str) -> str:
     """The level that the configuration gives a rule, the longest beginning of its code first."""
-    found = [it for it in settings.levels if code.startswith(it)]
-    return settings.levels[max(found, key=len)] if found else default
+    level = settings.levels.get(_level_key(settings, code), OFF)
+    return default if level == OFF else level
+
+
+def _level_key(settings: Settings, code: str) -> str:
+    return max((it for it in settings.levels if code.startswith(it)), key=len, default="")
+
+
+def matches(path: str, pattern: str) -> bool:
+    """Does a pattern, as ``fnmatch`` has them, match a path as it is given or the whole of it?"""
+    return fnmatchcase(path, pattern) or fnmatchcase(os.path.abspath(path), pattern)
+
+
+def is_silent(settings: Settings, file: str, code: str) -> bool:
+    """Do the settings silence a rule in that one file?"""
+    return any(
+        decides(codes, code) >= 0 and matches(file, pattern) for pattern, codes in settings.per_file
+    )

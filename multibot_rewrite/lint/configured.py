@@ -1,0 +1,169 @@
+"""``urdf-lint.toml`` or ``[tool.urdf-lint]`` -> settings; what a command adds to them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from multibot_rewrite.config import (
+    configured_vocabulary,
+    folders_above,
+    parse,
+    read,
+    type_name,
+)
+from multibot_rewrite.lint.settings import EVERY_FILE, OFF, ArgumentSet, Settings, matches
+from multibot_rewrite.lint.values import (
+    FIELDS,
+    READERS,
+    Given,
+    check_codes,
+    checked_robots,
+    targets,
+)
+from multibot_rewrite.model import WARNING, UsageError
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rewriting.references import nearest
+
+__all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
+OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"
+MARKS = (b"urdf-lint", b"urdf_lint")
+NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics")
+DEFAULT_NAMING: Mapping[str, Any] = {"layout": "frames-per-robot"}
+
+
+class Configured(NamedTuple):
+    """The settings, and what a command does with files and findings.
+
+    ``exclude`` are patterns for ``is_excluded``; ``fail_on`` is the lowest level that makes a lint
+    fail; ``file`` is where this was read, empty for nowhere; ``naming`` are the words that
+    ``make_naming`` made the settings' naming of.
+    """
+
+    settings: Settings = Settings()
+    exclude: tuple[str, ...] = ()
+    baseline: str = ""
+    fail_on: str = WARNING
+    file: str = ""
+    naming: Mapping[str, Any] = DEFAULT_NAMING
+
+
+def configured(near: str, file: str | None) -> Configured:
+    """What ``file`` says or, without one, the nearest configuration above ``near``.
+
+    In one folder a urdf-lint.toml comes before a pyproject.toml, which counts where it has a table
+    ``[tool.urdf-lint]``. Raises UsageError, naming the file, for whatever is wrong in it.
+    """
+    path = file or next(_above(near), "")
+    result = _configured(path, _table(path)) if path else Configured()
+    settings = result.settings
+    vocabulary = (*configured_vocabulary(near), *settings.vocabulary)
+    return result._replace(settings=settings._replace(vocabulary=tuple(dict.fromkeys(vocabulary))))
+
+
+def _above(near: str) -> Iterator[str]:
+    for folder in folders_above(near):
+        own, project = os.path.join(folder, OWN), os.path.join(folder, PROJECT)
+        if os.path.isfile(own):
+            yield own
+        # Parsing costs more than the rest of a start: most projects do not hold the word.
+        data = read(project) if os.path.isfile(project) else b""
+        if any(mark in data for mark in MARKS) and _in_project(project, data) is not None:
+            yield project
+
+
+def _table(path: str) -> Mapping[str, object]:
+    data = read(path)
+    if os.path.basename(path) != PROJECT:
+        return parse(path, data)
+    table = _in_project(path, data)
+    if table is None:
+        raise UsageError(f"{path}: there is no table [tool.{TABLE}] in it")
+    return table
+
+
+def _in_project(path: str, data: bytes) -> Mapping[str, object] | None:
+    tool = parse(path, data).get("tool", {})
+    if not isinstance(tool, dict):
+        return None
+    if "urdf_lint" in tool:
+        raise UsageError(f"{path}: [tool.urdf_lint] is not read, write [tool.{TABLE}]")
+    table = tool.get(TABLE)
+    if table is not None and not isinstance(table, dict):
+        raise UsageError(f"{path}: tool.{TABLE} is {type_name(table)}, write [tool.{TABLE}]")
+    return table
+
+
+def _configured(path: str, table: Mapping[str, object]) -> Configured:
+    folder = os.path.dirname(os.path.abspath(path))
+    values: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in READERS:
+            raise UsageError(f"{path}: unknown key {key!r}{_meant(key, READERS)}")
+        field = FIELDS.get(key, key.replace("-", "_"))
+        values[field] = READERS[key](Given(f"{path}: {key}", folder, value))
+    words = {name: values.pop(name) for name in NAMING if name in values}
+    own = {name: values.pop(name) for name in Configured._fields if name in values}
+    result = Configured(Settings(**values), file=path, **own)
+    try:
+        return _named(result, words)
+    except UsageError as error:
+        raise UsageError(f"{path}: {error}") from None
+
+
+def _named(it: Configured, words: Mapping[str, Any]) -> Configured:
+    """The same with other words for the naming."""
+    if not words:
+        return it
+    naming = {**it.naming, **words}
+    settings = it.settings._replace(naming=make_naming(**naming))
+    return it._replace(settings=settings, naming=naming)
+
+
+def _meant(word: str, known: Iterable[str]) -> str:
+    near = nearest(word.replace("_", "-"), list(known))
+    return f", did you mean {near!r}?" if near else f", use one of {', '.join(known)}"
+
+
+def is_excluded(path: str, it: Configured) -> bool:
+    """Does the configuration leave out a file that was found below a folder?"""
+    return any(matches(path, pattern) for pattern in it.exclude)
+
+
+def with_options(it: Configured, **given: Any) -> Configured:
+    """What the command line says on top of a configuration; None and empty are not said.
+
+    ``ignore``, ``vocabulary``, ``roots`` and ``arguments`` (pairs) add to it; all else replaces it.
+    Codes that ``select`` names are on, whatever the configuration says of just these codes.
+    """
+    said = {name: value for name, value in given.items() if value not in (None, (), "")}
+    words = {name: said.pop(name) for name in NAMING if name in said}
+    if "target" in said:
+        said["targets"] = targets(Given("--target", "", list(said.pop("target"))))
+    if "robots" in said:
+        said["robots"] = checked_robots(said["robots"], "--robots")
+    if "fail_on" in said:
+        said["fail_on"] = READERS["fail-on"](Given("--fail-on", "", said["fail_on"]))
+    for name in ("select", "ignore"):
+        check_codes(said.get(name, ()), f"--{name}")
+    own = {name: said.pop(name) for name in ("exclude", "baseline", "fail_on") if name in said}
+    settings = _added(_selected(it.settings, said.pop("select", ())), said)
+    return _named(it._replace(settings=settings, **own), words)
+
+
+def _selected(settings: Settings, select: tuple[str, ...]) -> Settings:
+    if not select:
+        return settings
+    ignore = tuple(it for it in settings.ignore if it not in select)
+    levels = {it: at for it, at in settings.levels.items() if at != OFF or it not in select}
+    return settings._replace(select=tuple(select), ignore=ignore, levels=levels)
+
+
+def _added(settings: Settings, said: dict[str, Any]) -> Settings:
+    if "arguments" in said:
+        said["arguments"] = (ArgumentSet(EVERY_FILE, tuple(said["arguments"])),)
+    for name in ("ignore", "vocabulary", "roots", "arguments"):
+        if name in said:
+            said[name] = (*getattr(settings, name), *said[name])
+    return settings._replace(**said)

@@ -1,0 +1,215 @@
+"""Values of a configuration file -> what the settings hold; a wrong one is told in one line."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.config import listed_files, type_name
+from multibot_rewrite.lint.patterns import anchored, with_folders
+from multibot_rewrite.lint.records import LEVELS
+from multibot_rewrite.lint.registry import GROUPS, RULES
+from multibot_rewrite.lint.settings import EVERY_FILE, OFF, TARGETS, ArgumentSet
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.rewriting.references import nearest
+from multibot_rewrite.rosnames.names import check_robot_name
+
+
+class Given(NamedTuple):
+    """A key's value; ``where`` names it in messages, ``folder`` is that of the file."""
+
+    where: str
+    folder: str
+    value: object
+
+
+def _texts(given: Given) -> tuple[str, ...]:
+    if not isinstance(given.value, list):
+        raise UsageError(f"{given.where} is {type_name(given.value)}, write a list of texts")
+    wrong = next((it for it in given.value if not isinstance(it, str)), None)
+    if wrong is not None:
+        raise UsageError(f"{given.where} holds {type_name(wrong)}, write texts in quotes")
+    return tuple(given.value)
+
+
+def _text(given: Given) -> str:
+    if not isinstance(given.value, str):
+        raise UsageError(f"{given.where} is {type_name(given.value)}, write a text in quotes")
+    if not given.value:
+        raise UsageError(f"{given.where} is empty")
+    return given.value
+
+
+def _table_of(given: Given) -> Iterator[tuple[str, Given]]:
+    """The keys of a table and their values."""
+    if not isinstance(given.value, dict):
+        raise UsageError(f"{given.where} is {type_name(given.value)}, write a table")
+    for key, value in given.value.items():
+        yield key, given._replace(where=f"{given.where}: {key!r}", value=value)
+
+
+def _codes(given: Given) -> tuple[str, ...]:
+    codes = _texts(given)
+    check_codes(codes, given.where)
+    return codes
+
+
+def check_codes(codes: Sequence[str], where: str) -> None:
+    """Raise UsageError for what is neither a rule's code nor the beginning of one."""
+    known = {it.name: code for code, it in RULES.items()}
+    starts = {
+        code[:size] for code in (*RULES, *(start for start, *_ in GROUPS)) for size in (2, 3, 4, 5)
+    }
+    wrong = next((it for it in codes if it not in starts), None)
+    if wrong is None:
+        return
+    near = known.get(wrong) or nearest(wrong.upper(), sorted(starts))
+    hint = f"did you mean {near!r}?" if near else "urdf-lint --list-rules tells them"
+    raise UsageError(f"{where}: no rule has the code {wrong!r}, and none begins with it; {hint}")
+
+
+def _levels(given: Given) -> dict[str, str]:
+    levels = {}
+    for code, it in _table_of(given):
+        check_codes((code,), given.where)
+        levels[code] = _one_of(it, (*LEVELS, OFF))
+    return levels
+
+
+def _one_of(given: Given, allowed: Sequence[str]) -> str:
+    word = _text(given)
+    if word not in allowed:
+        raise UsageError(f"{given.where} is {word!r}, use one of {', '.join(allowed)}")
+    return word
+
+
+def _level(given: Given) -> str:
+    return _one_of(given, LEVELS)
+
+
+def targets(given: Given) -> tuple[str, ...]:
+    return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
+
+
+def _robots(given: Given) -> tuple[str, ...]:
+    return checked_robots(_texts(given), given.where)
+
+
+def checked_robots(robots: Sequence[str], where: str) -> tuple[str, ...]:
+    twice = next((it for it in robots if robots.count(it) > 1), None)
+    if twice is not None:
+        raise UsageError(f"{where}: the robot {twice!r} is named twice")
+    try:
+        return tuple(check_robot_name(it) for it in robots)
+    except UsageError as error:
+        raise UsageError(f"{where}: {error}") from None
+
+
+def _separators(given: Given) -> dict[str, str]:
+    return {kind: _text(it) for kind, it in _table_of(given)}
+
+
+def _path(given: Given) -> str:
+    return os.path.join(given.folder, _text(given))
+
+
+def _file(given: Given) -> str:
+    path = _path(given)
+    if not os.path.isfile(path):
+        raise UsageError(f"{given.where}: no file {given.value!r} in {given.folder}")
+    return path
+
+
+def _files(given: Given) -> tuple[str, ...]:
+    return listed_files(given.where, given.folder, given.value)
+
+
+def _folders(given: Given) -> tuple[str, ...]:
+    paths = tuple(os.path.join(given.folder, it) for it in _texts(given))
+    wrong = next((it for it in paths if not os.path.isdir(it)), None)
+    if wrong is not None:
+        raise UsageError(f"{given.where}: there is no folder {wrong}; correct the path")
+    return paths
+
+
+def _seconds(given: Given) -> float:
+    value = given.value
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise UsageError(f"{given.where} is {type_name(value)}, write a number of seconds")
+    if not 0 < value <= 86400:
+        raise UsageError(f"{given.where} is {value}, write more than 0 and at most 86400")
+    return float(value)
+
+
+def _per_file(given: Given) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    return tuple(
+        (pattern, _codes(it))
+        for key, it in _table_of(given)
+        for pattern in with_folders(anchored(key, given.folder, given.where))
+    )
+
+
+def _excluded(given: Given) -> tuple[str, ...]:
+    return tuple(
+        it for key in _texts(given) for it in with_folders(anchored(key, given.folder, given.where))
+    )
+
+
+def _argument_sets(given: Given) -> tuple[ArgumentSet, ...]:
+    if not isinstance(given.value, list):
+        raise UsageError(f"{given.where} is {type_name(given.value)}, write tables [[xacro]]")
+    each = (
+        given._replace(where=f"{given.where}, number {number}", value=value)
+        for number, value in enumerate(given.value, 1)
+    )
+    return tuple(it for one in each for it in _argument_set(one))
+
+
+def _argument_set(given: Given) -> Iterator[ArgumentSet]:
+    parts = dict(_table_of(given))
+    for key in parts:
+        if key not in ("files", "arguments"):
+            raise UsageError(f"{given.where}: unknown key {key!r}, use files, arguments")
+    if "arguments" not in parts:
+        raise UsageError(f"{given.where}: no arguments, write arguments = {{name = 'value'}}")
+    arguments = tuple((name, _argument(it)) for name, it in _table_of(parts["arguments"]))
+    files = _text(parts["files"]) if "files" in parts else ""
+    patterns = anchored(files, given.folder, given.where) if files else (EVERY_FILE,)
+    yield from (ArgumentSet(pattern, arguments) for pattern in patterns)
+
+
+def _argument(given: Given) -> str:
+    """As xacro's command line would have it: text."""
+    value = given.value
+    if isinstance(value, bool):
+        return str(value).lower()
+    if not isinstance(value, str | int | float):
+        raise UsageError(f"{given.where} is {type_name(value)}, write a text in quotes")
+    return str(value)
+
+
+READERS: Mapping[str, Callable[[Given], object]] = {
+    "select": _codes,
+    "ignore": _codes,
+    "per-file-ignores": _per_file,
+    "levels": _levels,
+    "robots": _robots,
+    "layout": _text,
+    "affix": _text,
+    "topics": _text,
+    "separators": _separators,
+    "shared-frames": _texts,
+    "shared-topics": _texts,
+    "targets": targets,
+    "roots": _folders,
+    "urdf": _file,
+    "vocabulary": _files,
+    "xacro": _argument_sets,
+    "exclude": _excluded,
+    "baseline": _path,
+    "fail-on": _level,
+    "seconds": _seconds,
+}
+# Keys that the records call otherwise.
+FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}
