@@ -13,8 +13,9 @@ from multibot_rewrite.remap.known import stack_of
 from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
 from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
-from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table import build_table, joined
 from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.collect import Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.sources import Source
@@ -23,10 +24,22 @@ Plugins = dict[str, list[tuple[NodeFacts, NodeTable]]]
 NOTHING: Mapping[str, str] = {}
 
 
+class Member(NamedTuple):
+    """A robot of a fleet: its name in the ROS graph, what stands for it in frames, and what its
+    rewritten description holds; ``places`` are where in the source (``file:line``) its plugins are.
+    """
+
+    robot: str
+    spelled: str
+    inventory: Inventory
+    places: tuple[str, ...]
+
+
 class Fleet(NamedTuple):
     """A fleet's table, what each robot's rewritten description holds, and the transforms that each
     robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
-    (``file:line``) a plugin's node comes from."""
+    (``file:line``) a plugin's node comes from. ``words`` are what stands for a robot in its frames,
+    where that is not its name."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -34,6 +47,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
+    words: dict[str, str]
 
 
 def make_fleet(
@@ -51,46 +65,71 @@ def make_fleet(
     ``nodes`` is a file of nodes and stacks beside the known ones; ``policy`` is that of
     ``make_naming``. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    library = user_stack(nodes) if nodes else built_in()
-    facts = tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
-    naming = make_naming(**policy)
+    facts = facts_of(stacks, nodes)
     more: dict[str, Any] = {"vocabulary": vocabulary, "xacro_args": xacro_args}
     rewritten = list(rewrite_all(source, robots, **more, **policy))
     tree = builtin_tree(tuple(vocabulary))
-    file = rewritten[0].template.inventory.document.file
-    inventories = {it.robot: collect(read_document(it.data, file), tree) for it in rewritten}
-    plugins = {robot: list(plugin_nodes(found, robot)) for robot, found in inventories.items()}
+    return assemble([member(it, it.data, it.robot, tree) for it in rewritten], facts, policy)
+
+
+def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
+    """What is known of the nodes of these stacks, each once; UsageError for an unknown one."""
+    library = user_stack(nodes) if nodes else built_in()
+    return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
+
+
+def member(source: Rewrite, data: bytes, spelled: str, tree: Tree) -> Member:
+    """The robot of a rewrite; ``data`` is its description as it is in the end."""
+    document = source.template.inventory.document
+    # Lines of the source: those of a rewritten text are moved by what was inserted.
+    places = tuple(plugin_places(source.template.inventory))
+    return Member(source.robot, spelled, collect(read_document(data, document.file), tree), places)
+
+
+def assemble(
+    members: Sequence[Member], facts: tuple[NodeFacts, ...], policy: Mapping[str, Any]
+) -> Fleet:
+    """The fleet of robots that run the same nodes."""
+    naming = make_naming(**policy)
+    inventories = {it.robot: it.inventory for it in members}
+    plugins = {it.robot: list(plugin_nodes(it.inventory, it.robot)) for it in members}
+    edges: dict[tuple[str, str], list[Edge]] = {}
+    for it in members:
+        own = [node for node, _ in plugins[it.robot]]
+        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.spelled)
     return Fleet(
-        build_table(robots, facts, naming, plugins),
+        build_table([it.robot for it in members], facts, naming, plugins),
         inventories,
         naming,
-        _edges(inventories, plugins, facts, naming),
+        edges,
         facts,
-        _sources(rewritten[0], plugins),
+        _sources(members, plugins),
+        {it.robot: it.spelled for it in members if it.spelled != it.robot},
     )
 
 
-def _edges(
-    inventories: Mapping[str, Inventory],
-    plugins: Plugins,
-    facts: Sequence[NodeFacts],
-    naming: Naming,
-) -> Edges:
-    result: dict[tuple[str, str], list[Edge]] = {}
-    for robot, found in inventories.items():
-        own = [node for node, _ in plugins[robot]]
-        result |= edges_of(robot, found, facts, own, naming)
-    return result
-
-
-def _sources(first: Rewrite, plugins: Plugins) -> dict[str, str]:
-    """Lines of the source: those of a rewritten text are moved by what was inserted."""
-    places = plugin_places(first.template.inventory)
+def _sources(members: Sequence[Member], plugins: Plugins) -> dict[str, str]:
     return {
         f"{node.namespace.rstrip('/')}/{node.name}": place
-        for found in plugins.values()
-        for (_, node), place in zip(found, places, strict=True)
+        for it in members
+        for (_, node), place in zip(plugins[it.robot], it.places, strict=True)
     }
+
+
+def merge(fleets: Sequence[Fleet]) -> Fleet:
+    """Robots of different kinds as one fleet, whose names may not meet either."""
+    first, *others = fleets
+    for other in others:
+        first = Fleet(
+            joined(first.table, other.table, first.naming),
+            {**first.inventories, **other.inventories},
+            first.naming,
+            {**first.edges, **other.edges},
+            tuple(dict.fromkeys((*first.facts, *other.facts))),
+            {**first.sources, **other.sources},
+            {**first.words, **other.words},
+        )
+    return first
 
 
 def expected(fleet: Fleet) -> Expectation:
@@ -103,4 +142,4 @@ def expected(fleet: Fleet) -> Expectation:
         for robot, found in fleet.inventories.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources)
+    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.words)

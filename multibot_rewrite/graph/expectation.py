@@ -39,7 +39,7 @@ class WantedRobot(NamedTuple):
     """One robot: its nodes, the frames its description declares, the topic its tf is on.
 
     ``other_frames`` are names its nodes may use besides. ``optional`` are those of its nodes that
-    are started under a condition.
+    are started under a condition. ``spelled`` stands for the robot in frames, empty for its name.
     """
 
     name: str
@@ -48,6 +48,7 @@ class WantedRobot(NamedTuple):
     tf: str
     other_frames: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
+    spelled: str = ""
 
 
 class Expectation(NamedTuple):
@@ -71,9 +72,11 @@ def expect(
     facts: Iterable[NodeFacts] = (),
     named: Mapping[str, Sequence[str]] = NOTHING,
     sources: Mapping[str, str] = NOWHERE,
+    words: Mapping[str, str] = NOWHERE,
 ) -> Expectation:
     """The expectation of a table; ``frames`` are each robot's, as its description declares them,
-    ``named`` those it names besides. ``facts`` are of the nodes that every robot runs."""
+    ``named`` those it names besides. ``facts`` are of the nodes that every robot runs. ``words``
+    are what stands for a robot in its frames, where that is not its name."""
     known = tuple(facts)
     nodes = _nodes(table)
     optional = {node.name for node in known if node.when}
@@ -81,11 +84,14 @@ def expect(
     robots = []
     for name in (robot for robot in nodes if robot):
         own = tuple(frames.get(name, ()))
-        others = (*named.get(name, ()), *(spelled(frame, name, naming) for frame in usual))
+        word = words.get(name, name)
+        others = (*named.get(name, ()), *(spelled(frame, word, naming) for frame in usual))
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
         perhaps = tuple(full for asked, full in nodes[name] if asked in optional)
         full = tuple(dict.fromkeys(full for _, full in nodes[name]))
-        robots.append(WantedRobot(name, full, own, tf_topic(name, naming), tuple(left), perhaps))
+        tf = tf_topic(name, naming)
+        said = word if word != name else ""
+        robots.append(WantedRobot(name, full, own, tf, tuple(left), perhaps, said))
     return Expectation(
         table.layout,
         tuple(robots),

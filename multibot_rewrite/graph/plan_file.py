@@ -15,12 +15,13 @@ HEAD = """\
 # Take out what is not started, add what is: `multibot check` compares exactly this.
 # optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
 # patterns of nodes that may come and go, beside the usual tools. sources: what starts a node.
+# spelled: what stands for a robot in its frames, where that is not its name.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
 # May be left out.
 MORE_KEYS = ("ignored_nodes", "sources")
-MORE_ROBOT_KEYS = ("other_frames", "optional")
+MORE_ROBOT_KEYS = ("other_frames", "optional", "spelled")
 FIELDS = 5
 # Between the types an endpoint may have.
 OR = " | "
@@ -58,7 +59,7 @@ def _plain(value: object) -> object:
 
 
 def _robot(robot: WantedRobot, rows: Mapping[str, list[list[str]]]) -> dict[str, object]:
-    given = {key: list(getattr(robot, key)) for key in MORE_ROBOT_KEYS if getattr(robot, key)}
+    given = {k: _plain(getattr(robot, k)) for k in MORE_ROBOT_KEYS if getattr(robot, k)}
     nodes = {node: rows.get(node, []) for node in robot.nodes}
     return {"tf": robot.tf, "frames": list(robot.frames), **given, "nodes": nodes}
 
@@ -100,8 +101,10 @@ def _read_robot(name: str, given: object, file: str) -> tuple[WantedRobot, list[
     place = f"robots.{name}"
     robot = _mapping(given, ROBOT_KEYS, file, place, MORE_ROBOT_KEYS)
     nodes = _mapping(robot["nodes"] or {}, (), file, f"{place}.nodes")
-    keys = ("frames", *MORE_ROBOT_KEYS)
-    frames, *more = (_texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys)
+    keys = ("frames", *MORE_ROBOT_KEYS[:-1])
+    frames, others, optional = (
+        _texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys
+    )
     endpoints = [
         _wanted(node, row, f"{file}: {place}.nodes.{node}[{at}]")
         for node, rows in nodes.items()
@@ -109,7 +112,10 @@ def _read_robot(name: str, given: object, file: str) -> tuple[WantedRobot, list[
     ]
     tf = _full_name(robot["tf"], f"{file}: {place}.tf")
     names = tuple(_full_name(node, f"{file}: {place}.nodes") for node in nodes)
-    return WantedRobot(name, names, frames, tf, *more), endpoints
+    spelled = robot.get("spelled", "")
+    if not isinstance(spelled, str):
+        raise InputError(f"{file}: {place}.spelled: write one word")
+    return WantedRobot(name, names, frames, tf, others, optional, spelled), endpoints
 
 
 def _full_name(value: object, place: str) -> str:

@@ -29,15 +29,20 @@ def edges_of(
     facts: Iterable[NodeFacts],
     plugins: Iterable[NodeFacts],
     naming: Naming,
+    word: str = "",
 ) -> dict[tuple[str, str], list[Edge]]:
-    """What a robot's nodes send, by robot and node: its description, and odometry and map."""
+    """What a robot's nodes send, by robot and node: its description, and odometry and map.
+
+    ``word`` stands for the robot in frames, empty for its name.
+    """
     tree = list(description_edges(inventory))
     children = {edge.child for edge in tree}
     root = next((link for link in inventory.declared["link"] if link not in children), "")
     result = {(robot, node.name): [*_sent(node, "")] for node in plugins}
     for node in facts:
         spelled = [
-            frame._replace(default=_spelled(frame.default, robot, naming)) for frame in node.frames
+            frame._replace(default=_spelled(frame.default, word or robot, naming))
+            for frame in node.frames
         ]
         own = [*_sent(node._replace(frames=tuple(spelled)), root)]
         result[robot, node.name] = tree if node.package == STATE_PUBLISHER else own

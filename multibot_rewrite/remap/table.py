@@ -82,6 +82,19 @@ def _build(
     return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems))
 
 
+def joined(table: Table, other: Table, naming: Naming) -> Table:
+    """Two tables of different robots as one; nodes for all robots are there once."""
+    names = tuple(dict.fromkeys((*table.names, *other.names)))
+    by_robot: dict[str, list[Name]] = {}
+    for name in names:
+        if name.robot:
+            by_robot.setdefault(name.robot, []).append(name)
+    known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
+    met = (it for it in _meeting(by_robot, naming) if (it.code, it.message) not in known)
+    problems = tuple(dict.fromkeys((*table.problems, *other.problems, *met)))
+    return Table(table.layout, tuple(dict.fromkeys((*table.nodes, *other.nodes))), names, problems)
+
+
 def _renamed(names: Iterable[Name], robot: str) -> list[Name]:
     """The probe's names as another robot has them."""
     return [

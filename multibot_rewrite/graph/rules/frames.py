@@ -173,7 +173,14 @@ def _torn(view: View, children: Set[str], robot: WantedRobot, roots: Sequence[st
     )
     for root in roots:
         bare = view.frame_owners.bare(root, robot.name)
-        other = next((n for n in _spellings(bare, root, robot.name) if n in children), "")
+        other = next(
+            (
+                n
+                for n in _spellings(bare, root, view.frame_owners.spelled(robot.name))
+                if n in children
+            ),
+            "",
+        )
         # With one of its spellings it hangs in the tree.
         if other:
             cause = f"{other} and {root} are one frame in two spellings: see the other findings"
@@ -237,11 +244,12 @@ def _undeclared_by(view: View, tree: TfTree, name: str, children: Mapping[str, F
 
 
 def _is_doubled(view: View, robot: WantedRobot, name: str) -> bool:
-    if not view.frames_of[robot.name].isdisjoint(one_less(name, robot.name)):
+    word = view.frame_owners.spelled(robot.name)
+    if not view.frames_of[robot.name].isdisjoint(one_less(name, word)):
         return True
     once = view.frame_owners.bare(name, robot.name)
     twice = view.frame_owners.bare(once, robot.name)
-    ordinary = robot.name in view.frame_owners.words
+    ordinary = word in view.frame_owners.words
     return twice != once and not ordinary and twice in _spelled(view, robot)
 
 

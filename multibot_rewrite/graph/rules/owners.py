@@ -9,21 +9,25 @@ from multibot_rewrite.graph.expectation import Expectation
 
 # What may stand between a robot's name and the rest of a segment.
 JOINTS = "_-."
+NO_SPELLINGS: Mapping[str, str] = {}
 
 
 class Owners(NamedTuple):
     """The robots as names of one sort hold them: graph names, or frames.
 
     ``exact`` are the planned names that are one robot's, ``nodes`` those whose names are put before
-    private ones. ``words`` are robots called like a word of the names themselves (a robot ``scan``).
-    ``last`` tells that a robot's name stands at the end.
+    private ones. ``robots`` maps what stands for a robot in the names to the robot. ``words`` are
+    those of them that are words of the names themselves (a robot ``scan``). ``last`` tells that a
+    robot's name stands at the end. ``spellings`` maps robots to what stands for them, where that is
+    another word than their name.
     """
 
     exact: Mapping[str, str]
     nodes: Mapping[str, str]
-    robots: frozenset[str]
+    robots: Mapping[str, str]
     words: frozenset[str]
     last: bool
+    spellings: Mapping[str, str] = NO_SPELLINGS
 
     def of(self, name: str) -> str:
         """The robot of a name, or an empty string."""
@@ -41,20 +45,24 @@ class Owners(NamedTuple):
         segments = name.strip("/").split("/")
         if len(segments) > 1:
             place = segments[-1 if self.last else 0]
-            if place in self.robots:
-                return place
-            found = self._longest(segments)
+            found = place if place in self.robots else self._longest(segments)
             if found:
-                return found
-        return self._longest(end for segment in segments for end in _ends(segment))
+                return self.robots[found]
+        found = self._longest(end for segment in segments for end in _ends(segment))
+        return self.robots.get(found, "")
 
     def _longest(self, parts: Iterable[str]) -> str:
         """``arm_left`` rather than ``arm``."""
         found = (part for part in parts if part in self.robots and part not in self.words)
         return max(found, key=len, default="")
 
+    def spelled(self, robot: str) -> str:
+        """What stands for the robot in these names."""
+        return self.spellings.get(robot, robot)
+
     def bare(self, name: str, robot: str) -> str:
         """The name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
+        robot = self.spelled(robot)
         if not robot or robot not in name:
             return name
         lead = "/" if name.startswith("/") else ""
@@ -97,16 +105,16 @@ def name_owners(plan: Expectation) -> Owners:
     """The owners of graph names."""
     nodes = {node: robot.name for robot in plan.robots for node in robot.nodes}
     planned = ((w.name, nodes[w.node]) for w in plan.endpoints if w.node in nodes)
-    robots = frozenset(robot.name for robot in plan.robots)
+    robots = {robot.name: robot.name for robot in plan.robots}
     last = _last((name, robot.name) for robot in plan.robots for name in (*robot.nodes, robot.tf))
     draft = Owners(_single((*nodes.items(), *planned)), nodes, robots, frozenset(), last)
-    return draft._replace(words=robots & _words(plan, draft))
+    return draft._replace(words=frozenset(robots.keys() & _words(plan, draft)))
 
 
 def _words(plan: Expectation, draft: Owners) -> set[str]:
     """The words of names and nodes without their own robot's name, as far as they may be robots."""
     nodes = draft.nodes
-    likely = draft.robots & _parts({w.asked for w in plan.endpoints})
+    likely = draft.robots.keys() & _parts({w.asked for w in plan.endpoints})
     asked = {(w.asked, nodes.get(w.node, "")) for w in plan.endpoints if likely}
     return _parts({draft.bare(name, robot) for name, robot in (*asked, *nodes.items())})
 
@@ -115,12 +123,14 @@ def frame_owners(plan: Expectation) -> Owners:
     """The owners of tf frames."""
     declared = [(frame, robot.name) for robot in plan.robots for frame in robot.frames]
     others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
-    robots = frozenset(robot.name for robot in plan.robots)
+    spellings = {robot.name: robot.spelled for robot in plan.robots if robot.spelled}
+    robots = {spellings.get(robot.name, robot.name): robot.name for robot in plan.robots}
+    last = _last((frame, spellings.get(robot, robot)) for frame, robot in declared)
     exact = _single((*declared, *others))
-    draft = Owners(exact, {}, robots, frozenset(), _last(declared))
+    draft = Owners(exact, {}, robots, frozenset(), last, spellings)
     # The descriptions are one: the first robot's frames are enough.
     bare = (draft.bare(*pair) for pair in declared if pair[1] == declared[0][1])
-    return draft._replace(words=robots & _parts(bare))
+    return draft._replace(words=frozenset(robots.keys() & _parts(bare)))
 
 
 def _single(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
