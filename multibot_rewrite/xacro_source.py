@@ -4,25 +4,37 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import nullcontext
+from types import FrameType
 from typing import Any
 from xml.dom import DOMException
 from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.model import InputError
-from multibot_rewrite.rewriting.document import MAX_BYTES
+from multibot_rewrite.rewriting.document import MAX_BYTES, locate, tag_end
+from multibot_rewrite.xacro_trace import _KEY as ORIGIN
 from multibot_rewrite.xacro_trace import Origin, Trace, tracing
 
 # What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
 _UNWORDED = (OSError, ValueError, RuntimeError, TypeError)
+# What xacro's functions call the element that they work on.
+_NODES = ("node", "elt", "tag")
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
 _HINTS = (
     ("Undefined substitution argument", "give it as {}:=VALUE"),
     ("No module named 'ament_index_python'", "$(find PACKAGE) needs a sourced ROS 2"),
+    ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),
     ("No such file", "check the path"),
+    ("Is a directory", "check the path"),
     ("package", "source the workspace that holds it"),
+    ("Undefined block", "give it to the macro, or call it what the macro's params call it: *NAME"),
+    ("Invalid parameter", "the macro has no such parameter: see its params"),
+    ("missing attribute", "add it, an <xacro:arg> needs its default"),
+    ("not a boolean", "write true, false, 1, 0 or an expression"),
+    ("must be valid python identifiers", "use letters, digits and underscores"),
+    ("invalid syntax", "mend the expression"),
     ("unknown macro name", "check its name and the <xacro:include> it comes from"),
     ("Undefined parameters", "give the macro all its parameters"),
     ("is not defined", "define it with <xacro:property> or <xacro:arg>"),
@@ -61,7 +73,7 @@ def _expanded(path: str, arguments: Mapping[str, str], trace: Trace | None) -> t
         text: str = document.toprettyxml(indent="  ")
     except (*said, *_UNWORDED) as error:
         inner = (xacro.filestack or [path])[-1]
-        raise InputError(_message(path, inner, error)) from error
+        raise InputError(_message(path, inner, error, trace or Trace())) from error
     return text.encode(), document
 
 
@@ -76,14 +88,59 @@ def _check_file(path: str) -> None:
         raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
 
 
-def _message(path: str, inner: str, error: Exception) -> str:
+def _message(path: str, inner: str, error: Exception, trace: Trace) -> str:
     """``inner`` is the file that failed: ``path`` or one it includes."""
     reason = " ".join(_reason(error).split())
     hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
     argument = reason.partition(" argument ")[2].partition(" ")[0]
-    place = f":{error.lineno}:{error.offset + 1}" if isinstance(error, ExpatError) else ""
+    where = f"{inner}:{error.lineno}:{error.offset + 1}" if isinstance(error, ExpatError) else ""
+    where = where or _place(error, trace) or inner
     included = "" if inner == path else f" (included from {path})"
-    return f"{inner}{place}: xacro failed{included}: {reason}; {hint.replace('{}', argument)}"
+    said = f"xacro failed{included}{_macros(trace, reason)}: {reason}"
+    return f"{where}: {said}; {hint.replace('{}', argument)}"
+
+
+def _macros(trace: Trace, reason: str) -> str:
+    """The macro that failed, and the line of its call."""
+    if not trace.failed or "unknown macro" in reason:
+        return ""
+    call = trace.failed[0]
+    line, _ = locate(trace.sources[call.file], call.start)
+    return f" in the macro {call.macro!r} that line {line} of {os.path.basename(call.file)} calls"
+
+
+def _place(error: BaseException, trace: Trace) -> str:
+    """``file:line:column`` of the element that was worked on, or of its attribute; "" if unknown."""
+    for frame in reversed(list(_frames(error))):
+        node = next((frame.f_locals[it] for it in _NODES if it in frame.f_locals), None)
+        element: Any = node if hasattr(node, "tagName") else getattr(node, "parentNode", None)
+        origin = element.getUserData(ORIGIN) if hasattr(element, "getUserData") else None
+        if isinstance(origin, Origin):
+            line, column = _locate(trace.sources[origin.file], origin, element, frame)
+            return f"{origin.file}:{line}:{column}"
+    return ""
+
+
+def _frames(error: BaseException) -> Iterator[FrameType]:
+    """The frames an error passed, the outermost first, and those of what caused it behind them."""
+    step = error.__traceback__
+    while step is not None:
+        yield step.tb_frame
+        step = step.tb_next
+    cause = error.__cause__ or error.__context__
+    if cause is not None:
+        yield from _frames(cause)
+
+
+def _locate(source: bytes, origin: Origin, element: Any, frame: FrameType) -> tuple[int, int]:
+    """The attribute whose value was evaluated, or the element."""
+    name, value = frame.f_locals.get("name"), frame.f_locals.get("value")
+    start = origin.start
+    if isinstance(name, str) and isinstance(value, str) and element.getAttribute(name) == value:
+        pattern = re.compile(rb"\s(" + re.escape(name.encode()) + rb"\s*=)")
+        found = pattern.search(source, start, tag_end(source, start))
+        start = found.start(1) if found else start
+    return locate(source, start)
 
 
 def _reason(error: Exception) -> str:

@@ -11,7 +11,13 @@ from multibot_rewrite.model import ERROR
 
 _PLACE = re.compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
 # What a reader says -> the rule that this is.
-_CODES = (("xacro failed", "MB103"), ("cannot be read", "MB102"))
+_CODES = (
+    ("No such file", "MB102"),
+    ("cannot be read", "MB102"),
+    ("Is a directory", "MB102"),
+    ("Permission denied", "MB102"),
+    ("xacro failed", "MB103"),
+)
 
 
 def failure(path: str, message: str, settings: Settings) -> LintFinding:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.robot import Robot
+from multibot_rewrite.lint.schema import Fault
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR, WARNING, Edit
 from multibot_rewrite.rewriters.tree import Tree
@@ -30,7 +31,7 @@ class Subject(NamedTuple):
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
     robot that an SRDF belongs to, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
-    ``arguments`` are the ones it was expanded with.
+    ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's shape.
     """
 
     format: str
@@ -43,6 +44,7 @@ class Subject(NamedTuple):
     origins: tuple[Origin | None, ...] = ()
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
+    faults: tuple[Fault, ...] = ()
 
 
 class Problem(NamedTuple):

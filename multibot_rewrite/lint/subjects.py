@@ -9,6 +9,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import Robot, read_robot
+from multibot_rewrite.lint.schema import read_faults
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
@@ -32,7 +33,7 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
     """
     written = _subject(read_document(data, path), settings)
     if not path.endswith(".xacro"):
-        yield written
+        yield _shaped(written)
         return
     yield written._replace(format=XACRO)
     if path not in settings.included and not _only_defines(written.document.root):
@@ -55,7 +56,13 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
     trace = Trace({path: data})
     expanded, origins = expand_traced(path, dict(given.arguments), trace)
     subject = _subject(read_document(expanded, f"{path} (expanded)"), settings)
-    return subject._replace(origins=origins, sources=trace.sources, arguments=str(given))
+    return _shaped(subject)._replace(origins=origins, sources=trace.sources, arguments=str(given))
+
+
+def _shaped(subject: Subject) -> Subject:
+    """With the faults of its shape; the source of a xacro file has none yet."""
+    urdf = subject.format == URDF
+    return subject._replace(faults=read_faults(subject.document)) if urdf else subject
 
 
 def _only_defines(root: _Element) -> bool:

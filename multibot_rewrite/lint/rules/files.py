@@ -1,11 +1,45 @@
-"""MB1: what a file is and how it is encoded."""
+"""MB1: what a file is, how it is encoded, and the shape of its XML."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator
+from itertools import accumulate
 
-from multibot_rewrite.lint.records import Problem, Subject, rule
-from multibot_rewrite.model import ERROR
+from lxml import etree
+
+from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.model import ERROR, WARNING, Edit, Finding
+from multibot_rewrite.rewriting.audit import leftover_xacro, nearest, worlds
+
+BOM = b"\xef\xbb\xbf"
+_DECLARED = re.compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
+_ENCODED = re.compile(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
+_NAMESPACE = re.compile(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ROOT = re.compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_MATERIALS = etree.XPath("/robot/material")
+_LOOKS = etree.XPath("/robot/link/visual/material[@name]")
+Look = tuple[tuple[float, ...] | str, str]
+
+
+def _told(subject: Subject, kind: str) -> Iterator[Problem]:
+    """The faults of the document's shape that belong to the rule of that name."""
+    for it in subject.faults:
+        if it.kind == kind:
+            yield Problem(it.element, it.message, it.attribute, it.hint)
+
+
+def _placed(subject: Subject, findings: Iterable[Finding]) -> Iterator[Problem]:
+    """Findings that know a line and a column -> problems at the elements there."""
+    source = subject.document.source
+    elements = list(subject.document.root.iter("*"))
+    lines = [0, *accumulate(len(line) for line in source.splitlines(keepends=True))]
+    for it in findings:
+        line = source[lines[it.line - 1] :].decode("utf-8", "replace")
+        start = lines[it.line - 1] + len(line[: it.column - 1].encode())
+        element = elements[bisect_left(subject.document.starts, start)]
+        yield Problem(element, it.message, None, it.hint)
 
 
 @rule(
@@ -22,3 +56,503 @@ from multibot_rewrite.model import ERROR
 def not_xml(subject: Subject) -> Iterator[Problem]:
     """Found when the file is read: see ``failures``."""
     return iter(())
+
+
+@rule(
+    "MB102",
+    "unreadable",
+    ERROR,
+    what="The file, or one that it includes, is not there or may not be read.",
+    why="xacro and robot_state_publisher stop with an error, and the launch with them.",
+    fix="Mend the path; where it has $(find PACKAGE), source the workspace with that package.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    '<xacro:include filename="nowhere.xacro"/><link name="a"/></robot>',
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>',
+)
+def unreadable(subject: Subject) -> Iterator[Problem]:
+    """Found when the file is read: see ``failures``."""
+    return iter(())
+
+
+@rule(
+    "MB103",
+    "xacro-failed",
+    ERROR,
+    what="xacro cannot expand the file: an argument, property, macro or package is missing, or an "
+    "expression is wrong.",
+    why="There is no URDF: the Command substitution of the launch file fails and nothing starts.",
+    fix="Give every <xacro:arg> a default, or the lint the arguments to expand with; for the rest "
+    "see the finding.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    '<link name="$(arg side)_arm"/></robot>',
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    '<xacro:arg name="side" default="left"/><link name="$(arg side)_arm"/></robot>',
+)
+def xacro_failed(subject: Subject) -> Iterator[Problem]:
+    """Found when the file is expanded: see ``failures``."""
+    return iter(())
+
+
+@rule(
+    "MB105",
+    "leftover-xacro",
+    ERROR,
+    what="A plain URDF still holds xacro elements or ${...} and $(arg ...) substitutions.",
+    why="URDF loaders expand nothing: macros do not come to be, and ${...} where a number should "
+    "be makes urdfdom refuse the joint, and with it the robot.",
+    fix="Name the file .urdf.xacro and load it through xacro, or write the expanded text.",
+    bad='<link name="a"/><link name="${prefix}b"/>',
+    good='<link name="a"/><link name="b"/>',
+)
+def leftover(subject: Subject) -> Iterator[Problem]:
+    """The first one tells it all."""
+    found = list(leftover_xacro(subject.inventory))
+    return _placed(subject, found) if found else iter(())
+
+
+@rule(
+    "MB109",
+    "sdf-world",
+    ERROR,
+    what="The file is an SDF world, which holds several models.",
+    why="Which of the models is the robot, nobody can tell: its names cannot be checked or spelled "
+    "for one robot.",
+    fix="Keep the robot in a model.sdf of its own and include it in the world.",
+    bad='<?xml version="1.0"?><sdf version="1.9"><world name="w"/></sdf>',
+    good='<?xml version="1.0"?><sdf version="1.9"><model name="r"><link name="a"/></model></sdf>',
+)
+def sdf_world(subject: Subject) -> Iterator[Problem]:
+    """Every world of the file."""
+    return _placed(subject, worlds(subject.inventory)) if _is_sdf(subject) else iter(())
+
+
+def _is_sdf(subject: Subject) -> bool:
+    return subject.document.root.tag == "sdf"
+
+
+@rule(
+    "MB110",
+    "misspelled-element",
+    WARNING,
+    what="An element is no part of URDF where it stands, and nearly has the name of one that is.",
+    why="Every loader skips elements that it does not know: the link has no mass, the joint no "
+    "limit, and nothing says so.",
+    fix="Write the name that is meant.",
+    bad='<link name="a"><inertail/></link>',
+    good='<link name="a"><visual><geometry><sphere radius="1"/></geometry></visual></link>',
+)
+def misspelled_element(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "misspelled-element")
+
+
+@rule(
+    "MB111",
+    "ignored-element",
+    NOTE,
+    what="An element inside a link or joint that no reader of URDF knows.",
+    why="It has no effect: <gravity>, <kinematic> or <pose> work in a <gazebo reference> block, "
+    "where sdformat looks for them, and not here.",
+    fix="Move it into <gazebo reference>, or delete it.",
+    bad='<link name="a"><gravity>1</gravity></link>',
+    good='<link name="a"/><gazebo reference="a"><gravity>1</gravity></gazebo>',
+)
+def ignored_element(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "ignored-element")
+
+
+@rule(
+    "MB112",
+    "misplaced-element",
+    WARNING,
+    what="An element of URDF stands where nobody looks for it.",
+    why="Loaders look for children by name in one place alone: an <origin> of a link or an "
+    "<inertial> of the robot is left out without a word.",
+    fix="Move it to where it belongs; the hint names the places.",
+    bad='<link name="a"><mass value="1"/></link>',
+    good='<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" '
+    'iyz="0" izz="1"/></inertial></link>',
+)
+def misplaced_element(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "misplaced-element")
+
+
+@rule(
+    "MB113",
+    "misspelled-attribute",
+    WARNING,
+    what="An attribute is none of its element's, and nearly has the name of one that is absent.",
+    why="Loaders ask for attributes by name and take the default where there is none: "
+    "xzy='0 0 1' is an origin of 0 0 0.",
+    fix="Write the name that is meant.",
+    bad='<link name="a"><visual><origin xzy="0 0 1"/><geometry><sphere radius="1"/></geometry>'
+    "</visual></link>",
+    good='<link name="a"><visual><origin xyz="0 0 1"/><geometry><sphere radius="1"/></geometry>'
+    "</visual></link>",
+)
+def misspelled_attribute(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "misspelled-attribute")
+
+
+@rule(
+    "MB114",
+    "ignored-attribute",
+    NOTE,
+    what="An attribute that no reader of URDF knows.",
+    why="It has no effect: loaders ask for the attributes they know and for no others.",
+    fix="Delete it, or move it to where your own program reads it.",
+    bad='<link name="a"><visual colour="red"><geometry><sphere radius="1"/></geometry></visual>'
+    "</link>",
+    good='<link name="a"><visual name="ball"><geometry><sphere radius="1"/></geometry></visual>'
+    "</link>",
+)
+def ignored_attribute(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "ignored-attribute")
+
+
+@rule(
+    "MB115",
+    "missing",
+    ERROR,
+    what="An attribute or child is missing without which its element cannot be read.",
+    why="urdfdom refuses the whole file for a joint or the robot's name; of a link it drops every "
+    "visual and collision after the fault; ros2_control's parser throws, and the controller "
+    "manager has no hardware.",
+    fix="Add what is missing.",
+    bad='<link name="a"><visual><geometry><mesh/></geometry></visual></link>',
+    good='<link name="a"><visual><geometry><mesh filename="file:///a.stl"/></geometry></visual>'
+    "</link>",
+)
+def missing(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "missing")
+
+
+@rule(
+    "MB116",
+    "repeated-element",
+    WARNING,
+    what="An element comes twice where loaders read one.",
+    why="urdfdom takes the first and never looks at the others: what the second says does not "
+    "happen. Other readers may take the last.",
+    fix="Keep the one that is meant.",
+    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="b"/><origin xyz="0 0 1"/><origin xyz="0 0 2"/></joint>',
+    good='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="b"/><origin xyz="0 0 1"/></joint>',
+)
+def repeated_element(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "repeated-element")
+
+
+@rule(
+    "MB117",
+    "unknown-component",
+    ERROR,
+    what="A child of <ros2_control> is no component: hardware, joint, sensor, gpio, transmission.",
+    why='ros2_control\'s component parser throws "invalid tag name" for it, and the controller '
+    "manager goes without any hardware.",
+    fix="Write one of the components, or move a <param> into <hardware>.",
+    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
+    '<param name="port">1</param></ros2_control>',
+    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin>'
+    '<param name="port">1</param></hardware></ros2_control>',
+)
+def unknown_component(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "unknown-component")
+
+
+@rule(
+    "MB118",
+    "stray-text",
+    NOTE,
+    what="Text stands where no reader of URDF expects any.",
+    why="It has no effect. Mostly it is what an edit left: the end of a comment, a doubled '>', "
+    "a remark without its comment marks.",
+    fix="Delete it, or make it a comment.",
+    bad='<link name="a"/>>',
+    good='<link name="a"/><!-- a remark -->',
+)
+def stray_text(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "stray-text")
+
+
+@rule(
+    "MB120",
+    "not-a-number",
+    ERROR,
+    what="A value that has to be a number is none: empty, with a unit, with a decimal comma.",
+    why="urdfdom refuses the file if it is in a joint, and drops the rest of the link's shapes if "
+    "it is in a link.",
+    fix="Write plain numbers with a decimal point, separated by blanks, in metres, radians and "
+    "kilograms.",
+    bad='<link name="a"><visual><geometry><sphere radius="0,5"/></geometry></visual></link>',
+    good='<link name="a"><visual><geometry><sphere radius="5e-1"/></geometry></visual></link>',
+)
+def not_a_number(subject: Subject) -> Iterator[Problem]:
+    """Substitutions that are left over have their own rule."""
+    return (it for it in _told(subject, "not-a-number") if "$" not in it.message)
+
+
+@rule(
+    "MB121",
+    "wrong-count",
+    ERROR,
+    what="A value holds more or fewer numbers than it must: a scale of one number, an xyz of two.",
+    why="urdfdom refuses the file if it is in a joint, and drops the rest of the link's shapes if "
+    "it is in a link.",
+    fix="Write all the numbers: three for xyz, rpy, size and scale, one for the rest.",
+    bad='<link name="a"><visual><geometry><mesh filename="file:///a.stl" scale="0.001"/></geometry>'
+    "</visual></link>",
+    good='<link name="a"><visual><geometry><mesh filename="file:///a.stl" scale="1 1 1"/>'
+    "</geometry></visual></link>",
+)
+def wrong_count(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "wrong-count")
+
+
+@rule(
+    "MB122",
+    "not-finite",
+    ERROR,
+    what="A number is nan, inf, or too large for a double.",
+    why="urdfdom's number reader knows neither nan nor inf: it refuses a joint's file, and drops "
+    "the rest of a link's shapes. Readers that take it compute with nan from then on.",
+    fix="Write a large finite number, or leave a limit out by type='continuous'.",
+    bad='<link name="a"><visual><geometry><sphere radius="inf"/></geometry></visual></link>',
+    good='<link name="a"><visual><geometry><sphere radius="1e9"/></geometry></visual></link>',
+)
+def not_finite(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "not-finite")
+
+
+@rule(
+    "MB123",
+    "blank-behind-number",
+    ERROR,
+    what="A lone number has a blank behind it, or a tab or line end follows a number in a value.",
+    why="urdfdom splits at single blanks alone and wants a number to be all of its part: it reads "
+    "'1 ' and a tab between numbers as no number, and refuses it.",
+    fix="Delete the blank; write blanks between numbers.",
+    bad='<link name="a"><visual><geometry><sphere radius="1 "/></geometry></visual></link>',
+    good='<link name="a"><visual><geometry><box size="1  1 1 "/></geometry></visual></link>',
+)
+def blank_behind_number(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "blank-behind-number")
+
+
+@rule(
+    "MB124",
+    "bad-choice",
+    ERROR,
+    what="A value is not one of those that the loader knows: a joint type, a ros2_control type, "
+    "the version of the URDF.",
+    why="urdfdom refuses the file for a joint type or version it does not know; hardware of an "
+    "unknown type is loaded by nobody, and ros2_control does not say so.",
+    fix="Write one of the values in the message, in lower case.",
+    bad='<link name="a"/><link name="b"/><joint name="j" type="Fixed"><parent link="a"/>'
+    '<child link="b"/></joint>',
+    good='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="b"/></joint>',
+)
+def bad_choice(subject: Subject) -> Iterator[Problem]:
+    """Read by ``schema.read_faults``."""
+    return _told(subject, "bad-choice")
+
+
+@rule(
+    "MB130",
+    "bad-colour",
+    WARNING,
+    what="A colour is not four numbers from 0 to 1.",
+    why="urdfdom cannot read it: of three numbers it makes black, and with one above 1 it says "
+    "'malformed color' and the shape goes without its colour.",
+    fix="Write red, green, blue and alpha from 0 to 1.",
+    bad='<material name="m"><color rgba="255 0 0 1"/></material><link name="a"/>',
+    good='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"/>',
+)
+def bad_colour(subject: Subject) -> Iterator[Problem]:
+    """Substitutions that are left over have their own rule."""
+    return (it for it in _told(subject, "bad-colour") if "$" not in it.message)
+
+
+@rule(
+    "MB131",
+    "undefined-material",
+    WARNING,
+    what="A visual names a material that neither the robot nor an earlier visual defines.",
+    why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
+    "viewers and Gazebo draw it in their default colour.",
+    fix="Define it once as a child of <robot>, with a <color> or <texture>.",
+    bad='<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="m"/>'
+    "</visual></link>",
+    good='<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="m"/>'
+    '</visual></link><material name="m"><color rgba="1 0 0 1"/></material>',
+)
+def undefined_material(subject: Subject) -> Iterator[Problem]:
+    """In the order of urdfdom: the robot's own materials first, then those of visuals."""
+    root = subject.document.root
+    defined = {it.get("name") for it in _found(_MATERIALS, root)}
+    for look in _found(_LOOKS, root):
+        name = look.get("name", "")
+        if name in defined or not name:
+            continue
+        if len(look) and _defines(look):
+            defined.add(name)
+            continue
+        near = nearest(name, [it for it in defined if it])
+        hint = f"did you mean {near!r}?" if near else ""
+        yield Problem(look, f"material {name!r} is not defined", "name", hint)
+
+
+def _found(path: etree.XPath, root: etree._Element) -> list[etree._Element]:
+    return path(root)  # type: ignore[return-value]
+
+
+def _defines(material: etree._Element) -> bool:
+    return any(it.get("rgba") or it.get("filename") for it in material.iterchildren("*"))
+
+
+@rule(
+    "MB132",
+    "material-twice",
+    ERROR,
+    what="Two materials below <robot> have one name.",
+    why="urdfdom refuses the file: \"material 'm' is not unique\".",
+    fix="Delete one, or give it another name.",
+    bad='<material name="m"><color rgba="1 0 0 1"/></material>'
+    '<material name="m"><color rgba="1 0 0 1"/></material><link name="a"/>',
+    good='<material name="m"><color rgba="1 0 0 1"/></material>'
+    '<material name="n"><color rgba="1 0 0 1"/></material><link name="a"/>',
+)
+def material_twice(subject: Subject) -> Iterator[Problem]:
+    """Every one but the first of its name."""
+    seen: set[str] = set()
+    for material in _found(_MATERIALS, subject.document.root):
+        name = material.get("name")
+        if name in seen:
+            yield Problem(material, f"material {name!r} is defined twice below <robot>", "name")
+        seen |= {name} if name is not None else set()
+
+
+@rule(
+    "MB133",
+    "material-differs",
+    WARNING,
+    what="A visual defines a material that is there already under that name, and differently.",
+    why="urdfdom keeps the first definition of a name for the whole robot: the visual is drawn in "
+    "the other colour, not in its own.",
+    fix="Give the material a name of its own.",
+    bad='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"><visual><geometry>'
+    '<sphere radius="1"/></geometry><material name="m"><color rgba="0 1 0 1"/></material></visual>'
+    "</link>",
+    good='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"><visual><geometry>'
+    '<sphere radius="1"/></geometry><material name="m"><color rgba="1.0 0 0 1"/></material>'
+    "</visual></link>",
+)
+def material_differs(subject: Subject) -> Iterator[Problem]:
+    """Each visual whose own definition does not count."""
+    root = subject.document.root
+    looks = [it for it in _found(_LOOKS, root) if len(it) and it.get("name") and _defines(it)]
+    first: dict[str, Look] = {}
+    for material in (*(_found(_MATERIALS, root) if looks else ()), *looks):
+        name = material.get("name", "")
+        before = first.setdefault(name, _look(material))
+        if before != _look(material):
+            hint = "the first definition of the name counts"
+            message = f"material {name!r} has another colour or texture than its first definition"
+            yield Problem(material, message, "name", hint)
+
+
+def _look(material: etree._Element) -> Look:
+    """The colour and the texture of a material."""
+    color, texture = material.find("color"), material.find("texture")
+    rgba = "" if color is None else color.get("rgba", "")
+    image = "" if texture is None else texture.get("filename", "")
+    try:
+        return tuple(float(word) for word in rgba.split()), image
+    except ValueError:
+        return rgba, image
+
+
+@rule(
+    "MB140",
+    "xml-declaration",
+    WARNING,
+    what="The XML declaration names a version other than 1.0, or an encoding other than UTF-8.",
+    why="urdfdom and Gazebo read UTF-8 whatever it says; expat (xacro, Python launch files) "
+    "refuses encodings of several bytes such as gb2312, and reads letters as the others do not.",
+    fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
+    bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
+    good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',
+)
+def xml_declaration(subject: Subject) -> Iterator[Problem]:
+    """What is read here has nothing but ASCII where the encoding is another: both can be mended."""
+    source = subject.document.source
+    if subject.origins or b"<?xml" not in source[:8]:
+        return
+    for pattern, right, allowed in (
+        (_DECLARED, b"1.0", (b"1.0",)),
+        (_ENCODED, b"UTF-8", (b"utf-8", b"utf8", b"us-ascii", b"ascii")),
+    ):
+        found = pattern.match(source, source.index(b"<?xml"))
+        if found and found[1].lower() not in allowed:
+            said = found[1].decode("utf-8", "replace")
+            edit = Edit(found.start(1), found.end(1), right, None)
+            message = f"the XML declaration says {said!r}"
+            yield Problem(subject.document.root, message, None, f"write {right.decode()}", (edit,))
+
+
+@rule(
+    "MB141",
+    "byte-order-mark",
+    NOTE,
+    what="The file starts with a byte order mark.",
+    why="UTF-8 needs none. XML readers skip it at the start of a file, and refuse it as text before "
+    "the root where a script or template puts the description behind other text.",
+    fix="Save the file as UTF-8 without it.",
+    bad='\ufeff<robot name="r"><link name="a"/></robot>',
+    good='<robot name="r"><link name="a"/></robot>',
+)
+def byte_order_mark(subject: Subject) -> Iterator[Problem]:
+    """Three bytes that can go."""
+    if subject.document.source.startswith(BOM):
+        edit = Edit(0, len(BOM), b"", None)
+        root = subject.document.root
+        yield Problem(root, "the file starts with a byte order mark", None, "", (edit,))
+
+
+@rule(
+    "MB142",
+    "unused-namespace",
+    NOTE,
+    what="The root element declares a namespace prefix that the file does not use.",
+    why="It has no effect. A xacro prefix in a plain URDF makes readers look for macros that are "
+    "not there.",
+    fix="Delete the declaration.",
+    bad='<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/></robot>',
+    good='<robot name="r" xmlns:drake="http://drake.mit.edu"><drake:joint name="j"/></robot>',
+)
+def unused_namespace(subject: Subject) -> Iterator[Problem]:
+    """Prefixes of the root that are written nowhere else in the file."""
+    root, source = subject.document.root, subject.document.source
+    if not root.nsmap or subject.origins:
+        return
+    start = subject.document.starts[0]
+    tag = _ROOT.match(source, start)
+    for found in _NAMESPACE.finditer(source, start, tag.end() if tag else start):
+        prefix = found[1] + b":"
+        if prefix not in source:
+            edit = Edit(found.start(), found.end(), b"", None)
+            message = f"nothing in the file uses the prefix {found[1].decode()!r}"
+            yield Problem(root, message, f"xmlns:{found[1].decode()}", "", (edit,))

@@ -1,0 +1,447 @@
+"""A URDF against the schema of what its readers look for: one pass, every fault of its shape.
+
+The schema is data (``urdf.schema``). Elements are alike in their attributes and children, so what
+the schema says about a combination is worked out once and then looked up.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import lru_cache
+from math import isfinite
+from pathlib import Path
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.rewriting.audit import nearest
+from multibot_rewrite.rewriting.document import Document, tag_end
+
+_FILE = Path(__file__).parent / "urdf.schema"
+ROBOT = "robot"
+# What a child of <robot> can be a misspelling of: anything else there is an extension of its own.
+_CORE = ("link", "joint", "material", "transmission", "ros2_control", "gazebo")
+# Combinations longer than this are not worth remembering: the children of <robot>.
+_FEW = 40
+_SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
+_UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
+# One look tells that a usual value is fine. urdfdom takes blanks in front of a lone number and none
+# behind it.
+_FINE = {
+    "number": re.compile(rf" *{_SCALAR}", re.ASCII),
+    "numbers": re.compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
+    "rgba": re.compile(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
+    "version": re.compile(r"0*1\.0+", re.ASCII),
+}
+_LONG = 200
+_COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_INFINITE = re.compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
+_UNITS = re.compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
+_TEXTS = etree.XPath(
+    "/robot[text()[normalize-space()]] | /robot/*[self::link or self::joint or self::material]"
+    "/descendant-or-self::*[text()[normalize-space()]]"
+)
+# A number with a line end or tab right behind it.
+_BROKEN = (
+    re.compile(rb"\n(?<=[\d.]\n)"),
+    re.compile(rb"\t(?<=[\d.]\t)"),
+    re.compile(rb"\r(?<=[\d.]\r)"),
+)
+_ASSIGNED = re.compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
+# joint types whose axis urdfdom does not read
+_AXIS_FREE = ("fixed", "floating")
+
+
+class Kind(NamedTuple):
+    """What an attribute must hold: a type of ``urdf.schema``, or one of ``choices``."""
+
+    type: str
+    required: bool
+    choices: tuple[str, ...]
+
+
+class Child(NamedTuple):
+    """A child: its section, empty where nobody looks inside, and how often it may stand there."""
+
+    section: str
+    times: str
+
+
+class Section(NamedTuple):
+    """One element of the schema."""
+
+    name: str
+    attributes: Mapping[str, Kind]
+    children: Mapping[str, Child]
+    text: bool
+
+
+class Fault(NamedTuple):
+    """A fault of the document's shape; ``kind`` is the name of the rule that tells it.
+
+    ``attribute`` is as in ``Problem``.
+    """
+
+    kind: str
+    element: etree._Element
+    attribute: str | None
+    message: str
+    hint: str = ""
+
+
+def read_faults(document: Document) -> tuple[Fault, ...]:
+    """Every fault of a URDF; what is not a ``<robot>`` has none."""
+    root = document.root
+    if root.tag != ROBOT:
+        return ()
+    faults = [*_texts(root), *_broken(document)]
+    fine: set[tuple[str, str]] = set()
+    todo = [(root, ROBOT)]
+    while todo:
+        element, name = todo.pop()
+        keys: tuple[str, ...] = tuple(element.keys())  # type: ignore[arg-type]
+        typed = _typed(name, keys)
+        if typed is None:
+            faults += _attributes(element, schema()[name])
+            typed = _known(name, keys)
+        for attribute, kind in typed:
+            value = element.get(attribute, "")
+            if (kind, value) in fine:
+                continue
+            if len(value) < _LONG and kind in _FINE and _FINE[kind].fullmatch(value):
+                fine.add((kind, value))
+            else:
+                faults += _value(element, schema()[name].attributes[attribute], attribute, value)
+        children = list(element)
+        tags = tuple([child.tag for child in children])
+        below = _below(name, tags) if len(tags) < _FEW else _below.__wrapped__(name, tags)
+        if below is None:
+            faults += _children(element, schema()[name])
+            below = _sections(name, tags)
+        todo += [it for it in zip(children, below, strict=True) if it[1]]
+    return tuple(faults)
+
+
+# ------------------------------------------------------------------ the schema
+
+
+@lru_cache
+def schema() -> Mapping[str, Section]:
+    """The sections of ``urdf.schema``."""
+    found: dict[str, Section] = {}
+    attributes: dict[str, Kind] = {}
+    children: dict[str, Child] = {}
+    name = ""
+    for line in _FILE.read_text(encoding="utf-8").splitlines():
+        head, *words = line.partition("#")[0].split() or [""]
+        if head.startswith("["):
+            name, attributes, children = head.strip("[]"), {}, {}
+            found[name] = Section(name, attributes, children, False)
+        elif head == "text":
+            found[name] = found[name]._replace(text=True)
+        elif head.startswith("@"):
+            attributes[head[1:]] = _kind(words)
+        elif head:
+            children[head] = _child(head, words)
+    return found
+
+
+def _kind(words: Sequence[str]) -> Kind:
+    choices = next((it[4:].split("|") for it in words if it.startswith("one:")), [])
+    types = [it for it in words if it in _FINE]
+    return Kind(types[0] if types else "one" * bool(choices), "required" in words, tuple(choices))
+
+
+def _child(tag: str, words: Sequence[str]) -> Child:
+    section = next((it[1:] for it in words if it.startswith("=")), tag)
+    times = next(it for it in words if it in ("required", "once", "many", "either"))
+    return Child("" if "open" in words else section, times)
+
+
+@lru_cache
+def _tags() -> frozenset[str]:
+    """Every element that stands somewhere in the schema."""
+    return frozenset(tag for section in schema().values() for tag in section.children)
+
+
+def _is_own(name: object) -> bool:
+    """Is it URDF's own name: no comment, no name of another program's namespace?"""
+    return isinstance(name, str) and "{" not in name and ":" not in name
+
+
+# ------------------------------------------------- combinations, each worked out once
+
+
+@lru_cache(maxsize=2048)
+def _typed(name: str, keys: tuple[str, ...]) -> tuple[tuple[str, str], ...] | None:
+    """The attributes whose values have a type, and it; None where something is strange or missing."""
+    section = schema()[name]
+    known = section.attributes
+    if any(key not in known and key != "name" and _is_own(key) for key in keys):
+        return None
+    if any(kind.required and key not in keys for key, kind in known.items()):
+        return None
+    return _known(name, keys)
+
+
+def _known(name: str, keys: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
+    known = schema()[name].attributes
+    return tuple((key, known[key].type) for key in keys if key in known and known[key].type)
+
+
+@lru_cache(maxsize=2048)
+def _below(name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
+    """The sections of children, empty for those left alone; None where the children have a fault."""
+    known = schema()[name].children
+    count = Counter(filter(_is_own, tags))
+    if any(tag not in known for tag in count):
+        return None
+    for tag, child in known.items():
+        if child.times == "required" and tag not in count:
+            return None
+        if child.times in ("required", "once") and count[tag] > 1:
+            return None
+    shapes = [tag for tag in count.elements() if known[tag].times == "either"]
+    wanted = any(child.times == "either" for child in known.values())
+    strange = any("{" in tag for tag in tags if isinstance(tag, str))
+    if wanted and len(shapes) != 1 and not (strange and not shapes):
+        return None
+    return _sections(name, tags)
+
+
+def _sections(name: str, tags: tuple[str, ...]) -> tuple[str, ...]:
+    """The section of each child; the second of what is read once is not looked at."""
+    known = schema()[name].children
+    seen: set[str] = set()
+    found: list[str] = []
+    for tag in tags:
+        child = known.get(tag)
+        key = "" if child is None or child.times == "many" else _slot(tag, child)
+        found.append(child.section if child is not None and key not in seen else "")
+        seen |= {key} if key else set()
+    return tuple(found)
+
+
+def _slot(tag: str, child: Child) -> str:
+    """What a child that is read once takes up: shapes have one place among them."""
+    return child.times if child.times == "either" else tag
+
+
+# ------------------------------------------------------------------ what is wrong
+
+
+def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
+    """Attributes that are missing, and those nobody reads."""
+    known = section.attributes
+    keys = [str(key) for key in element.attrib]
+    # A file of macros has neither a name nor links.
+    empty = section.name == ROBOT and element.find("link") is None
+    missing = [key for key in known if known[key].required and key not in keys and not empty]
+    for key in keys:
+        if key in known or key == "name" or not _is_own(key):
+            continue
+        meant = _near(key, [it for it in known if it not in keys])
+        hint = f"did you mean {meant!r}?" if meant else ""
+        where = f"<{element.tag}> has an attribute {key!r}, which no reader of URDF knows"
+        if meant in missing:
+            missing.remove(meant)
+            yield Fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
+        elif meant:
+            yield Fault("misspelled-attribute", element, key, where, hint)
+        else:
+            yield Fault("ignored-attribute", element, key, where)
+    for key in missing:
+        yield Fault("missing", element, None, f"<{element.tag}> has no {key!r}")
+
+
+def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
+    """Children that are missing, come twice, or that nobody reads."""
+    known = section.children
+    tags = [child.tag for child in element.iterchildren("*")]
+    count = Counter(tags)
+    missing = [tag for tag in known if known[tag].times == "required" and tag not in count]
+    for child in element.iterchildren("*"):
+        if child.tag in known or not _is_own(child.tag):
+            continue
+        free = [tag for tag in known if known[tag].times == "many" or tag not in count]
+        meant = _near(str(child.tag), _CORE if section.name == ROBOT else free)
+        if meant in missing:
+            missing.remove(meant)
+            message = f"<{element.tag}> has no <{meant}>"
+            yield Fault("missing", child, None, message, f"is <{child.tag}> meant to be it?")
+        else:
+            yield from _strange(element, child, section, meant)
+    for tag in missing:
+        yield Fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
+    yield from _repeated(element, section, count)
+    yield from _shapes(element, section)
+
+
+def _strange(
+    element: etree._Element, child: etree._Element, section: Section, meant: str
+) -> Iterator[Fault]:
+    """A child that the schema does not have there."""
+    message = f"<{child.tag}> in <{element.tag}> is read by nobody"
+    hint = f"did you mean <{meant}>?" if meant else ""
+    if section.name == "ros2_control":
+        yield Fault("unknown-component", child, None, f"<{child.tag}> in <ros2_control>", hint)
+    elif section.name == "geometry":
+        return
+    elif meant:
+        yield Fault("misspelled-element", child, None, message, hint)
+    elif child.tag in _tags():
+        homes = [it.name for it in schema().values() if child.tag in it.children]
+        tags = sorted({home.rpartition("_")[2] for home in homes})
+        hint = f"it belongs in {' or '.join(f'<{tag}>' for tag in tags)}"
+        yield Fault("misplaced-element", child, None, message, hint)
+    elif section.name != ROBOT:
+        yield Fault("ignored-element", child, None, message)
+
+
+def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Fault]:
+    for tag, times in count.items():
+        child = section.children.get(tag)
+        if times > 1 and child and child.times in ("once", "required"):
+            second = element.findall(tag)[1]
+            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads the first one alone"
+            yield Fault("repeated-element", second, None, message)
+
+
+def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
+    """A geometry has one shape, and the first element is it."""
+    known = [tag for tag, child in section.children.items() if child.times == "either"]
+    if not known:
+        return
+    shapes = list(element.iterchildren("*"))
+    if not shapes:
+        yield Fault("missing", element, None, f"<{element.tag}> has no shape")
+    elif shapes[0].tag not in known and _is_own(shapes[0].tag):
+        meant = _near(str(shapes[0].tag), known)
+        hint = f"did you mean <{meant}>?" if meant else f"urdfdom knows {', '.join(known[:4])}"
+        yield Fault("missing", shapes[0], None, f"<{shapes[0].tag}> is no shape of URDF", hint)
+    elif len(shapes) > 1:
+        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads the first one alone"
+        yield Fault("repeated-element", shapes[1], None, message)
+
+
+def _near(name: str, known: Collection[str]) -> str:
+    """The known name that is most like another: the same letters, or nearly all of them."""
+    low = name.lower()
+    letters = sorted(low)
+    same = next((it for it in known if sorted(it.lower()) == letters), "")
+    return same or nearest(low, known)
+
+
+def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:
+    """What is wrong with a value that is not fine at first sight."""
+    where = f"{element.tag}@{attribute} is {value!r}"
+    if kind.type == "one":
+        if value not in kind.choices:
+            meant = _near(value.strip(), kind.choices)
+            hint = f"did you mean {meant!r}?" if meant else ""
+            message = f"{where}, not one of {', '.join(kind.choices)}"
+            yield Fault("bad-choice", element, attribute, message, hint)
+    elif kind.type == "version":
+        message = f"{where}, urdfdom knows 1.0 alone"
+        yield Fault(
+            "bad-choice", element, attribute, message, 'write version="1.0", or leave it out'
+        )
+    elif not _is_unread(element):
+        said, problem, hint = _wrong(value, kind.type)
+        if said:
+            named = "bad-colour" if kind.type == "rgba" else said
+            yield Fault(named, element, attribute, f"{where}{problem}", hint)
+
+
+def _is_unread(element: etree._Element) -> bool:
+    """The axis of a joint that has none."""
+    joint = element.getparent()
+    return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
+
+
+def _wrong(value: str, kind: str) -> tuple[str, str, str]:
+    """(kind of fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
+    words = value.split()
+    odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
+    wanted = _COUNTS[kind]
+    if odd is not None and not _INFINITE.fullmatch(odd):
+        return "not-a-number", f": {odd!r} is no number" * (odd != value), _number_hint(value, odd)
+    if odd is not None or not all(isfinite(float(word)) for word in words):
+        return "not-finite", ", which is not finite", "write a large number, or leave it out"
+    if len(words) != wanted:
+        count = f"{len(words)} numbers" if len(words) != 1 else "1 number"
+        return ("wrong-count" if words else "not-a-number"), f": {count} of {wanted}", ""
+    if kind == "rgba" and not all(0 <= float(word) <= 1 for word in words):
+        large = any(float(word) > 1 for word in words)
+        return kind, ": outside of 0 to 1", "divide by 255" if large else ""
+    if kind == "number" and value.endswith(" "):
+        return "blank-behind-number", ", with a blank behind it", "delete the blank"
+    return "", "", ""
+
+
+def _number_hint(value: str, odd: str) -> str:
+    if "," in value:
+        alone = re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
+        return "write a point for the comma" if alone else "separate numbers by blanks, not commas"
+    if "$" in value:
+        return "expand it with xacro first"
+    if _UNITS.fullmatch(odd):
+        return "leave the unit out: lengths are metres, angles radians, masses kilograms"
+    return ""
+
+
+# ------------------------------------------------------------------ what only the text shows
+
+
+def _texts(root: etree._Element) -> Iterator[Fault]:
+    """Text where none belongs, a stray ``>`` mostly."""
+    found: list[etree._Element] = _TEXTS(root)  # type: ignore[assignment]
+    for element in found:
+        section = section_of(element)
+        if section is None or section.text:
+            continue
+        pieces = [element.text, *(child.tail for child in element)]
+        said = next(" ".join(it.split()) for it in pieces if it and it.strip())
+        said = said if len(said) < 40 else f"{said[:36]} ..."
+        inside = "" if element.text and element.text.strip() else None
+        message = f"text {said!r} in <{element.tag}>, where nobody reads it"
+        yield Fault("stray-text", element, inside, message)
+
+
+def section_of(element: etree._Element) -> Section | None:
+    """The section of the schema that an element of a document belongs to."""
+    parent = element.getparent()
+    path = [element]
+    while parent is not None:
+        path.append(parent)
+        parent = parent.getparent()
+    name = ROBOT
+    for it in path[-2::-1]:
+        child = schema()[name].children.get(str(it.tag))
+        if child is None or not child.section:
+            return None
+        name = child.section
+    return schema()[name]
+
+
+def _broken(document: Document) -> Iterator[Fault]:
+    """Line ends and tabs behind a number: blanks to XML, and no blanks to urdfdom."""
+    source, starts = document.source, document.starts
+    seen: set[int] = set()
+    elements: list[etree._Element] = []
+    for at in (it.start() for pattern in _BROKEN for it in pattern.finditer(source)):
+        number = bisect_right(starts, at) - 1
+        if number < 0 or number in seen or tag_end(source, starts[number]) <= at:
+            continue
+        elements = elements or list(document.root.iter("*"))
+        seen.add(number)
+        section = section_of(elements[number])
+        found = _ASSIGNED.search(source, starts[number], at)
+        key = found[1].decode() if found else ""
+        if section and key in section.attributes and section.attributes[key].type in _COUNTS:
+            message = f"{elements[number].tag}@{key} has a tab or a line end behind a number"
+            yield Fault("blank-behind-number", elements[number], key, message, "write one blank")
