@@ -23,43 +23,30 @@ _REFERENCES = {
     "child": "link",
     "mimic": "joint",
     "gazebo": "reference",
-    **dict.fromkeys(
-        [
-            "left_joint",
-            "right_joint",
-            "joint_name",
-            "jointName",
-            "frame_name",
-            "frameName",
-            "body_name",
-            "bodyName",
-            "robot_base_frame",
-            "robotBaseFrame",
-            "gz_frame_id",
-            "ignition_frame_id",
-            "child_frame_id",
-            "link_name",
-            "linkName",
-            "leftJoint",
-            "rightJoint",
-        ],
-        "",
-    ),
+    "left_joint": "",
+    "right_joint": "",
+    "leftJoint": "",
+    "rightJoint": "",
+    "joint_name": "",
+    "jointName": "",
+    "link_name": "",
+    "linkName": "",
+    "frame_name": "",
+    "frameName": "",
+    "body_name": "",
+    "bodyName": "",
+    "robot_base_frame": "",
+    "robotBaseFrame": "",
+    "child_frame_id": "",
+    "gz_frame_id": "",
+    "ignition_frame_id": "",
 }
 # Elements of xacro that call no macro.
 _BUILTIN = frozenset(
-    [
-        "macro",
-        "arg",
-        "property",
-        "include",
-        "if",
-        "unless",
-        "insert_block",
-        "element",
-        "attribute",
-        "call",
-    ]
+    {
+        *("macro", "arg", "property", "include", "if", "unless"),
+        *("insert_block", "element", "attribute", "call"),
+    }
 )
 
 
@@ -82,23 +69,28 @@ class Scope(NamedTuple):
 
 
 def forgotten(subject: Subject) -> Iterator[Problem]:
-    """Literal names in scopes where others have the prefix, and literal uses of names that have."""
+    """Literal names in scopes where most have the prefix, and literal uses of names that have."""
     for scope in _scopes(subject.document.root):
+        for kind in ("link", "joint"):
+            yield from _forgotten(scope, [it for it in scope.declared if it.element.tag == kind])
         stems = {_stem(it) for it in scope.declared if it.words & scope.carriers}
-        if not stems:
-            continue
         bare = {it.text for it in scope.declared if not it.words}
-        for it in scope.declared:
-            if not it.words and it.text.strip("/") not in SHARED_FRAMES:
-                kind = it.element.tag
-                message = (
-                    f"{kind} {it.text!r} lacks the prefix that other names of {_of(scope)} have"
-                )
-                yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
-        for it in scope.used:
+        for it in scope.used if stems else ():
             if not it.words and it.text in stems and it.text not in bare:
                 message = f"{it.text!r} has the prefix where it is declared, and lacks it here"
                 yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
+
+
+def _forgotten(scope: Scope, declared: list[Written]) -> Iterator[Problem]:
+    """Where most links (joints) have the prefix: those that are nothing but text."""
+    bare = [it for it in declared if not it.words and it.text.strip("/") not in SHARED_FRAMES]
+    prefixed = sum(1 for it in declared if it.words & scope.carriers)
+    for it in bare if prefixed >= len(bare) else ():
+        message = (
+            f"{it.element.tag} {it.text!r} lacks the prefix that {prefixed} other "
+            f"{it.element.tag}s of {_of(scope)} have"
+        )
+        yield Problem(it.element, message, it.attribute, _hint(scope, it.text))
 
 
 def unused(subject: Subject) -> Iterator[Problem]:

@@ -33,10 +33,11 @@ def starts_of(subject: Subject, elements: Collection[_Element]) -> Starts:
     return {element: start for element, start in every if element in wanted} if wanted else {}
 
 
-def is_fixed(subject: Subject, start: int, attribute: str) -> bool:
+def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
     """The same for a value by the start of its element's tag; ``attribute`` is empty for text.
 
-    Where that cannot be known it is not.
+    Where that cannot be known it is not. ``constants`` tells that $(find ...) and the like, the same
+    for every robot of a machine, count as text.
     """
     if not subject.origins:
         return True
@@ -44,6 +45,8 @@ def is_fixed(subject: Subject, start: int, attribute: str) -> bool:
     if origin is None:
         return False
     raw = _raw(subject.sources[origin.file], origin.start, attribute)
+    if raw is not None and constants:
+        raw = _CONSTANT.sub(b"", raw)
     for call in origin.calls:
         if raw is None or b"$" not in raw:
             break
@@ -57,7 +60,7 @@ def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
     else:
         end = tag_end(source, start)
         raw = source[end : source.find(b"<", end)]
-    return None if raw is None else _CONSTANT.sub(b"", raw)
+    return raw
 
 
 def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:

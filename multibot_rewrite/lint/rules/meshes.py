@@ -1,3 +1,385 @@
-"""MB7: files that a description asks for."""
+"""MB7: mesh and texture files, and the packages they are in."""
 
 from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import NamedTuple
+from urllib.parse import unquote
+
+from lxml.etree import _Element
+
+from multibot_rewrite.lint.packages import entries, find_in, package_folders
+from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.written import is_fixed, starts_of
+from multibot_rewrite.model import ERROR, WARNING
+
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
+# A letter and a colon is a drive of Windows.
+_MACHINE = re.compile(r"/|[A-Za-z]:[/\\]")
+READABLE = frozenset(("stl", "dae", "obj"))
+# Who cannot read the rest of what RViz reads through assimp.
+PARTLY = {
+    "gltf": "Gazebo Classic and gz before Garden cannot read glTF",
+    "glb": "Gazebo Classic and gz before Garden cannot read glTF",
+    "fbx": "Gazebo Classic and gz before Garden cannot read FBX",
+    "ply": "Gazebo cannot read PLY",
+    "mesh": "only RViz reads Ogre's format",
+}
+MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visual></link>'
+
+
+class Used(NamedTuple):
+    """A mesh or texture; ``scheme`` is what stands before ``://``, ``file`` for a path from the
+    root of the disk, empty for a relative one. ``path`` is the rest of it."""
+
+    element: _Element
+    name: str
+    scheme: str
+    path: str
+
+
+@lru_cache(maxsize=1)
+def _used(root: _Element) -> tuple[Used, ...]:
+    """Every file that a link's shapes and materials name, in document order."""
+    found = ((it, it.get("filename")) for it in root.iter("mesh", "texture"))
+    return tuple(_read(it, name.strip()) for it, name in found if name and name.strip())
+
+
+def _read(element: _Element, name: str) -> Used:
+    scheme = _SCHEME.match(name)
+    if scheme:
+        return Used(element, name, scheme[1].lower(), name[scheme.end() :])
+    return Used(element, name, "file" if _MACHINE.match(name) else "", name)
+
+
+def _with(subject: Subject, *schemes: str) -> list[Used]:
+    return [it for it in _used(subject.document.root) if it.scheme in schemes]
+
+
+def _problem(it: Used, message: str, hint: str) -> Problem:
+    return Problem(it.element, message, "filename", hint)
+
+
+def _and_more(count: int) -> str:
+    return f" (and {count - 1} more)" if count > 1 else ""
+
+
+def _file(subject: Subject) -> str:
+    return subject.document.file.removesuffix(" (expanded)")
+
+
+def _bases(subject: Subject, it: Used) -> tuple[tuple[str, ...], str]:
+    """The folders in which a file may be, and its path below them; none where nobody can say."""
+    if "$" in it.name or "\\" in it.name:
+        return (), ""
+    file = _file(subject)
+    if it.scheme == "package":
+        package, _, path = unquote(it.path).partition("/")
+        if not package or not path:
+            return (), ""
+        folders = package_folders(package, file, subject.settings.roots)
+        first = path.partition("/")[0].lower()
+        # A folder that is only called like the package must look like it.
+        known = [f for f in folders if _looks_like_it(entries(f), first)]
+        return tuple(known), path
+    if it.scheme == "":
+        here = os.path.dirname(os.path.abspath(file))
+        return (here, os.path.dirname(here)), it.path
+    return (), ""
+
+
+def _looks_like_it(names: frozenset[str], first: str) -> bool:
+    return "package.xml" in names or any(name.lower() == first for name in names)
+
+
+@lru_cache(maxsize=4096)
+def _found(folders: tuple[str, ...], path: str) -> str | None:
+    """The path as it is written on the disk; empty where there is none."""
+    found = [find_in(folder, path) for folder in folders]
+    exact = os.path.normpath(path)
+    return exact if exact in found else next(filter(None, found), "")
+
+
+def _asked(subject: Subject) -> Iterator[tuple[Used, tuple[str, ...], str, str | None]]:
+    """Each file that can be looked for once: where, its path, and what is there."""
+    seen = set()
+    for it in _with(subject, "package", ""):
+        if it.name not in seen:
+            seen.add(it.name)
+            folders, path = _bases(subject, it)
+            if folders:
+                yield it, folders, path, _found(folders, path)
+
+
+@rule(
+    "MB701",
+    "mesh-missing",
+    ERROR,
+    what="A mesh or texture file is not there, though its package is.",
+    why="RViz shows the link without a shape and marks the robot as faulty; Gazebo spawns it "
+    "without that visual or collision, so a wheel falls through the ground.",
+    fix="Correct the path, or add the file to the package and to what it installs.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://arm_description/meshes/link.stl",
+    beside={
+        "arm_description/package.xml": "<package><name>arm_description</name></package>",
+        "arm_description/meshes/link.stl": "solid",
+    },
+)
+def mesh_missing(subject: Subject) -> Iterator[Problem]:
+    """Files of packages that were found, and relative ones."""
+    for it, folders, path, found in _asked(subject):
+        if not found:
+            near = _nearest(folders, path)
+            hint = f"did you mean {near!r}?" if near else f"looked in {folders[0]}"
+            yield _problem(it, f"{it.name!r} is not there", hint)
+
+
+def _nearest(folders: tuple[str, ...], path: str) -> str:
+    from multibot_rewrite.rewriting.audit import nearest
+
+    folder = os.path.join(folders[0], os.path.dirname(path))
+    return nearest(os.path.basename(path), sorted(entries(folder)))
+
+
+@rule(
+    "MB702",
+    "package-not-found",
+    NOTE,
+    what="A package that holds meshes is not below the folders that were searched.",
+    why="Whether its files are there was not checked; at run time they are looked for in the "
+    "packages of the sourced workspace.",
+    fix="Name the folder of the workspace's sources as a root, or source the workspace.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://hand_description/meshes/base.stl",
+    beside={
+        "hand_description/package.xml": "<package><name>hand_description</name></package>",
+        "hand_description/meshes/base.stl": "solid",
+    },
+)
+def package_not_found(subject: Subject) -> Iterator[Problem]:
+    """Once for each package."""
+    seen = set()
+    for it in _with(subject, "package"):
+        package = it.path.partition("/")[0]
+        if package in seen:
+            continue
+        seen.add(package)
+        folders, path = _bases(subject, it)
+        if path and not folders:
+            yield _problem(it, f"package {package!r} was not found", "give its folder as a root")
+
+
+@rule(
+    "MB703",
+    "mesh-name-case",
+    ERROR,
+    what="A mesh file has another spelling on the disk: capitals where there are none.",
+    why="macOS and Windows find it all the same, Linux does not: on the robot and in CI the link has "
+    "no shape.",
+    fix="Write it as the file is called.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://arm_description/meshes/Base.STL",
+    beside={
+        "arm_description/package.xml": "<package><name>arm_description</name></package>",
+        "arm_description/meshes/Base.STL": "solid",
+    },
+)
+def mesh_name_case(subject: Subject) -> Iterator[Problem]:
+    """Paths that are there but for capitals."""
+    for it, _, path, found in _asked(subject):
+        if found and found != os.path.normpath(path):
+            yield _problem(it, f"{path!r} is called {found!r} on the disk", f"write {found!r}")
+
+
+@rule(
+    "MB704",
+    "path-of-one-machine",
+    WARNING,
+    what="A mesh is named by a path from the root of one machine's disk.",
+    why="On every other machine, in CI and in a container the file is not there: the link has no "
+    "shape in RViz and none in Gazebo.",
+    fix="Write package://NAME/..., or file://$(find NAME)/... in xacro.",
+    bad=MESH % "file:///home/me/ws/src/arm/meshes/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
+    """The first absolute path that no xacro substitution makes, and how many there are."""
+    found = [it for it in _with(subject, "file") if "$" not in it.name]
+    starts = starts_of(subject, [it.element for it in found])
+    found = [it for it in found if _is_literal(subject, starts[it.element])]
+    if found:
+        message = f"{found[0].name!r} is a path of one machine{_and_more(len(found))}"
+        yield _problem(found[0], message, "write package://NAME/...")
+
+
+def _is_literal(subject: Subject, start: int) -> bool:
+    return is_fixed(subject, start, "filename", constants=False)
+
+
+@rule(
+    "MB705",
+    "backslash-in-path",
+    WARNING,
+    what="A mesh's path has backslashes.",
+    why="On Linux a backslash is a letter like any other: no such file is found, in no program.",
+    fix="Write slashes.",
+    bad=MESH % r"package://arm\meshes\base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def backslash_in_path(subject: Subject) -> Iterator[Problem]:
+    """File names with a backslash."""
+    for it in _used(subject.document.root):
+        if "\\" in it.name:
+            right = it.name.replace("\\", "/")
+            yield _problem(it, f"{it.name!r} has backslashes", f"write {right!r}")
+
+
+@rule(
+    "MB706",
+    "mesh-without-file",
+    ERROR,
+    what="A mesh names no file.",
+    why="Without the attribute urdfdom refuses the robot (urdf_parser link.cpp); with an empty one "
+    "RViz and Gazebo find nothing to load.",
+    fix="Name the file, or take the visual or collision out.",
+    bad='<link name="a"><visual><geometry><mesh filename=""/></geometry></visual></link>',
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def mesh_without_file(subject: Subject) -> Iterator[Problem]:
+    """Meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
+    for mesh in subject.document.root.iterfind("link/*/geometry/mesh"):
+        name = mesh.get("filename")
+        if (name is None or not name.strip()) and mesh.find("uri") is None:
+            said = "no file" if name is None else "an empty file name"
+            yield Problem(mesh, f"<mesh> has {said}", None if name is None else "filename")
+
+
+@rule(
+    "MB707",
+    "mesh-format-unknown",
+    WARNING,
+    what="A mesh's name has no ending, or one of a format that neither RViz nor Gazebo reads.",
+    why="Both choose the loader by the ending: the link has no shape.",
+    fix="Convert it to STL, COLLADA (.dae) or OBJ.",
+    bad=MESH % "package://arm/meshes/base.step",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
+    """Endings that nobody knows; textures are images."""
+    for it in _meshes(subject):
+        ending = _ending(it)
+        if ending not in READABLE and ending not in PARTLY:
+            said = f"ends in .{ending}, which" if ending else "has no ending, so that"
+            yield _problem(it, f"{it.name!r} {said} no program can load", "use .stl, .dae or .obj")
+
+
+def _meshes(subject: Subject) -> list[Used]:
+    used = _used(subject.document.root)
+    return [it for it in used if it.element.tag == "mesh" and "$" not in it.name]
+
+
+def _ending(it: Used) -> str:
+    base = it.name.replace("\\", "/").rpartition("/")[2]
+    return base.rpartition(".")[2].lower() if "." in base else ""
+
+
+@rule(
+    "MB708",
+    "mesh-format-partly",
+    NOTE,
+    what="A mesh has a format that some of RViz, Gazebo Classic and gz cannot read.",
+    why="There the link has no shape: Gazebo Classic loads STL, COLLADA and OBJ, gz also glTF and "
+    "FBX from Garden on, RViz what assimp reads.",
+    fix="Convert it where the robot is to be seen in those programs too.",
+    bad=MESH % "package://arm/meshes/base.glb",
+    good=MESH % "package://arm/meshes/base.dae",
+)
+def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
+    """Once for each such format."""
+    seen = set()
+    for it in _meshes(subject):
+        ending = _ending(it)
+        if ending in PARTLY and ending not in seen:
+            seen.add(ending)
+            yield _problem(it, f"{it.name!r}: {PARTLY[ending]}", "use .stl, .dae or .obj")
+
+
+@rule(
+    "MB709",
+    "mixed-schemes",
+    NOTE,
+    what="The meshes of one robot are named in several ways: package://, model://, paths.",
+    why="Each program resolves only some of them, so some links have a shape and others none.",
+    fix="Name all of them by package://.",
+    bad=(MESH % "package://arm/meshes/a.stl")
+    + '<link name="b"><visual><geometry><mesh filename="meshes/b.stl"/></geometry></visual></link>',
+    good=(MESH % "package://arm/meshes/a.stl"),
+)
+def mixed_schemes(subject: Subject) -> Iterator[Problem]:
+    """The first file that is named in another way than the first."""
+    used = [it for it in _used(subject.document.root) if "$" not in it.name]
+    other = next((it for it in used if it.scheme != used[0].scheme), None)
+    if other is not None:
+        message = f"{other.name!r} beside {used[0].name!r}: two ways to name meshes"
+        yield _problem(other, message, "use package:// for all")
+
+
+@rule(
+    "MB710",
+    "model-uri",
+    WARNING,
+    what="A mesh is named by model://.",
+    why="Gazebo finds it through its resource path; RViz's resource_retriever knows package://, "
+    "file:// and http:// only, and shows the link without a shape.",
+    fix="Write package://NAME/...; both Gazebos turn that into model:// when a URDF is loaded.",
+    bad=MESH % "model://arm/meshes/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def model_uri(subject: Subject) -> Iterator[Problem]:
+    """The first of them, and how many there are."""
+    found = _with(subject, "model")
+    if found:
+        message = f"RViz cannot load {found[0].name!r}{_and_more(len(found))}"
+        yield _problem(found[0], message, "write package://")
+
+
+@rule(
+    "MB711",
+    "mesh-from-the-net",
+    NOTE,
+    what="A mesh is loaded from the network.",
+    why="RViz fetches it at every start, Gazebo takes only Fuel's addresses: without a network, or "
+    "when the page moves, the link has no shape.",
+    fix="Put the file into a package.",
+    bad=MESH % "https://example.org/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
+    """The first of them, and how many there are."""
+    found = _with(subject, "http", "https")
+    if found:
+        message = f"{found[0].name!r} needs the network{_and_more(len(found))}"
+        yield _problem(found[0], message, "put it into a package")
+
+
+@rule(
+    "MB712",
+    "find-left-over",
+    ERROR,
+    what="A mesh's path holds $(find ...), which only xacro understands.",
+    why="In a plain URDF nothing replaces it: no program finds the file.",
+    fix="Name the file .xacro and expand it, or write package://NAME/....",
+    bad=MESH % "file://$(find arm)/meshes/base.stl",
+    good=MESH % "package://arm/meshes/base.stl",
+)
+def find_left_over(subject: Subject) -> Iterator[Problem]:
+    """Substitutions that stand in a file name."""
+    for it in _used(subject.document.root):
+        if "$(find" in it.name:
+            yield _problem(
+                it, f"{it.name!r} holds a xacro substitution", "write package://NAME/..."
+            )

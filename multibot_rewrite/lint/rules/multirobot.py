@@ -33,7 +33,7 @@ GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
 WORLD_SYSTEMS = {
     "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
     "gz-sim-imu-system": "every IMU of the world is published once more for each copy",
-    "gz-sim-physics-system": "the world is stepped by two physics engines",
+    "gz-sim-physics-system": "two physics engines move the same links",
     "gz-sim-contact-system": "every contact sensor is published once more for each copy",
     "gz-sim-forcetorque-system": "every force sensor is published once more for each copy",
     "gz-sim-navsat-system": "every GPS of the world is published once more for each copy",
@@ -41,7 +41,6 @@ WORLD_SYSTEMS = {
     "gz-sim-altimeter-system": "every altimeter is published once more for each copy",
     "gz-sim-air-pressure-system": "every barometer is published once more for each copy",
     "gz-sim-scene-broadcaster-system": "every state of the world is sent once more for each copy",
-    "gz-sim-user-commands-system": "every command of the user is carried out once more",
 }
 # What switches a plugin's tf off and on: its children, and whether it is on without them.
 TF_SWITCHES = {
@@ -76,10 +75,6 @@ def _is_plain(text: str) -> bool:
 def _tag(claim: Claim) -> str:
     name = claim.element.get("name") if claim.element.tag == "param" else None
     return f"parameter {name!r}" if name else f"<{claim.element.tag}>"
-
-
-def _own_name(subject: Subject) -> str:
-    return str(subject.document.root.get("name", "")).strip()
 
 
 @rule(
@@ -149,16 +144,15 @@ def _is_gz(claim: Claim) -> bool:
     good='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar"/></gazebo>',
 )
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
-    """Literal gz topics that do not hold the model's name."""
+    """Literal gz topics."""
     claims = [it for it in _claims(subject, SPOKEN) if _is_gz(it)]
     if not claims or _is_classic(subject):
         return
-    name = _own_name(subject)
     for claim in claims:
         topic = claim.value.strip()
         if not _is_plain(topic) or topic.strip("/") in subject.settings.naming.shared_topics:
             continue
-        if (name and name in topic.split("/")) or not claim_is_fixed(subject, claim):
+        if not claim_is_fixed(subject, claim):
             continue
         message = f"{_tag(claim)} {topic!r} is one gz topic for every copy of the robot"
         yield Problem(claim.element, message, claim.attribute, "leave it out or spell it per robot")
@@ -185,49 +179,42 @@ def _is_classic(subject: Subject) -> bool:
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
 )
 def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
-    """Literal namespaces."""
+    """Each literal namespace, where it stands first."""
+    found: dict[str, list[Claim]] = {}
     for claim in _claims(subject, ("namespace",)):
         if _is_plain(claim.value) and claim_is_fixed(subject, claim):
-            message = f"the namespace {claim.value!r} is the same for every copy of the robot"
-            yield Problem(claim.element, message, claim.attribute, "make it a xacro argument")
+            found.setdefault(claim.value, []).append(claim)
+    for value, claims in found.items():
+        where = f" in {len(claims)} plugins" if len(claims) > 1 else ""
+        message = f"the namespace {value!r}{where} is the same for every copy of the robot"
+        yield Problem(claims[0].element, message, claims[0].attribute, "make it a xacro argument")
 
 
 @rule(
     "MB404",
-    "robot-name-written-out",
+    "robot-name-in-frame",
     WARNING,
-    what="A topic or frame holds the robot's own name, or a frame stands before a link's name as if "
-    "a prefix had been added.",
-    why="The second robot has another name: its plugins still stamp and publish under the first "
-    "one's, so its data is placed on the first robot, and no rename can know what was meant.",
-    fix="Leave the name out and let frame_prefix, the namespace or urdf-postfix add it, or make it "
-    "a xacro argument.",
+    what="A frame is the name of a link with a robot's name in front, which the links do not have.",
+    why="Only with that frame_prefix does the frame exist: the second robot's data is stamped with "
+    "the first one's frame and placed on it, and a rewrite cannot know what was meant.",
+    fix="Write the link's own name and let frame_prefix or urdf-postfix spell it, or make the "
+    "name in front a xacro argument.",
     bad='<link name="laser"/><gazebo reference="laser"><sensor name="l" type="gpu_lidar">'
     "<gz_frame_id>robot1/laser</gz_frame_id></sensor></gazebo>",
     good='<link name="laser"/><gazebo reference="laser"><sensor name="l" type="gpu_lidar">'
     "<gz_frame_id>laser</gz_frame_id></sensor></gazebo>",
 )
-def robot_name_written_out(subject: Subject) -> Iterator[Problem]:
-    """The robot's name as a segment of a topic or frame; another one before a declared link."""
-    name, links = _own_name(subject), subject.inventory.declared["link"]
+def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
+    """Frames that are no link, but one with something and a slash in front."""
+    links = subject.inventory.declared["link"]
     for claim in subject.inventory.claims if subject.inventory.hosts else ():
-        value = claim.value
-        if "/" not in value or claim.site.form != "whole" or value in links:
+        value = claim.value.strip("/")
+        if "/" not in value or "frame" not in claim.site.kinds or value in links:
             continue
-        kinds = claim.site.kinds
-        head, _, tail = value.strip("/").partition("/")
-        if not tail or not _is_plain(value):
-            continue
-        is_frame = "frame" in kinds and value.strip("/") not in links
-        named = name and name in ((head, tail.partition("/")[0]) if head == "model" else (head,))
-        if is_frame and (named or tail.strip("/") in links):
-            message = f"frame {value!r} holds a robot's name, the links of this file do not"
-        elif named and kinds[0] in SPOKEN:
-            message = f"topic {value!r} holds the robot's name {name!r}"
-        else:
-            continue
-        if claim_is_fixed(subject, claim):
-            yield Problem(claim.element, message, claim.attribute, f"write {tail!r}")
+        link = value.partition("/")[2].strip("/")
+        if link in links and _is_plain(value) and claim_is_fixed(subject, claim):
+            message = f"frame {claim.value!r} holds a robot's name, the link is called {link!r}"
+            yield Problem(claim.element, message, claim.attribute, f"write {link!r}")
 
 
 @rule(
@@ -309,7 +296,7 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
         if "frame" not in claim.site.kinds or claim.site.form != "whole":
             continue
         name = claim.value.strip("/")
-        if name in links or name in shared or "/" in name or "odom" not in _words(claim):
+        if "odom" not in _words(claim) or {name, name.rpartition("/")[2]} & (links.keys() | shared):
             continue
         if _is_plain(name) and claim_is_fixed(subject, claim):
             message = f"{_tag(claim)} {claim.value!r} is one frame for every copy of the robot"
