@@ -542,20 +542,18 @@ def _not_unit(robot: Robot, types: tuple[str, ...]) -> Iterator[Problem]:
     "MB522",
     "fixed-joint-ignores",
     NOTE,
-    what="A fixed joint has a limit, a mimic, dynamics or a safety controller.",
+    what="A fixed joint has a limit, a mimic or a safety controller.",
     why="urdfdom reads them and nobody uses them.",
     fix="Delete them, or give the joint the type that was meant.",
     bad=_pair("fixed", LIMIT),
     good=_pair("fixed"),
 )
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
-    """One a joint; an <axis> is what every CAD exporter writes."""
+    """One a joint; <axis> and <dynamics> are what exporters write everywhere."""
     for joint in subject.robot.joints:
         if joint.type != "fixed":
             continue
-        useless = [
-            it for it in ("limit", "mimic", "dynamics", "safety_controller") if it in joint.parts
-        ]
+        useless = [it for it in ("limit", "mimic", "safety_controller") if it in joint.parts]
         if useless:
             words = ", ".join(f"<{it}>" for it in useless)
             yield Problem(
