@@ -40,13 +40,18 @@ FILES = (
     "日本😀.urdf",
     os.fsdecode(b"b\xff\xfe.urdf"),
 )
+# What hangs on the base, so that the base is no finding.
+HAND = (
+    '<link name="hand"/><joint name="wrist" type="fixed">'
+    '<parent link="base"/><child link="hand"/></joint>'
+)
 ARM = f"""<robot name="r" {XACRO}>
   <xacro:arg name="sim" default="0"/>
   <xacro:macro name="wheel" params="side"><link name="${{side}}"/></xacro:macro>
   <xacro:macro name="axle" params="at">
     <xacro:wheel side="${{at}}_left"/>
   </xacro:macro>
-  <link name="base"/>
+  <link name="base"/>{HAND}
   <xacro:axle at="front"/>
   <xacro:if value="$(arg sim)"><link name="ground"/></xacro:if>
 </robot>
@@ -62,9 +67,9 @@ class Linted(NamedTuple):
 
 
 def pieces(*names: str) -> str:
-    """A robot whose links hang together by nothing: all but the first are findings."""
-    links = "\n  ".join(f'<link name="{name.translate(SPECIAL)}"/>' for name in names)
-    return f'<robot name="r">\n  {links}\n</robot>'
+    """A robot with a base and links that hang on nothing: each of them is a finding."""
+    links = [f'<link name="{name.translate(SPECIAL)}"/>' for name in names]
+    return "\n  ".join(['<robot name="r">', f'<link name="base"/>{HAND}', *links, "</robot>"])
 
 
 @pytest.fixture
@@ -77,8 +82,8 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def nasty(here: Path) -> Linted:
     """Nasty files with findings of every level, one without any, and one through macros."""
     for name in FILES:
-        Path(name).write_text(pieces("base", *NASTY), encoding="utf-8")
-    Path("clean.urdf").write_text(pieces("base"))
+        Path(name).write_text(pieces(*NASTY), encoding="utf-8")
+    Path("clean.urdf").write_text(pieces())
     Path("broken.urdf").write_bytes(b'<robot name="r"><link name="\xff"')
     Path("arm.urdf.xacro").write_text(ARM)
     files = ["clean.urdf", *FILES, "broken.urdf", "arm.urdf.xacro"]
@@ -90,7 +95,7 @@ def nasty(here: Path) -> Linted:
 
 @pytest.fixture
 def thousand(here: Path) -> Linted:
-    Path("many.urdf").write_text(pieces(*(f"link_{at}" for at in range(1001))))
+    Path("many.urdf").write_text(pieces(*(f"link_{at}" for at in range(1000))))
     return Linted(lint_files(["many.urdf"], SETTINGS, jobs=1), ["many.urdf"])
 
 
@@ -148,21 +153,27 @@ def test_only_the_module_of_a_format_is_loaded() -> None:
 # text
 
 
-def test_text_is_a_line_a_finding(here: Path) -> None:
-    Path("a.urdf").write_text(pieces("base", "arm", "é😀"))
-    Path("arm.urdf.xacro").write_text(ARM)
-    simulated = ArgumentSet("*", (("sim", "1"),))
-    files = ["a.urdf", "arm.urdf.xacro"]
-    found = lint_files(files, SETTINGS._replace(arguments=(simulated,)), jobs=1)
-    found[0] = found[0]._replace(hint="join it")
-    assert rendered("text", found, files).splitlines() == [
-        "a.urdf:3:3: MB501 link 'arm' is a second root beside 'base' (join it)",
-        "a.urdf:4:3: MB501 link 'é😀' is a second root beside 'base'",
-        "arm.urdf.xacro:3:43: MB501 link 'front_left' is a second root beside 'base'",
-        "    via arm.urdf.xacro:5: wheel",
-        "    via arm.urdf.xacro:8: axle",
-        "arm.urdf.xacro:9:32: MB501 link 'ground' is a second root beside 'base' [with sim:=1]",
+def test_text_is_a_line_a_finding() -> None:
+    first = LintFinding("MB501", ERROR, "'é' is lost", "", "a b.urdf", 4, 3)
+    calls = ("p/r.urdf.xacro:5: wheel", "p/r.urdf.xacro:8: axle")
+    more = first._replace(hint="join it", calls=calls, arguments="sim:=gz n:=2", level=NOTE)
+    assert rendered("text", [first, more], []).splitlines() == [
+        "a b.urdf:4:3: MB501 'é' is lost",
+        "a b.urdf:4:3: MB501 'é' is lost (join it) [with sim:=gz n:=2]",
+        "    via p/r.urdf.xacro:5: wheel",
+        "    via p/r.urdf.xacro:8: axle",
     ]
+
+
+def test_text_is_what_was_found(nasty: Linted) -> None:
+    lines = iter(rendered("text", *nasty).splitlines())
+    for it in nasty.findings:
+        line = next(lines)
+        assert line.startswith(f"{text.one_line(it.file)}:{it.line}:{it.column}: {it.code} ")
+        assert it.message in line
+        for call in it.calls:
+            assert next(lines) == f"    via {call}"
+    assert next(lines, None) is None
 
 
 def test_text_holds_on_to_its_lines(nasty: Linted) -> None:
@@ -350,7 +361,7 @@ def test_sarif_results_say_what_and_where(nasty: Linted) -> None:
 
 def test_sarif_links_to_the_calls_of_macros(nasty: Linted) -> None:
     (it,) = (it for it in report("sarif", nasty)["runs"][0]["results"] if "relatedLocations" in it)
-    assert it["message"]["text"].endswith("beside 'base' via [wheel](1), [axle](2)")
+    assert it["message"]["text"].endswith(" via [wheel](1), [axle](2)")
     places = [place["physicalLocation"] for place in it["relatedLocations"]]
     assert [place["id"] for place in it["relatedLocations"]] == [1, 2]
     assert [place["region"]["startLine"] for place in places] == [5, 8]
@@ -373,7 +384,7 @@ def replaced(lines: list[str], region: dict[str, int], text: str) -> str:
 
 
 def test_a_sarif_fix_mends_as_the_edit_does(here: Path) -> None:
-    source = pieces("base", "é😀", "arm").encode()
+    source = pieces("é😀", "arm").encode()
     Path("a.urdf").write_bytes(source)
     (finding, _) = lint_file("a.urdf", SETTINGS)
     start = source.index("😀".encode())
@@ -434,9 +445,9 @@ def test_no_two_fingerprints_are_equal(linted: Linted) -> None:
 
 
 def test_a_fingerprint_survives_a_moved_line_and_another_path_to_it(here: Path) -> None:
-    Path("a.urdf").write_text(pieces("base", "x", "y"))
+    Path("a.urdf").write_text(pieces("x", "y"))
     before = Linted(lint_files(["a.urdf"], SETTINGS, jobs=1), [])
-    Path("a.urdf").write_text("<!-- new -->\n\n" + pieces("base", "x", "y"))
+    Path("a.urdf").write_text("<!-- new -->\n\n" + pieces("x", "y"))
     after = Linted(lint_files([str(here / "a.urdf")], SETTINGS, jobs=1), [])
     assert before.findings[0].line != after.findings[0].line
     assert prints(before) == prints(after)
