@@ -25,11 +25,6 @@ rule that crashed
 """
 # Name, what stands for the value, help.
 VALUES = (
-    (
-        "--format",
-        "NAME",
-        f"text (default) or one of {', '.join(it for it in FORMATS if it != 'text')}",
-    ),
     ("--output", "FILE", "write the findings there instead of to standard output"),
     ("--select", "CODES", "only these codes, or groups of them: MB2,MB501"),
     ("--ignore", "CODES", "not these"),
@@ -70,6 +65,7 @@ def parser() -> argparse.ArgumentParser:
     )
     help_ = "files and folders of .urdf, .xacro, .srdf; - for standard input; NAME:=VALUE for xacro"
     result.add_argument("words", nargs="*", metavar="PATH", help=help_)
+    result.add_argument("--format", choices=FORMATS, default="text", help="default: text")
     for name, metavar, text in VALUES:
         result.add_argument(name, metavar=metavar, help=text)
     vocabulary = {"action": "append", "default": [], "metavar": "FILE"}
@@ -100,8 +96,10 @@ def check_use(options: argparse.Namespace) -> None:
         raise UsageError("--diff prints to standard output: leave out --output")
     if options.write_baseline and (options.fix or options.baseline or options.output):
         raise UsageError("--write-baseline takes neither --fix, --baseline nor --output")
-    if options.layout and not options.robots:
-        raise UsageError("--layout says how --robots are spelled: give both")
+    if options.jobs is not None and not options.jobs.isdecimal():
+        raise UsageError(
+            f"--jobs {options.jobs}: write a number of processes, 0 for all processors"
+        )
 
 
 def given(options: argparse.Namespace) -> dict[str, object]:

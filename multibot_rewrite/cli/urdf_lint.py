@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import gc
+import os
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from fnmatch import fnmatch
 from functools import partial
 
 from multibot_rewrite.cli.files import write_all
@@ -15,7 +15,13 @@ from multibot_rewrite.cli.lint_usage import PROGRAM, check_use, given, parser
 from multibot_rewrite.cli.output import diff, print_bytes, say, watched
 from multibot_rewrite.cli.process import DONE, STOPPED, UNUSABLE, guarded
 from multibot_rewrite.cli.walk import find_files
-from multibot_rewrite.lint.configured import Configured, check_codes, configured, with_options
+from multibot_rewrite.lint.configured import (
+    Configured,
+    check_codes,
+    configured,
+    is_excluded,
+    with_options,
+)
 from multibot_rewrite.lint.records import LEVELS, LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
@@ -74,7 +80,7 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
         refused.append(LintFinding("MB102", level, message, "", error.filename, 1, 1))
 
     found = find_files(paths, SUFFIXES, refuse)
-    kept = [path for path in found if path in paths or not _excluded(path, config)]
+    kept = [path for path in found if path in paths or not is_excluded(path, config)]
     if not kept:
         raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
     if not options.changed_since:
@@ -82,10 +88,6 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
     from multibot_rewrite.lint.changed import changed_since  # a plain run needs no git
 
     return changed_since(options.changed_since, kept), refused
-
-
-def _excluded(path: str, config: Configured) -> bool:
-    return any(fnmatch(path, pattern) for pattern in config.exclude)
 
 
 def _lint(
@@ -97,7 +99,7 @@ def _lint(
 
         return lint_data("<stdin>", standard_input(), settings)
     watch = partial(watched, total=len(paths), doing="linting")
-    findings = lint_files(paths, settings, jobs=options.jobs, watch=watch)
+    findings = lint_files(paths, settings, jobs=int(options.jobs or 0), watch=watch)
     return _fixed(options, settings, findings) if options.fix else findings
 
 
@@ -141,7 +143,8 @@ def _conclude(
     if config.baseline:
         from multibot_rewrite.lint.baseline import beyond, read_baseline
 
-        findings, stale = beyond(findings, read_baseline(config.baseline), config.baseline)
+        known = read_baseline(config.baseline)
+        findings, stale = beyond(findings, known, config.baseline, paths)
     if not (options.fix and options.diff):
         _deliver(options, paths, findings)
     if not options.quiet:
@@ -157,7 +160,9 @@ def _deliver(
 ) -> None:
     from multibot_rewrite.lint.formats import rendered
 
-    data = rendered(options.format or "text", findings, paths).encode("utf-8", "backslashreplace")
+    terminal = not options.output and sys.stdout is not None and sys.stdout.isatty()
+    colour = terminal and "NO_COLOR" not in os.environ
+    data = rendered(options.format, findings, paths, colour=colour).encode()
     if options.output:
         write_all([(options.output, data)])
     else:
