@@ -16,7 +16,7 @@ from multibot_rewrite.rewriting.references import (
     duplicates,
     loose_ends,
     nearest,
-    remark,
+    remarks,
 )
 from multibot_rewrite.rewriting.remarks import Remark, told
 from multibot_rewrite.vocabulary import Rewriter
@@ -45,7 +45,7 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
     document = inventory.document
     source = document.source
     hint = "expand it first: give the file the name ….xacro, or run xacro"
-    elements = document.root.iter("*") if _uses_xacro(document) else iter(())
+    elements = document.root.iter("*") if uses_xacro(document) else iter(())
     tags = ((str(e.tag), start) for e, start in zip(elements, document.starts, strict=False))
     tag, start = next(((tag, start) for tag, start in tags if "/xacro}" in tag), ("", 0))
     if tag:
@@ -67,7 +67,7 @@ def _substitutions(document: Document) -> Iterator[tuple[str, int]]:
                 yield " ".join(str(value).split()), start
 
 
-def _uses_xacro(document: Document) -> bool:
+def uses_xacro(document: Document) -> bool:
     """A cheap look before the search: is a prefix bound to xacro, and is it used?"""
     spaces = document.root.nsmap.items()
     prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
@@ -87,9 +87,8 @@ def worlds(inventory: Inventory) -> Iterator[Finding]:
 
 def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     """Uses of a link or joint that nothing declares: they stay as they are."""
-    claims = doubtful(inventory)
-    for loose in loose_ends(claims, inventory.declared, naming.shared_frames):
-        it = remark(loose, inventory.declared)
+    loose = loose_ends(doubtful(inventory), inventory.declared, naming.shared_frames)
+    for it in remarks(loose, inventory.declared):
         yield it._replace(message=f"{it.message}: it stays as it is")
 
 

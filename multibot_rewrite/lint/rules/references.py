@@ -14,11 +14,13 @@ from multibot_rewrite.lint.robot import Joint
 from multibot_rewrite.model import ERROR, WARNING, Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
+from multibot_rewrite.rewriting.audit import uses_xacro
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import locate
 from multibot_rewrite.rewriting.references import (
     COMPARED,
     HINTED,
+    Loose,
     ambiguous,
     doubtful,
     fold,
@@ -62,6 +64,8 @@ SINGLE = {
     "provideFeedback": "provide_feedback",
     "provide_feedback": "provide_feedback",
 }
+# Its joints are those of the simulated robot, not of the URDF.
+WEBOTS = "webots_ros2_control::"
 # What moves by itself or is moved by no motor.
 UNDRIVEN = ("fixed", "floating", "planar", "")
 TWO = "<link name='a'/><link name='b'/>"
@@ -100,15 +104,32 @@ class References(NamedTuple):
 def references(held: Held, shared: Collection[str]) -> References:
     """One pass over the document for all rules of this page.
 
-    A file without a link is a part of a description: what it names is declared elsewhere.
+    A file without a link is a part of a description, what it names is declared elsewhere; and what
+    xacro was not asked to make yet cannot be missed.
     """
     inventory = held.inventory
     claims = doubtful(inventory)
-    loose = loose_ends(claims, inventory.declared, shared)
     by_code = defaultdict(list)
-    for remark in remarks(loose, inventory.declared) if inventory.declared["link"] else ():
-        by_code[remark.code].append(remark)
+    if inventory.declared["link"] and not uses_xacro(inventory.document):
+        ends = loose_ends(claims, inventory.declared, shared)
+        loose = [it for it in ends if not _elsewhere(it, inventory)]
+        for remark in remarks(loose, inventory.declared):
+            by_code[remark.code].append(remark)
     return References(claims, by_code)
+
+
+def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
+    """Is it declared after all: with the robot's own name as a scope, as Gazebo Classic takes it,
+    or by the PROTO of a Webots robot?"""
+    claim, part = loose
+    scope, _, name = part.text.rpartition("::")
+    if scope and scope == inventory.document.root.get("name"):
+        return any(name in inventory.declared.get(kind, ()) for kind in part.kinds)
+    if claim.site.section != "element ros2_control":
+        return False
+    system = next(claim.element.iterancestors("ros2_control"), None)
+    class_ = "" if system is None else system.findtext("hardware/plugin", "")
+    return class_.strip().startswith(WEBOTS)
 
 
 def undeclared(subject: Subject, code: str) -> Iterator[Problem]:
@@ -281,8 +302,8 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
     "one-node-twice",
     ERROR,
     what="Two plugins of Gazebo Classic have one name and one namespace, and both are ROS nodes.",
-    why="gazebo_ros makes no node for the second ('Found multiple nodes with same name'): it gets "
-    "a null pointer, which ends gzserver or leaves the plugin without topics.",
+    why="gazebo_ros makes no node for the second ('Found multiple nodes with same name') but gives "
+    "it a null pointer; plugins such as gazebo_ros_imu_sensor use it at once, and gzserver dies.",
     fix="Give each plugin its own name.",
     bad='<link name="a"/>' + PLUGIN.format("gazebo_ros_imu_sensor", "imu", "<ros/>") * 2,
     good='<link name="a"/>'
@@ -295,7 +316,7 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
     found = (
         ((it.element.findtext("ros/namespace", "").strip("/ "), it.value.strip()), it.element)
         for it in nodes
-        if it.site.path == "@name" and it.element.tag == "plugin"
+        if it.site.path == "@name" and it.element.find("ros") is not None
     )
     for it in _repeated(found):
         message = f"another plugin is the node {_name(it)!r} already"
@@ -431,7 +452,7 @@ def undeclared_joint_parameter(subject: Subject) -> Iterator[Problem]:
     WARNING,
     what="A parameter of a plugin or hardware class names a link that is not declared.",
     why="The plugin looks the link up, finds nothing and does not run: gazebo_ros_p3d says "
-    "'bodyName ... does not exist' and publishes nothing.",
+    "'body_name: ... does not exist' and publishes nothing.",
     fix="Correct the name.",
     bad='<link name="a"/>' + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><body_name>b</body_name>"),
     good='<link name="a"/>'
@@ -498,7 +519,8 @@ def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
         for name in (part.text for part in names_in(claim, declared)):
             # A frame_prefix or namespace before a link's name is made when the robot is started.
             own = name.rpartition("/")[2]
-            if own in links or own in MADE or any(own in declared[kind] for kind in site.kinds):
+            known = (it in declared[kind] for it in (own, name) for kind in ("link", *site.kinds))
+            if own in MADE or f"/{own}" in links or any(known):
                 continue
             if name not in meant:
                 meant[name] = _meant(own, links) if len(meant) < HINTED else ""
@@ -705,8 +727,8 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     "undriven-joint",
     NOTE,
     what="Other joints are driven by <ros2_control>, transmissions or plugins, and this one is not.",
-    why="Nothing moves it and nothing publishes its state, so robot_state_publisher does not send "
-    "its transform unless another node does.",
+    why="Nothing moves it; unless somebody publishes its state all the same, "
+    "robot_state_publisher does not send its transform and tf has no link behind it.",
     fix="Add it to <ros2_control>; if it is passive, let somebody publish its state.",
     bad=PAIR.format("") + SYSTEM.format('<joint name="j"/>'),
     good=PAIR.format("") + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
