@@ -157,8 +157,8 @@ def inertia_missing(subject: Subject) -> Iterator[Problem]:
     "inertia-zero",
     WARNING,
     what="The inertia of a link that moves on its own is 0.",
-    why="Nothing holds against its turning: simulations of it become unstable, and MuJoCo refuses "
-    "the file ('mass and inertia of moving bodies must be larger than mjMINVAL').",
+    why="The least torque turns it without bounds: physics engines become unstable, and MuJoCo "
+    "refuses the file ('mass and inertia of moving bodies must be larger than mjMINVAL').",
     fix="Write the inertia of a box or a cylinder of that mass and size.",
     bad=_moving(_inertial(inertia=_diagonal("0", "0", "0"))),
     good=_moving(_inertial()),
@@ -166,14 +166,14 @@ def inertia_missing(subject: Subject) -> Iterator[Problem]:
 def inertia_zero(subject: Subject) -> Iterator[Problem]:
     """Bodies of mass without inertia, where nothing fixed to them adds any."""
     robot = subject.robot
-    alone: dict[str, int] | None = None
+    parts: dict[str, int] | None = None
     for link, inertial in _inertials(robot):
         if not inertial.mass or inertial.mass < 0 or inertial.moments is None:
             continue
-        if max(map(abs, inertial.moments)) >= NOTHING or robot.body.get(link.name) != link.name:
+        if any(abs(it) >= NOTHING for it in inertial.moments) or not _moves(robot, link.name):
             continue
-        alone = _parts(robot) if alone is None else alone
-        if link.name in robot.above and alone[link.name] < 2:
+        parts = _parts(robot) if parts is None else parts
+        if parts.get(link.name) == 1:
             message = f"the inertia of link {link.name!r} ({inertial.mass:g} kg) is 0"
             yield Problem(_part(inertial, "inertia"), message)
 
@@ -182,7 +182,7 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     "MB606",
     "inertia-not-positive",
     ERROR,
-    what="An inertia is not positive definite: about some axis it is below 0.",
+    what="The inertia of a link is not positive definite: about some axis it is below 0.",
     why="No body has it: sdformat refuses the file ('has invalid inertia'), MuJoCo, too ('inertia "
     "must have positive eigenvalues').",
     fix="Look for a wrong sign, or for off-diagonal values in another unit; CAD programs differ in "
@@ -191,10 +191,10 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     good=_link(_inertial(inertia=_diagonal("0.1", "0.1", "0.1", ixy="0.02"))),
 )
 def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
-    """Inertias with a negative principal moment."""
-    for link, inertial, moments in _principal(subject.robot):
-        if moments[0] < -1e-6 * moments[2]:
-            message = f"inertia of link {link.name!r}: a principal moment is {moments[0]:.3g}"
+    """Inertias of bodies with a negative principal moment."""
+    for link, inertial, moments in _impossible(subject.robot, merged=False):
+        if _is_negative(moments):
+            message = f"inertia of link {link.name!r} {_fault(moments)}"
             yield Problem(_part(inertial, "inertia"), message)
 
 
@@ -202,7 +202,7 @@ def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     "MB607",
     "inertia-triangle",
     ERROR,
-    what="One principal moment of an inertia is larger than the two others together.",
+    what="One principal moment of a link's inertia is larger than the two others together.",
     why="No body has it: sdformat refuses the file ('has invalid inertia'), MuJoCo, too ('inertia "
     "must satisfy A + B >= C').",
     fix="Take the values from the CAD program again: in kg m2, about the centre of mass.",
@@ -210,13 +210,10 @@ def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     good=_link(_inertial(inertia=_diagonal("0.1", "0.1", "0.2"))),
 )
 def inertia_triangle(subject: Subject) -> Iterator[Problem]:
-    """Inertias that no distribution of mass has, by more than rounding."""
-    for link, inertial, (low, middle, high) in _principal(subject.robot):
-        if low >= -1e-6 * high and high > (low + middle) * (1 + ROUNDING):
-            message = (
-                f"inertia of link {link.name!r}: the principal moment {high:.3g} is larger than "
-                f"{low:.3g} + {middle:.3g}"
-            )
+    """Inertias of bodies that no distribution of mass has, by more than rounding."""
+    for link, inertial, moments in _impossible(subject.robot, merged=False):
+        if not _is_negative(moments):
+            message = f"inertia of link {link.name!r} {_fault(moments)}"
             yield Problem(_part(inertial, "inertia"), message)
 
 
@@ -248,6 +245,25 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
             if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
                 said += f", its shapes end {size:.3g} m from the origin"
                 yield Problem(_part(inertial, "inertia"), said, None, "is the unit right?")
+
+
+@rule(
+    "MB619",
+    "merged-inertia",
+    WARNING,
+    what="A link with a fixed joint, or with links fixed to it, has an inertia that no body has: a "
+    "principal moment is below 0 or larger than the two others together.",
+    why="MuJoCo refuses the file. Gazebo merges the links first and refuses the sum, if that is "
+    "impossible, too.",
+    fix="Take the values from the CAD program again: in kg m2, about the centre of mass.",
+    bad=_moving(_inertial(inertia=_diagonal("0.1", "0.1", "0.3"))).replace("continuous", "fixed"),
+    good=_moving(_inertial()).replace("continuous", "fixed"),
+)
+def merged_inertia(subject: Subject) -> Iterator[Problem]:
+    """Impossible inertias that are a part of a sum."""
+    for link, inertial, moments in _impossible(subject.robot, merged=True):
+        message = f"inertia of link {link.name!r} {_fault(moments)}"
+        yield Problem(_part(inertial, "inertia"), message)
 
 
 # ---------------------------------------------------------------- the robot as a whole
@@ -311,7 +327,7 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     if root.tag != "robot" or not robot.joints:
         return
     touch, seen = _bodies_with(robot, root, "collision"), _bodies_with(robot, root, "visual")
-    bare = [it for it in seen if it not in touch and it in robot.above and it in robot.link]
+    bare = [it for it in seen if it not in touch and _moves(robot, it) and it in robot.link]
     if not touch and bare[1:]:
         yield Problem(root, "no link has a <collision>: the robot touches nothing")
         return
@@ -337,7 +353,7 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
         return
     for name, mass in _masses(robot).items():
         inertial = robot.link[name].inertial if name in robot.link else None
-        if 0 < mass < TINY_MASS and name in robot.above and inertial is not None:
+        if 0 < mass < TINY_MASS and _moves(robot, name) and inertial is not None:
             message = f"link {name!r} moves and weighs {mass:g} kg"
             yield Problem(inertial.element, message)
 
@@ -499,6 +515,11 @@ def _masses(robot: Robot) -> dict[str, float]:
     return mass
 
 
+def _moves(robot: Robot, name: str) -> bool:
+    """Does a link hang on a joint that is not fixed?"""
+    return name in robot.above and robot.above[name][0].type != "fixed"
+
+
 def _parts(robot: Robot) -> dict[str, int]:
     """Body -> how many of its links have a mass."""
     count = dict.fromkeys(robot.body.values(), 0)
@@ -508,14 +529,49 @@ def _parts(robot: Robot) -> dict[str, int]:
     return count
 
 
-def _principal(robot: Robot) -> Iterator[tuple[Link, Inertial, tuple[float, float, float]]]:
-    """Principal moments, the smallest first, of the inertias that are any."""
+Moments = tuple[float, float, float]
+
+
+def _impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Moments]]:
+    """The inertias that no body has and their principal moments, the smallest first.
+
+    ``merged`` are those of links that are merged with others that have a mass, or with nothing
+    that moves: ``world``.
+    """
+    parts: dict[str, int] | None = None
     for link, inertial in _inertials(robot):
-        if inertial.moments is not None and max(map(abs, inertial.moments)) >= NOTHING:
-            yield link, inertial, _eigenvalues(inertial.moments)
+        if inertial.moments is None or _is_plain(inertial.moments):
+            continue
+        low, middle, high = moments = _eigenvalues(inertial.moments)
+        if high < NOTHING or (
+            not _is_negative(moments) and high <= (low + middle) * (1 + ROUNDING)
+        ):
+            continue
+        parts = _parts(robot) if parts is None else parts
+        own = link.name != WORLD and parts.get(link.name) == 1
+        if own != merged:
+            yield link, inertial, moments
 
 
-def _eigenvalues(moments: tuple[float, ...]) -> tuple[float, float, float]:
+def _is_plain(moments: tuple[float, ...]) -> bool:
+    """A quick look: is it surely possible? Off the diagonal ``off`` shifts the moments at most."""
+    xx, xy, xz, yy, yz, zz = moments
+    off = abs(xy) + abs(xz) + abs(yz)
+    return min(xx, yy, zz) >= off and max(xx, yy, zz) + off <= (xx + yy + zz) / 2
+
+
+def _is_negative(moments: Moments) -> bool:
+    return moments[0] < -1e-6 * abs(moments[2])
+
+
+def _fault(moments: Moments) -> str:
+    low, middle, high = moments
+    if _is_negative(moments):
+        return f"is not positive definite: a principal moment is {low:.3g}"
+    return f"is impossible: the principal moment {high:.3g} is larger than {low:.3g} + {middle:.3g}"
+
+
+def _eigenvalues(moments: tuple[float, ...]) -> Moments:
     """Those of a symmetric 3x3 matrix, in order."""
     size = max(map(abs, moments))
     xx, xy, xz, yy, yz, zz = (it / size for it in moments)

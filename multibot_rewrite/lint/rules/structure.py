@@ -105,7 +105,9 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
 def no_link(subject: Subject) -> Iterator[Problem]:
     """A robot without links that no xacro file made: a library of macros has none of its own."""
     root = subject.document.root
-    if root.tag == "robot" and not subject.robot.links and not subject.origins:
+    if root.tag != "robot" or subject.robot.links or subject.origins:
+        return
+    if not any("xacro}" in str(it.tag) for it in root):
         yield Problem(root, "the robot has no link")
 
 
