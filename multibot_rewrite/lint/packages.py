@@ -20,13 +20,25 @@ _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_mo
 
 def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, ...]:
     """Every folder that may be the package ``name`` for a description ``file``."""
-    above = _own_package(os.path.dirname(os.path.abspath(file)))
-    found = [above[1]] if above is not None and above[0] == name else []
-    given = os.environ.get("ROS_PACKAGE_PATH", "").split(os.pathsep)
-    found += _below((*roots, *filter(None, given))).get(name, ())
-    prefixes = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
-    shares = (os.path.join(prefix, "share", name) for prefix in prefixes if prefix)
+    sources = os.environ.get("ROS_PACKAGE_PATH", "")
+    installed = os.environ.get("AMENT_PREFIX_PATH", "")
+    here = os.path.dirname(os.path.abspath(file))
+    return _candidates(name, here, (*roots, *_split(sources)), _split(installed))
+
+
+@lru_cache(maxsize=4096)
+def _candidates(
+    name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]
+) -> tuple[str, ...]:
+    own = _own_package(here)
+    found = [own[1]] if own is not None and own[0] == name else []
+    shares = (os.path.join(prefix, "share", name) for prefix in prefixes)
+    found += _below(roots).get(name, ())
     return (*found, *(it for it in shares if _MANIFEST in entries(it)))
+
+
+def _split(paths: str) -> tuple[str, ...]:
+    return tuple(it for it in paths.split(os.pathsep) if it)
 
 
 @lru_cache(maxsize=256)

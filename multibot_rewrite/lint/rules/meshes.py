@@ -67,51 +67,51 @@ def _and_more(count: int) -> str:
     return f" (and {count - 1} more)" if count > 1 else ""
 
 
-def _file(subject: Subject) -> str:
-    return subject.document.file.removesuffix(" (expanded)")
+class Lookup(NamedTuple):
+    """A file that was looked for: the folders it may be below, its path there, and the path as it
+    is written on the disk, empty where it is not there."""
+
+    used: Used
+    folders: tuple[str, ...]
+    path: str
+    found: str
 
 
-def _bases(subject: Subject, it: Used) -> tuple[tuple[str, ...], str]:
-    """The folders in which a file may be, and its path below them; none where nobody can say."""
-    if "$" in it.name or "\\" in it.name:
-        return (), ""
-    file = _file(subject)
-    if it.scheme == "package":
-        package, _, path = unquote(it.path).partition("/")
-        if not package or not path:
-            return (), ""
-        folders = package_folders(package, file, subject.settings.roots)
-        first = path.partition("/")[0].lower()
-        # A folder that is only called like the package must look like it.
-        known = [f for f in folders if _looks_like_it(entries(f), first)]
-        return tuple(known), path
+@lru_cache(maxsize=1)
+def _lookups(root: _Element, file: str, roots: tuple[str, ...]) -> tuple[Lookup, ...]:
+    """Each file once that somebody can look for, by the first element that names it."""
+    first = {it.name: it for it in reversed(_used(root)) if it.scheme in ("package", "")}
+    asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
+    return tuple(_looked_up(it, *_bases(it, file, roots)) for it in asked)
+
+
+def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
+    found = [find_in(folder, path) for folder in folders]
+    exact = os.path.normpath(path)
+    return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
+
+
+def _bases(it: Used, file: str, roots: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+    """The folders in which a file may be, and its path below them."""
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
         return (here, os.path.dirname(here)), it.path
-    return (), ""
+    package, _, path = unquote(it.path).partition("/")
+    if not package or not path:
+        return (), ""
+    first = path.partition("/")[0].lower()
+    # A folder that is only called like the package must look like it.
+    folders = package_folders(package, file, roots)
+    return tuple(it for it in folders if _looks_like_it(entries(it), first)), path
 
 
 def _looks_like_it(names: frozenset[str], first: str) -> bool:
     return "package.xml" in names or any(name.lower() == first for name in names)
 
 
-@lru_cache(maxsize=4096)
-def _found(folders: tuple[str, ...], path: str) -> str | None:
-    """The path as it is written on the disk; empty where there is none."""
-    found = [find_in(folder, path) for folder in folders]
-    exact = os.path.normpath(path)
-    return exact if exact in found else next(filter(None, found), "")
-
-
-def _asked(subject: Subject) -> Iterator[tuple[Used, tuple[str, ...], str, str | None]]:
-    """Each file that can be looked for once: where, its path, and what is there."""
-    seen = set()
-    for it in _with(subject, "package", ""):
-        if it.name not in seen:
-            seen.add(it.name)
-            folders, path = _bases(subject, it)
-            if folders:
-                yield it, folders, path, _found(folders, path)
+def _asked(subject: Subject) -> tuple[Lookup, ...]:
+    file = subject.document.file.removesuffix(" (expanded)")
+    return _lookups(subject.document.root, file, subject.settings.roots)
 
 
 @rule(
@@ -131,18 +131,18 @@ def _asked(subject: Subject) -> Iterator[tuple[Used, tuple[str, ...], str, str |
 )
 def mesh_missing(subject: Subject) -> Iterator[Problem]:
     """Files of packages that were found, and relative ones."""
-    for it, folders, path, found in _asked(subject):
-        if not found:
-            near = _nearest(folders, path)
-            hint = f"did you mean {near!r}?" if near else f"looked in {folders[0]}"
-            yield _problem(it, f"{it.name!r} is not there", hint)
+    for it in _asked(subject):
+        if it.folders and not it.found:
+            near = _nearest(it)
+            hint = f"did you mean {near!r}?" if near else f"looked in {it.folders[0]}"
+            yield _problem(it.used, f"{it.used.name!r} is not there", hint)
 
 
-def _nearest(folders: tuple[str, ...], path: str) -> str:
+def _nearest(it: Lookup) -> str:
     from multibot_rewrite.rewriting.audit import nearest
 
-    folder = os.path.join(folders[0], os.path.dirname(path))
-    return nearest(os.path.basename(path), sorted(entries(folder)))
+    folder = os.path.join(it.folders[0], os.path.dirname(it.path))
+    return nearest(os.path.basename(it.path), sorted(entries(folder)))
 
 
 @rule(
@@ -162,15 +162,13 @@ def _nearest(folders: tuple[str, ...], path: str) -> str:
 )
 def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
-    seen = set()
-    for it in _with(subject, "package"):
-        package = it.path.partition("/")[0]
-        if package in seen:
-            continue
-        seen.add(package)
-        folders, path = _bases(subject, it)
-        if path and not folders:
-            yield _problem(it, f"package {package!r} was not found", "give its folder as a root")
+    lost = [it for it in _asked(subject) if it.path and not it.folders]
+    for package, it in {_package(it): it for it in reversed(lost)}.items():
+        yield _problem(it.used, f"package {package!r} was not found", "give its folder as a root")
+
+
+def _package(it: Lookup) -> str:
+    return it.used.path.partition("/")[0]
 
 
 @rule(
@@ -190,9 +188,10 @@ def package_not_found(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
     """Paths that are there but for capitals."""
-    for it, _, path, found in _asked(subject):
-        if found and found != os.path.normpath(path):
-            yield _problem(it, f"{path!r} is called {found!r} on the disk", f"write {found!r}")
+    for it in _asked(subject):
+        if it.found and it.found != os.path.normpath(it.path):
+            message = f"{it.path!r} is called {it.found!r} on the disk"
+            yield _problem(it.used, message, f"write {it.found!r}")
 
 
 @rule(
@@ -251,11 +250,17 @@ def backslash_in_path(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_without_file(subject: Subject) -> Iterator[Problem]:
     """Meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
-    for mesh in subject.document.root.iterfind("link/*/geometry/mesh"):
+    for mesh in subject.document.root.iter("mesh"):
         name = mesh.get("filename")
-        if (name is None or not name.strip()) and mesh.find("uri") is None:
+        if (name is None or not name.strip()) and _is_shape(mesh):
             said = "no file" if name is None else "an empty file name"
             yield Problem(mesh, f"<mesh> has {said}", None if name is None else "filename")
+
+
+def _is_shape(mesh: _Element) -> bool:
+    """Does it stand at link/*/geometry?"""
+    above = [str(it.tag) for it in mesh.iterancestors()][:4]
+    return above[:1] + above[2:] == ["geometry", "link", "robot"] and mesh.find("uri") is None
 
 
 @rule(
@@ -377,9 +382,10 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
     good=MESH % "package://arm/meshes/base.stl",
 )
 def find_left_over(subject: Subject) -> Iterator[Problem]:
-    """Substitutions that stand in a file name."""
-    for it in _used(subject.document.root):
-        if "$(find" in it.name:
-            yield _problem(
-                it, f"{it.name!r} holds a xacro substitution", "write package://NAME/..."
-            )
+    """The first of them, and how many; a xacro file in disguise is for MB105 to tell."""
+    if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
+        return
+    found = [it for it in _used(subject.document.root) if "$(find" in it.name]
+    if found:
+        message = f"{found[0].name!r} holds a xacro substitution{_and_more(len(found))}"
+        yield _problem(found[0], message, "write package://NAME/...")

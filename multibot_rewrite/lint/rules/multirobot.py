@@ -10,7 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.lint.prefixes import forgotten, unused
 from multibot_rewrite.lint.records import NOTE, SRDF, XACRO, Problem, Subject, rule
 from multibot_rewrite.lint.written import claim_is_fixed, is_fixed, starts_of
-from multibot_rewrite.model import ERROR, WARNING, Claim
+from multibot_rewrite.model import ERROR, WARNING, Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, TF_TOPICS, make_naming, overlap
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.insert import insertions
@@ -265,12 +265,16 @@ def _inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]
     declared = subject.inventory.declared
     for host in subject.inventory.hosts:
         rewriter = host.node.rewriter
-        if rewriter is None or not any(it.default for it in rewriter.sites):
+        if rewriter is None or not any(map(_may_insert, rewriter.sites)):
             continue
         for it in insertions(host.element, rewriter, declared, APART):
             tag = it.xml[1:].partition(">")[0].partition(" ")[0]
             if it.kind != "namespace" and tag != "remapping":
                 yield host.element, (it.kind, it.old, tag)
+
+
+def _may_insert(site: Site) -> bool:
+    return bool(site.default) and "namespace" not in site.kinds
 
 
 @rule(
@@ -591,8 +595,9 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
 )
 def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots would refuse as MB420."""
-    settings = subject.settings
-    yield from _at(robots.taken_names(subject.inventory, settings.naming, settings.robots))
+    naming, names = subject.settings.naming, subject.settings.robots
+    if names:
+        yield from _at(robots.taken_names(subject.inventory, naming, names))
 
 
 @rule(
