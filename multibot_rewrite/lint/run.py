@@ -8,6 +8,7 @@ from functools import partial
 
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.included import included
+from multibot_rewrite.lint.pairing import named_urdfs
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 
@@ -24,7 +25,7 @@ def lint_files(
     ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` sees the
     files' findings pass, for a progress bar.
     """
-    settings = _with_urdfs(paths, settings)._replace(included=included(paths))
+    settings = _with_urdfs(paths, settings._replace(included=included(paths)))
     found = watch(_linted(paths, settings, jobs or os.cpu_count() or 1))
     # An included file may be reached from several.
     return list(dict.fromkeys(finding for findings in found for finding in findings))
@@ -42,4 +43,5 @@ def _linted(paths: Sequence[str], settings: Settings, jobs: int) -> Iterator[lis
 
 
 def _with_urdfs(paths: Sequence[str], settings: Settings) -> Settings:
-    return settings
+    """SRDF files find their URDF among the files, whoever lints which."""
+    return settings._replace(urdfs=named_urdfs(paths, settings.included))

@@ -37,8 +37,9 @@ class Settings(NamedTuple):
     ``naming``; without robots nothing is asked that hangs on them. ``targets`` are other formats
     the names must suit (``TARGETS``). ``roots`` are folders in which ``package://NAME`` is looked
     for. ``urdf`` is the description that SRDF files belong to, where it is not the one with the
-    same robot name. ``included`` are xacro files that are linted through those which include them.
-    ``seconds`` is what one file may take.
+    same robot name; ``urdfs`` are the names and paths of robots linted beside them. ``included``
+    are xacro files that are linted through those which include them. ``seconds`` is what one file
+    may take.
     """
 
     select: tuple[str, ...] = ALL
@@ -52,6 +53,7 @@ class Settings(NamedTuple):
     targets: tuple[str, ...] = ()
     roots: tuple[str, ...] = ()
     urdf: str = ""
+    urdfs: tuple[tuple[str, str], ...] = ()
     included: frozenset[str] = frozenset()
     seconds: float = TIME_LIMIT
 

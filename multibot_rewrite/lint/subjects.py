@@ -7,20 +7,20 @@ from fnmatch import fnmatch
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.pairing import find_pair
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
-from multibot_rewrite.lint.robot import Robot, read_robot
+from multibot_rewrite.lint.robot import read_robot
 from multibot_rewrite.lint.schema import read_faults
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriting.collect import NOTHING, collect
 from multibot_rewrite.rewriting.collect import SRDF as SRDF_SECTION
+from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import Document, read_document
-from multibot_rewrite.sources import read_source
 from multibot_rewrite.xacro_source import expand_traced
 from multibot_rewrite.xacro_trace import Trace
 
+EXPANDED = " (expanded)"
 DEFAULT = ArgumentSet("*", ())
 MISSING = "Undefined substitution argument"
 DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
@@ -55,7 +55,7 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject]
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
     trace = Trace({path: data})
     expanded, origins = expand_traced(path, dict(given.arguments), trace)
-    subject = _subject(read_document(expanded, f"{path} (expanded)"), settings)
+    subject = _subject(read_document(expanded, path + EXPANDED), settings)
     return _shaped(subject)._replace(origins=origins, sources=trace.sources, arguments=str(given))
 
 
@@ -78,19 +78,10 @@ def _local(element: _Element) -> str:
 def _subject(document: Document, settings: Settings) -> Subject:
     tree = builtin_tree(settings.vocabulary)
     inventory = collect(document, tree)
-    if inventory.format != SRDF_SECTION:
-        robot = read_robot(document.root)
-        return Subject(URDF, document, inventory, tree, robot, settings)
-    beside, outside = _urdf_beside(settings)
-    inventory = collect(document, tree, outside)
     robot = read_robot(document.root)
-    return Subject(SRDF, document, inventory, tree, robot, settings, beside)
-
-
-def _urdf_beside(settings: Settings) -> tuple[Robot | None, Declared]:
-    """The robot an SRDF belongs to and what its description declares."""
-    if not settings.urdf:
-        return None, NOTHING
-    data, name = read_source(settings.urdf, {})
-    inventory = collect(read_document(data, name), builtin_tree(settings.vocabulary))
-    return read_robot(inventory.document.root), inventory.declared
+    # The source of a xacro file has names that are not made yet.
+    if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
+        return Subject(URDF, document, inventory, tree, robot, settings)
+    pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
+    inventory = collect(document, tree, pair.declared)
+    return Subject(SRDF, document, inventory, tree, robot, settings, pair.robot)

@@ -34,7 +34,9 @@ _PARAMETERS = {"joint": "MB215", "link": "MB216"}
 _SRDF = {"link": "MB803", "joint": "MB804", "group": "MB805"}
 _OTHER = "MB220"
 # Only SDF has scopes.
-SCOPE = "MB219"
+_SCOPE = "MB219"
+# Looking for what was meant costs: so many names, among so many.
+HINTED, COMPARED = 20, 2000
 
 
 class Loose(NamedTuple):
@@ -72,22 +74,29 @@ def loose_ends(
                 yield Loose(claim, part)
 
 
-def remark(loose: Loose, declared: Declared) -> Remark:
-    """What is said about it, with the code of its place."""
-    claim, part = loose
-    words = " or ".join(part.kinds)
-    other = next((kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ())), "")
-    fault = f"which is a {other}" if other else "which is not declared"
-    message = f"{where(claim)} names the {words} {part.text!r}, {fault}"
-    known = [known for kind in part.kinds for known in declared.get(kind, ())]
-    near = nearest(part.text, known)
-    hint = f"did you mean {near!r}?" if near else ""
-    return about(claim, _code(claim.site, part), message, hint)
+def remarks(loose: Iterable[Loose], declared: Declared) -> Iterator[Remark]:
+    """What is said about them, each with the code of its place."""
+    hints: dict[str, str] = {}
+    for it in loose:
+        claim, part = it
+        if part.text not in hints and len(hints) < HINTED:
+            known = [known for kind in part.kinds for known in declared.get(kind, ())]
+            near = nearest(part.text, known[:COMPARED])
+            hints[part.text] = f"did you mean {near!r}?" if near else ""
+        message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
+        message += _fault(part, declared)
+        yield about(claim, _code(claim.site, part), message, hints.get(part.text, ""))
+
+
+def _fault(part: Part, declared: Declared) -> str:
+    found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
+    other = next(found, "")
+    return f"which is a {other}" if other else "which is not declared"
 
 
 def _code(site: Site, part: Part) -> str:
     if site.form == "scoped":
-        return SCOPE
+        return _SCOPE
     for section, path, code in _THEMES:
         if site.section == section and site.path.startswith(path):
             return code

@@ -1,0 +1,137 @@
+"""Which URDF an SRDF belongs to: the one it names among the linted files, else one near it."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from glob import escape, glob
+from typing import NamedTuple
+
+from multibot_rewrite.lint.robot import Robot, read_robot
+from multibot_rewrite.lint.settings import Settings, matches
+from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
+from multibot_rewrite.rewriting.document import read_document
+from multibot_rewrite.sources import read_source
+
+_NAME = re.compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+# A root element stands in the first bytes; looking for it must not cost a read of the whole.
+HEAD = 4096
+# Where a package of MoveIt has its URDF, from the folder of its SRDF.
+NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
+ENDINGS = ("*.urdf", "*.xacro")
+# So many files are looked into, and so many descriptions are read.
+MOST, TRIED = 200, 6
+SRDF_MARK = ".srdf"
+
+
+class Pair(NamedTuple):
+    """The robot of an SRDF's URDF and what that declares; ``misses`` of the SRDF's names are not in
+    it."""
+
+    robot: Robot | None
+    declared: Declared
+    misses: int = 0
+
+
+NOBODY = Pair(None, NOTHING)
+
+
+def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
+    """The robot names of the files that are no SRDF, where an SRDF is among them."""
+    others = [it for it in paths if SRDF_MARK not in os.path.basename(it) and it not in included]
+    if len(others) == len(paths):
+        return ()
+    named = ((robot_name(path), path) for path in others)
+    return tuple((name, path) for name, path in named if name)
+
+
+def robot_name(path: str) -> str:
+    """The name on the root element as it is written; empty where it cannot be had cheaply."""
+    try:
+        with open(path, "rb") as file:
+            found = _NAME.search(file.read(HEAD))
+    except (OSError, ValueError):
+        return ""
+    return found[1].decode("utf-8", "replace").strip() if found else ""
+
+
+def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
+    """The description that an SRDF belongs to, the one that has most of its names.
+
+    One that lacks more than half of them is that of another robot.
+    """
+    if settings.urdf:
+        return _read(settings.urdf, srdf, settings)
+    name = srdf.document.root.get("name", "").strip()
+    best = NOBODY
+    for candidate in _candidates(path, name, settings)[:TRIED]:
+        try:
+            found = _read(candidate, srdf, settings)
+        except InputError:  # told when it is linted itself
+            continue
+        if best is NOBODY or found.misses < best.misses:
+            best = found
+        if not found.misses:
+            break
+    return best if best.misses * 2 <= len(_names(srdf)) else NOBODY
+
+
+def _candidates(path: str, name: str, settings: Settings) -> list[str]:
+    """Files with that robot's name, the nearest first; else what is near on disk."""
+    folder = os.path.dirname(os.path.abspath(path))
+    named = [urdf for robot, urdf in settings.urdfs if robot == name]
+    return sorted(named, key=lambda it: (_distance(folder, it), it)) or _near(path, folder, name)
+
+
+def _distance(folder: str, path: str) -> int:
+    return os.path.relpath(os.path.abspath(path), folder).count(os.sep)
+
+
+def _near(path: str, folder: str, name: str) -> list[str]:
+    """Those with the robot's name, then those called as the SRDF is."""
+    stem = _stem(path)
+    files = [it for it, _ in zip(_files(folder), range(MOST), strict=False)]
+    same = [it for it in files if robot_name(it) == name]
+    return same or [it for it in files if _stem(it) == stem]
+
+
+def _files(folder: str) -> Iterator[str]:
+    for place in NEAR:
+        for ending in ENDINGS:
+            found = glob(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
+            yield from (it for it in sorted(found) if SRDF_MARK not in os.path.basename(it))
+
+
+def _stem(path: str) -> str:
+    return os.path.basename(path).partition(".")[0]
+
+
+def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
+    data, name = _described(path, settings)
+    inventory = collect(read_document(data, name), builtin_tree(settings.vocabulary))
+    declared = inventory.declared
+    known = declared["link"].keys() | declared["joint"].keys()
+    misses = sum(it not in known for it in _names(srdf))
+    return Pair(read_robot(inventory.document.root), declared, misses)
+
+
+def _described(path: str, settings: Settings) -> tuple[bytes, str]:
+    """With the default arguments, else with the first that the settings have for the file."""
+    sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
+    try:
+        return read_source(path, {})
+    except InputError:
+        if not sets or not path.endswith(".xacro"):
+            raise
+        return read_source(path, sets[0])
+
+
+def _names(srdf: Inventory) -> set[str]:
+    """The links and joints an SRDF uses, those it declares aside."""
+    own: Iterable[str] = srdf.declared["joint"]
+    used = {it.value.strip() for it in srdf.claims if it.site.role == "uses" and it.site.plain}
+    return used.difference(own)
