@@ -57,16 +57,23 @@ def _codes(given: Given) -> tuple[str, ...]:
 
 def check_codes(codes: Sequence[str], where: str) -> None:
     """Raise UsageError for what is neither a rule's code nor the beginning of one."""
-    known = {it.name: code for code, it in RULES.items()}
-    starts = {
-        code[:size] for code in (*RULES, *(start for start, *_ in GROUPS)) for size in (2, 3, 4, 5)
-    }
-    wrong = next((it for it in codes if it not in starts), None)
-    if wrong is None:
-        return
-    near = known.get(wrong) or nearest(wrong.upper(), sorted(starts))
-    hint = f"did you mean {near!r}?" if near else "urdf-lint --list-rules tells them"
-    raise UsageError(f"{where}: no rule has the code {wrong!r}, and none begins with it; {hint}")
+    whole = (*RULES, *(start for start, *_ in GROUPS))
+    known = {code[:size] for code in whole for size in range(2, len(code) + 1)}
+    wrong = next((it for it in codes if it not in known), None)
+    if wrong is not None:
+        near = _near_code(wrong, known)
+        hint = f"did you mean {near!r}?" if near else "urdf-lint --list-rules tells them"
+        raise UsageError(
+            f"{where}: no rule has the code {wrong!r}, and none begins with it; {hint}"
+        )
+
+
+def _near_code(wrong: str, known: set[str]) -> str:
+    """The code of a rule's name, the longest code that this begins with, or one like it."""
+    named = (code for code, it in RULES.items() if it.name == wrong)
+    begun = (wrong[:size].upper() for size in range(len(wrong), 2, -1))
+    found = next(named, "") or next((it for it in begun if it in known), "")
+    return found or nearest(wrong.upper(), sorted(known))
 
 
 def _levels(given: Given) -> dict[str, str]:
