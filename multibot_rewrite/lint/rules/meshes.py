@@ -99,6 +99,7 @@ def _bases(it: Used, file: str, roots: tuple[str, ...]) -> tuple[tuple[str, ...]
     package, _, path = unquote(it.path).partition("/")
     if not package or not path:
         return (), ""
+    path = path.lstrip("/")
     first = path.partition("/")[0].lower()
     # A folder that is only called like the package must look like it.
     folders = package_folders(package, file, roots)

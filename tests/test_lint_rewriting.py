@@ -1,0 +1,54 @@
+"""MB9: what a rewrite would leave as it is, at the very value."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.settings import Settings
+
+
+def linted(folder: Path, text: str) -> list[tuple[str, str, int, int]]:
+    file = folder / "r.urdf"
+    file.write_text(f'<robot name="r">\n{text}\n</robot>')
+    found = lint_file(str(file), Settings(select=("MB9",)))
+    return [(it.code, it.level, it.line, it.column) for it in found]
+
+
+LINK = '<link name="gripper"/>\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (LINK + '<x part="gripper"/>', [("MB901", "warning", 3, 4)]),
+        (LINK + '<x a="1" part="b gripper"/>', [("MB901", "warning", 3, 10)]),
+        (LINK + "<x>gripper</x>", [("MB901", "warning", 3, 4)]),
+        (LINK + "<x>grippers</x>", []),
+        (LINK + "<!-- gripper -->", []),
+        # Known to be a word of its own, or a reference that is renamed.
+        (LINK + '<gazebo reference="gripper"/>', []),
+        (LINK + '<joint name="j" type="gripper"/>', []),
+        ("<x>gripper</x>", []),
+        ("", []),
+        (
+            '<gazebo><plugin name="p" filename="libunheard_of.so"/></gazebo>',
+            [("MB902", "note", 2, 9)],
+        ),
+        ('<gazebo><plugin name="p" filename="libgazebo_ros_camera.so"/></gazebo>', []),
+        # Who has no parameter has no name in one.
+        ("<ros2_control><hardware><plugin>un/Heard</plugin></hardware></ros2_control>", []),
+        (
+            '<ros2_control><hardware><plugin>un/Heard</plugin><param name="a">b</param></hardware>'
+            "</ros2_control>",
+            [("MB903", "note", 2, 1)],
+        ),
+        ('<ros2_control><hardware><plugin/><param name="a"/></hardware></ros2_control>', []),
+    ],
+)
+def test_what_nothing_knows(
+    text: str, expected: list[tuple[str, str, int, int]], tmp_path: Path
+) -> None:
+    assert linted(tmp_path, text) == expected
