@@ -205,10 +205,7 @@ def _below(name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
             return None
         if child.times in ("required", "once") and count[tag] > 1:
             return None
-    shapes = [tag for tag in count.elements() if known[tag].times == "either"]
-    wanted = any(child.times == "either" for child in known.values())
-    strange = any("{" in tag for tag in tags if isinstance(tag, str))
-    if wanted and len(shapes) != 1 and not (strange and not shapes):
+    if sum(times for tag, times in count.items() if known[tag].times == "either") > 1:
         return None
     return _sections(name, tags)
 
@@ -290,7 +287,7 @@ def _strange(
     if section.name == "ros2_control":
         yield Fault("unknown-component", child, None, f"<{child.tag}> in <ros2_control>", hint)
     elif section.name == "geometry":
-        return
+        return  # MB615 tells it
     elif meant:
         yield Fault("misspelled-element", child, None, message, hint)
     elif child.tag in _tags():
@@ -314,16 +311,8 @@ def _repeated(element: etree._Element, section: Section, count: Counter[str]) ->
 def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
     """A geometry has one shape, and the first element is it."""
     known = [tag for tag, child in section.children.items() if child.times == "either"]
-    if not known:
-        return
-    shapes = list(element.iterchildren("*"))
-    if not shapes:
-        yield Fault("missing", element, None, f"<{element.tag}> has no shape")
-    elif shapes[0].tag not in known and _is_own(shapes[0].tag):
-        meant = _near(str(shapes[0].tag), known)
-        hint = f"did you mean <{meant}>?" if meant else f"urdfdom knows {', '.join(known[:4])}"
-        yield Fault("missing", shapes[0], None, f"<{shapes[0].tag}> is no shape of URDF", hint)
-    elif len(shapes) > 1:
+    shapes = list(element.iterchildren(*known)) if known else []
+    if len(shapes) > 1:
         message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads the first one alone"
         yield Fault("repeated-element", shapes[1], None, message)
 
@@ -374,7 +363,9 @@ def _wrong(value: str, kind: str) -> tuple[str, str, str]:
         return "not-finite", ", which is not finite", "write a large number, or leave it out"
     if len(words) != wanted:
         count = f"{len(words)} numbers" if len(words) != 1 else "1 number"
-        return ("wrong-count" if words else "not-a-number"), f": {count} of {wanted}", ""
+        if not words:
+            return "not-a-number", ", which is no number", ""
+        return "wrong-count", f": {count} of {wanted}", ""
     if kind == "rgba" and not all(0 <= float(word) <= 1 for word in words):
         large = any(float(word) > 1 for word in words)
         return kind, ": outside of 0 to 1", "divide by 255" if large else ""

@@ -96,10 +96,10 @@ def xacro_failed(subject: Subject) -> Iterator[Problem]:
 @rule(
     "MB105",
     "leftover-xacro",
-    ERROR,
-    what="A plain URDF still holds xacro elements or ${...} and $(arg ...) substitutions.",
-    why="URDF loaders expand nothing: macros do not come to be, and ${...} where a number should "
-    "be makes urdfdom refuse the joint, and with it the robot.",
+    WARNING,
+    what="A file that is not named .xacro holds xacro elements or ${...} and $(arg ...).",
+    why="Who loads it as the URDF that its name promises gets no macros, and urdfdom refuses the "
+    "joint, and with it the robot, where ${...} stands for a number.",
     fix="Name the file .urdf.xacro and load it through xacro, or write the expanded text.",
     bad='<link name="a"/><link name="${prefix}b"/>',
     good='<link name="a"/><link name="b"/>',
@@ -219,12 +219,12 @@ def ignored_attribute(subject: Subject) -> Iterator[Problem]:
     "missing",
     ERROR,
     what="An attribute or child is missing without which its element cannot be read.",
-    why="urdfdom refuses the whole file for a joint or the robot's name; of a link it drops every "
-    "visual and collision after the fault; ros2_control's parser throws, and the controller "
-    "manager has no hardware.",
+    why="urdfdom refuses the whole file for the name of the robot or of a joint; of a link it drops "
+    "every shape from the fault on; ros2_control's parser throws, and the controller manager has "
+    "no hardware.",
     fix="Add what is missing.",
-    bad='<link name="a"><visual><geometry><mesh/></geometry></visual></link>',
-    good='<link name="a"><visual><geometry><mesh filename="file:///a.stl"/></geometry></visual>'
+    bad='<link name="a"><visual><geometry><cylinder radius="1"/></geometry></visual></link>',
+    good='<link name="a"><visual><geometry><cylinder radius="1" length="1"/></geometry></visual>'
     "</link>",
 )
 def missing(subject: Subject) -> Iterator[Problem]:
@@ -355,15 +355,15 @@ def blank_behind_number(subject: Subject) -> Iterator[Problem]:
     "MB124",
     "bad-choice",
     ERROR,
-    what="A value is not one of those that the loader knows: a joint type, a ros2_control type, "
-    "the version of the URDF.",
-    why="urdfdom refuses the file for a joint type or version it does not know; hardware of an "
-    "unknown type is loaded by nobody, and ros2_control does not say so.",
+    what="A value is not one of those that the loader knows: the type of a ros2_control, or the "
+    "version of the URDF.",
+    why="Hardware of an unknown type is loaded by nobody, and ros2_control's resource manager does "
+    "not say so; urdfdom refuses a file of another version than 1.0.",
     fix="Write one of the values in the message, in lower case.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="Fixed"><parent link="a"/>'
-    '<child link="b"/></joint>',
-    good='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint>',
+    bad='<ros2_control name="c" type="System"><hardware><plugin>p/P</plugin></hardware>'
+    "</ros2_control>",
+    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
+    "</ros2_control>",
 )
 def bad_choice(subject: Subject) -> Iterator[Problem]:
     """Read by ``schema.read_faults``."""
@@ -390,7 +390,8 @@ def bad_colour(subject: Subject) -> Iterator[Problem]:
     "MB131",
     "undefined-material",
     WARNING,
-    what="A visual names a material that neither the robot nor an earlier visual defines.",
+    what="A visual names a material that neither the robot nor an earlier visual defines, or a "
+    "material of the robot has neither colour nor texture.",
     why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
     "viewers and Gazebo draw it in their default colour.",
     fix="Define it once as a child of <robot>, with a <color> or <texture>.",
@@ -402,7 +403,12 @@ def bad_colour(subject: Subject) -> Iterator[Problem]:
 def undefined_material(subject: Subject) -> Iterator[Problem]:
     """In the order of urdfdom: the robot's own materials first, then those of visuals."""
     root = subject.document.root
-    defined = {it.get("name") for it in _found(_MATERIALS, root)}
+    tops = _found(_MATERIALS, root)
+    for material in tops:
+        if not _defines(material) and not _misspelled(subject, material):
+            name = material.get("name", "")
+            yield Problem(material, f"material {name!r} has neither colour nor texture", "name")
+    defined = {it.get("name") for it in tops}
     for look in _found(_LOOKS, root):
         name = look.get("name", "")
         if name in defined or not name:
@@ -419,34 +425,17 @@ def _found(path: etree.XPath, root: etree._Element) -> list[etree._Element]:
     return path(root)  # type: ignore[return-value]
 
 
+def _misspelled(subject: Subject, material: etree._Element) -> bool:
+    """Does another rule say that what it has is wrongly written?"""
+    return any(material in (it.element, it.element.getparent()) for it in subject.faults)
+
+
 def _defines(material: etree._Element) -> bool:
     return any(it.get("rgba") or it.get("filename") for it in material.iterchildren("*"))
 
 
 @rule(
     "MB132",
-    "material-twice",
-    ERROR,
-    what="Two materials below <robot> have one name.",
-    why="urdfdom refuses the file: \"material 'm' is not unique\".",
-    fix="Delete one, or give it another name.",
-    bad='<material name="m"><color rgba="1 0 0 1"/></material>'
-    '<material name="m"><color rgba="1 0 0 1"/></material><link name="a"/>',
-    good='<material name="m"><color rgba="1 0 0 1"/></material>'
-    '<material name="n"><color rgba="1 0 0 1"/></material><link name="a"/>',
-)
-def material_twice(subject: Subject) -> Iterator[Problem]:
-    """Every one but the first of its name."""
-    seen: set[str] = set()
-    for material in _found(_MATERIALS, subject.document.root):
-        name = material.get("name")
-        if name in seen:
-            yield Problem(material, f"material {name!r} is defined twice below <robot>", "name")
-        seen |= {name} if name is not None else set()
-
-
-@rule(
-    "MB133",
     "material-differs",
     WARNING,
     what="A visual defines a material that is there already under that name, and differently.",
