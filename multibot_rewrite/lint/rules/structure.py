@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from math import hypot, pi
 
 from lxml.etree import _Element
@@ -653,18 +653,9 @@ def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
 )
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
     """Each circle, at its first mimic."""
-    leader = _leaders(subject.robot)
-    done: set[str] = set()
-    for start in leader:
-        way: dict[str, None] = {}
-        name = start
-        while name in leader and name not in done:
-            done.add(name)
-            way[name] = None
-            name = leader[name]
-        if name in way and leader[name] != name:
-            circle = list(way)[list(way).index(name) :]
-            mimic = subject.robot.joint[name].parts["mimic"]
+    for circle in _circles(_leaders(subject.robot)):
+        if len(circle) > 1:
+            mimic = subject.robot.joint[circle[0]].parts["mimic"]
             yield Problem(mimic, f"joints mimic each other in a circle: {_few(circle)}", "joint")
 
 
@@ -686,13 +677,13 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
     """Mimics of mimics; a circle has its own rule."""
     leader = _leaders(subject.robot)
-    for name, follows in leader.items():
-        end = leader.get(follows)
-        if end is None or end in (name, follows) or name == follows:
-            continue
-        late = "; robot_state_publisher is too early for it" if name < follows else ""
-        message = f"joint {name!r} mimics {follows!r}, which mimics {end!r}{late}"
-        yield Problem(subject.robot.joint[name].parts["mimic"], message, "joint")
+    chained = {name: follows for name, follows in leader.items() if follows in leader}
+    round_ = {name for circle in _circles(chained) for name in circle}
+    for name, follows in chained.items():
+        if name not in round_:
+            late = "; robot_state_publisher is too early for it" if name < follows else ""
+            message = f"joint {name!r} mimics {follows!r}, which mimics {leader[follows]!r}{late}"
+            yield Problem(subject.robot.joint[name].parts["mimic"], message, "joint")
 
 
 @rule(
@@ -874,6 +865,22 @@ def _leaders(robot: Robot) -> dict[str, str]:
         for joint, mimic in _with(robot, "mimic")
         if robot.joint[joint.name] is joint
     }
+
+
+def _circles(leader: Mapping[str, str]) -> list[list[str]]:
+    """The names that follow each other round and round."""
+    done: set[str] = set()
+    found = []
+    for start in leader:
+        way: dict[str, None] = {}
+        name = start
+        while name in leader and name not in done:
+            done.add(name)
+            way[name] = None
+            name = leader[name]
+        if name in way:
+            found.append(list(way)[list(way).index(name) :])
+    return found
 
 
 Range = tuple[float, float]
