@@ -298,13 +298,18 @@ def test_the_gitlab_job_runs(
     assert serious == ["urdf/rover.urdf"] * code
 
 
+@pytest.fixture(scope="session")
+def workspace_tmp(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("workspace")
+
+
 @pytest.mark.deep
 @pytest.mark.parametrize(("document", "failures"), [(GOOD, 0), (BAD, 1)], ids=["good", "bad"])
 def test_the_jenkins_pipeline_runs(
-    document: str, failures: int, clone: Path, venv: Path, tmp_path: Path
+    document: str, failures: int, clone: Path, venv: Path, workspace_tmp: Path, tmp_path: Path
 ) -> None:
     here = repository(tmp_path / "r", document)
-    env = job_env(clone, venv, WORKSPACE_TMP=str(tmp_path))
+    env = job_env(clone, venv, WORKSPACE_TMP=str(workspace_tmp))
     steps = re.findall(r"\bsh '(.*)'", JENKINS)
     assert len(steps) == 2
     for step in steps:
