@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import lru_cache
 from math import acos, cos, hypot, pi, sqrt
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.numbers import number, vector
+from multibot_rewrite.lint.numbers import Vector, number, vector
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.robot import MOMENTS, WORLD, Inertial, Link, Robot, reached
 from multibot_rewrite.model import ERROR, WARNING
@@ -374,7 +375,7 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
 )
 def shape_size(subject: Subject) -> Iterator[Problem]:
     """Shapes that are not there."""
-    for shape, sizes in _shapes(subject.document.root, *SHAPES):
+    for shape, sizes in _shapes(subject.document.root):
         if min(sizes) <= 0:
             words = " x ".join(f"{it:g}" for it in sizes)
             message = f"{shape.tag} of link {_owner(shape)!r} has the size {words}"
@@ -393,7 +394,7 @@ def shape_size(subject: Subject) -> Iterator[Problem]:
 )
 def shape_units(subject: Subject) -> Iterator[Problem]:
     """Shapes of more than fifty metres every way; a long and thin one may be a rail."""
-    for shape, sizes in _shapes(subject.document.root, *SHAPES):
+    for shape, sizes in _shapes(subject.document.root):
         if min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
             words = " x ".join(f"{it:g}" for it in sizes)
             message = f"{shape.tag} of link {_owner(shape)!r} has the size {words} m"
@@ -529,10 +530,7 @@ def _parts(robot: Robot) -> dict[str, int]:
     return count
 
 
-Moments = tuple[float, float, float]
-
-
-def _impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Moments]]:
+def _impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Vector]]:
     """The inertias that no body has and their principal moments, the smallest first.
 
     ``merged`` are those of links that are merged with others that have a mass, or with nothing
@@ -560,18 +558,18 @@ def _is_plain(moments: tuple[float, ...]) -> bool:
     return min(xx, yy, zz) >= off and max(xx, yy, zz) + off <= (xx + yy + zz) / 2
 
 
-def _is_negative(moments: Moments) -> bool:
+def _is_negative(moments: Vector) -> bool:
     return moments[0] < -1e-6 * abs(moments[2])
 
 
-def _fault(moments: Moments) -> str:
+def _fault(moments: Vector) -> str:
     low, middle, high = moments
     if _is_negative(moments):
         return f"is not positive definite: a principal moment is {low:.3g}"
     return f"is impossible: the principal moment {high:.3g} is larger than {low:.3g} + {middle:.3g}"
 
 
-def _eigenvalues(moments: tuple[float, ...]) -> Moments:
+def _eigenvalues(moments: tuple[float, ...]) -> Vector:
     """Those of a symmetric 3x3 matrix, in order."""
     size = max(map(abs, moments))
     xx, xy, xz, yy, yz, zz = (it / size for it in moments)
@@ -600,16 +598,18 @@ def _bodies_with(robot: Robot, root: _Element, tag: str) -> dict[str, None]:
     return found
 
 
-def _shapes(root: _Element, *tags: str) -> Iterator[tuple[_Element, list[float]]]:
-    """The shapes of a URDF's links whose sizes are numbers."""
-    if root.tag != "robot":
-        return
-    for shape in root.iter(*tags):
+@lru_cache(maxsize=1)  # several rules look at the same ones
+def _shapes(root: _Element) -> list[tuple[_Element, list[float]]]:
+    """The boxes, cylinders and spheres of a URDF whose sizes are numbers, and those."""
+    read = ((it, _sizes(it)) for it in _geometries(root, *SHAPES))
+    return [(shape, sizes) for shape, sizes in read if sizes]
+
+
+def _geometries(root: _Element, *tags: str) -> Iterator[_Element]:
+    for shape in root.iter(*tags) if root.tag == "robot" else ():
         parent = shape.getparent()
         if parent is not None and parent.tag == "geometry":
-            sizes = _sizes(shape)
-            if sizes:
-                yield shape, sizes
+            yield shape
 
 
 def _sizes(shape: _Element) -> list[float]:
@@ -620,12 +620,11 @@ def _sizes(shape: _Element) -> list[float]:
     return sizes if len(sizes) == len(read) else []
 
 
-def _scales(root: _Element) -> Iterator[tuple[_Element, tuple[float, float, float]]]:
-    for mesh in root.iter("mesh") if root.tag == "robot" else ():
-        text = mesh.get("scale")
-        scale = vector(text) if text else None
-        if scale is not None:
-            yield mesh, scale
+@lru_cache(maxsize=1)
+def _scales(root: _Element) -> list[tuple[_Element, Vector]]:
+    """The meshes of a URDF that are scaled, and how."""
+    read = ((it, vector(it.get("scale"))) for it in _geometries(root, "mesh"))
+    return [(mesh, scale) for mesh, scale in read if scale is not None]
 
 
 def _owner(shape: _Element) -> str:
