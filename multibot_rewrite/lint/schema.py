@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from math import isfinite
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from lxml import etree
 
@@ -41,10 +41,12 @@ _COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _INFINITE = re.compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 _UNITS = re.compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
-_TEXTS = etree.XPath(
-    "/robot[text()[normalize-space()]] | /robot/*[self::link or self::joint or self::material]"
-    "/descendant-or-self::*[text()[normalize-space()]]"
+# The parts of a robot that hold text somewhere, which is quickly asked, and where.
+_TOPS = etree.XPath(
+    "/robot[text()[normalize-space()]] | /robot/link[normalize-space()]"
+    " | /robot/joint[normalize-space()] | /robot/material[normalize-space()]"
 )
+_TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
 # A number with a line end or tab right behind it.
 _BROKEN = (
     re.compile(rb"\n(?<=[\d.]\n)"),
@@ -52,7 +54,7 @@ _BROKEN = (
     re.compile(rb"\r(?<=[\d.]\r)"),
 )
 _ASSIGNED = re.compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
-# joint types whose axis urdfdom does not read
+# Joints of these types have no axis that urdfdom reads.
 _AXIS_FREE = ("fixed", "floating")
 
 
@@ -98,32 +100,55 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
     root = document.root
     if root.tag != ROBOT:
         return ()
-    faults = [*_texts(root), *_broken(document)]
-    fine: set[tuple[str, str]] = set()
+    faults = [*_texts(root), *_broken(document), *_attributes(root, schema()[ROBOT])]
+    # Elements and values without a fault: most come again and again.
+    fine: set[object] = set()
+    must_have_a_child = _parents()
     todo = [(root, ROBOT)]
-    while todo:
-        element, name = todo.pop()
-        keys: tuple[str, ...] = tuple(element.keys())  # type: ignore[arg-type]
-        typed = _typed(name, keys)
-        if typed is None:
-            faults += _attributes(element, schema()[name])
-            typed = _known(name, keys)
-        for attribute, kind in typed:
-            value = element.get(attribute, "")
-            if (kind, value) in fine:
-                continue
-            if len(value) < _LONG and kind in _FINE and _FINE[kind].fullmatch(value):
-                fine.add((kind, value))
-            else:
-                faults += _value(element, schema()[name].attributes[attribute], attribute, value)
-        children = list(element)
+    for parent, name in todo:
+        children = list(parent)
         tags = tuple([child.tag for child in children])
         below = _below(name, tags) if len(tags) < _FEW else _below.__wrapped__(name, tags)
         if below is None:
-            faults += _children(element, schema()[name])
+            faults += _children(parent, schema()[name])
             below = _sections(name, tags)
-        todo += [it for it in zip(children, below, strict=True) if it[1]]
+        for element, section in zip(children, below, strict=True):
+            if not section:
+                continue
+            known = (section, *element.items())
+            if known not in fine:
+                if _is_fine(known, fine):
+                    fine.add(known)
+                else:
+                    faults += _attributes(element, schema()[section])
+            if len(element) or section in must_have_a_child:
+                todo.append((element, section))
     return tuple(faults)
+
+
+def _is_fine(known: tuple[Any, ...], fine: set[object]) -> bool:
+    """Is nothing wrong with a section's attributes, as far as one look tells?"""
+    name, *items = known
+    typed = _typed(name, tuple([key for key, _ in items]))
+    if typed is None:
+        return False
+    for at, kind in typed:
+        value = items[at][1]
+        if (kind, value) not in fine:
+            if len(value) > _LONG or kind not in _FINE or not _FINE[kind].fullmatch(value):
+                return False
+            fine.add((kind, value))
+    return True
+
+
+def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
+    """All that is wrong with an element's attributes."""
+    keys = [str(key) for key in element.attrib]
+    yield from _strange_attributes(element, section, keys)
+    for key in keys:
+        kind = section.attributes.get(key)
+        if kind is not None and kind.type:
+            yield from _value(element, kind, key, element.get(key, ""))
 
 
 # ------------------------------------------------------------------ the schema
@@ -168,6 +193,15 @@ def _tags() -> frozenset[str]:
     return frozenset(tag for section in schema().values() for tag in section.children)
 
 
+@lru_cache
+def _parents() -> frozenset[str]:
+    """The sections that must have a child."""
+    known = schema().items()
+    return frozenset(
+        name for name, it in known if any(c.times == "required" for c in it.children.values())
+    )
+
+
 def _is_own(name: object) -> bool:
     """Is it URDF's own name: no comment, no name of another program's namespace?"""
     return isinstance(name, str) and "{" not in name and ":" not in name
@@ -177,37 +211,32 @@ def _is_own(name: object) -> bool:
 
 
 @lru_cache(maxsize=2048)
-def _typed(name: str, keys: tuple[str, ...]) -> tuple[tuple[str, str], ...] | None:
-    """The attributes whose values have a type, and it; None where something is strange or missing."""
-    section = schema()[name]
-    known = section.attributes
+def _typed(name: str, keys: tuple[str, ...]) -> tuple[tuple[int, str], ...] | None:
+    """Which attributes have a type, and it; None where one of them is strange or missing."""
+    known = schema()[name].attributes
     if any(key not in known and key != "name" and _is_own(key) for key in keys):
         return None
     if any(kind.required and key not in keys for key, kind in known.items()):
         return None
-    return _known(name, keys)
-
-
-def _known(name: str, keys: tuple[str, ...]) -> tuple[tuple[str, str], ...]:
-    known = schema()[name].attributes
-    return tuple((key, known[key].type) for key in keys if key in known and known[key].type)
+    types = [known[key].type if key in known else "" for key in keys]
+    return tuple((at, kind) for at, kind in enumerate(types) if kind)
 
 
 @lru_cache(maxsize=2048)
 def _below(name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
     """The sections of children, empty for those left alone; None where the children have a fault."""
     known = schema()[name].children
-    count = Counter(filter(_is_own, tags))
+    count = {tag: times for tag, times in Counter(tags).items() if _is_own(tag)}
     if any(tag not in known for tag in count):
         return None
-    for tag, child in known.items():
-        if child.times == "required" and tag not in count:
-            return None
-        if child.times in ("required", "once") and count[tag] > 1:
-            return None
-    if sum(times for tag, times in count.items() if known[tag].times == "either") > 1:
+    if any(child.times == "required" and tag not in count for tag, child in known.items()):
         return None
-    return _sections(name, tags)
+    single = [tag for tag in count if known[tag].times != "many"]
+    slots = {_slot(tag, known[tag]) for tag in single}
+    if len(slots) < sum(count[tag] for tag in single):
+        return None
+    sections = {tag: known[tag].section for tag in count}
+    return tuple([sections.get(tag, "") for tag in tags])
 
 
 def _sections(name: str, tags: tuple[str, ...]) -> tuple[str, ...]:
@@ -231,10 +260,11 @@ def _slot(tag: str, child: Child) -> str:
 # ------------------------------------------------------------------ what is wrong
 
 
-def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
+def _strange_attributes(
+    element: etree._Element, section: Section, keys: Sequence[str]
+) -> Iterator[Fault]:
     """Attributes that are missing, and those nobody reads."""
     known = section.attributes
-    keys = [str(key) for key in element.attrib]
     # A file of macros has neither a name nor links.
     empty = section.name == ROBOT and element.find("link") is None
     missing = [key for key in known if known[key].required and key not in keys and not empty]
@@ -335,6 +365,8 @@ def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> I
             message = f"{where}, not one of {', '.join(kind.choices)}"
             yield Fault("bad-choice", element, attribute, message, hint)
     elif kind.type == "version":
+        if _FINE["version"].fullmatch(value):
+            return
         message = f"{where}, urdfdom knows 1.0 alone"
         yield Fault(
             "bad-choice", element, attribute, message, 'write version="1.0", or leave it out'
@@ -356,19 +388,23 @@ def _wrong(value: str, kind: str) -> tuple[str, str, str]:
     """(kind of fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
     words = value.split()
     odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
-    wanted = _COUNTS[kind]
+    if not words:
+        return "not-a-number", ", which is no number", ""
     if odd is not None and not _INFINITE.fullmatch(odd):
         return "not-a-number", f": {odd!r} is no number" * (odd != value), _number_hint(value, odd)
     if odd is not None or not all(isfinite(float(word)) for word in words):
         return "not-finite", ", which is not finite", "write a large number, or leave it out"
-    if len(words) != wanted:
-        count = f"{len(words)} numbers" if len(words) != 1 else "1 number"
-        if not words:
-            return "not-a-number", ", which is no number", ""
+    return _miscounted(value, [float(word) for word in words], kind)
+
+
+def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, str, str]:
+    """The same for a value of nothing but numbers."""
+    wanted = _COUNTS[kind]
+    if len(numbers) != wanted:
+        count = f"{len(numbers)} numbers" if len(numbers) != 1 else "1 number"
         return "wrong-count", f": {count} of {wanted}", ""
-    if kind == "rgba" and not all(0 <= float(word) <= 1 for word in words):
-        large = any(float(word) > 1 for word in words)
-        return kind, ": outside of 0 to 1", "divide by 255" if large else ""
+    if kind == "rgba" and not all(0 <= it <= 1 for it in numbers):
+        return kind, ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
     if kind == "number" and value.endswith(" "):
         return "blank-behind-number", ", with a blank behind it", "delete the blank"
     return "", "", ""
@@ -390,8 +426,7 @@ def _number_hint(value: str, odd: str) -> str:
 
 def _texts(root: etree._Element) -> Iterator[Fault]:
     """Text where none belongs, a stray ``>`` mostly."""
-    found: list[etree._Element] = _TEXTS(root)  # type: ignore[assignment]
-    for element in found:
+    for element in (it for top in _found(_TOPS, root) for it in _texts_in(top)):
         section = section_of(element)
         if section is None or section.text:
             continue
@@ -401,6 +436,14 @@ def _texts(root: etree._Element) -> Iterator[Fault]:
         inside = "" if element.text and element.text.strip() else None
         message = f"text {said!r} in <{element.tag}>, where nobody reads it"
         yield Fault("stray-text", element, inside, message)
+
+
+def _texts_in(top: etree._Element) -> list[etree._Element]:
+    return [top] if top.tag == ROBOT else _found(_TEXTS, top)
+
+
+def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
+    return path(element)  # type: ignore[return-value]
 
 
 def section_of(element: etree._Element) -> Section | None:
