@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from fnmatch import fnmatch
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.pairing import find_pair
+from multibot_rewrite.lint.pairing import SRDF_MARK, find_pair
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import read_robot
 from multibot_rewrite.lint.schema import read_faults
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriting.collect import NOTHING, collect
 from multibot_rewrite.rewriting.collect import SRDF as SRDF_SECTION
-from multibot_rewrite.rewriting.collect import collect
 from multibot_rewrite.rewriting.document import Document, read_document
 from multibot_rewrite.xacro_source import expand_traced
 from multibot_rewrite.xacro_trace import Trace
 
+# Tells that the root is that of an SRDF, whatever stands in it.
+NO_URDF: Declared = {"link": {}}
 EXPANDED = " (expanded)"
 DEFAULT = ArgumentSet("*", ())
 MISSING = "Undefined substitution argument"
@@ -77,11 +81,12 @@ def _local(element: _Element) -> str:
 
 def _subject(document: Document, settings: Settings) -> Subject:
     tree = builtin_tree(settings.vocabulary)
-    inventory = collect(document, tree)
+    called = SRDF_MARK in os.path.basename(document.file)
+    inventory = collect(document, tree, NO_URDF if called else NOTHING)
     robot = read_robot(document.root)
     # The source of a xacro file has names that are not made yet.
     if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
         return Subject(URDF, document, inventory, tree, robot, settings)
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
-    inventory = collect(document, tree, pair.declared)
+    inventory = collect(document, tree, pair.declared or NO_URDF)
     return Subject(SRDF, document, inventory, tree, robot, settings, pair.robot)

@@ -110,7 +110,7 @@ def references(held: Held, shared: Collection[str]) -> References:
     inventory = held.inventory
     claims = doubtful(inventory)
     by_code = defaultdict(list)
-    if inventory.declared["link"] and not uses_xacro(inventory.document):
+    if not uses_xacro(inventory.document):
         ends = loose_ends(claims, inventory.declared, shared)
         loose = [it for it in ends if not _elsewhere(it, inventory)]
         for remark in remarks(loose, inventory.declared):
@@ -119,9 +119,11 @@ def references(held: Held, shared: Collection[str]) -> References:
 
 
 def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
-    """Is it declared after all: with the robot's own name as a scope, as Gazebo Classic takes it,
-    or by the PROTO of a Webots robot?"""
+    """Is it declared after all: outside of this part, with the robot's own name as a scope, as
+    Gazebo Classic takes it, or by the PROTO of a Webots robot?"""
     claim, part = loose
+    if not inventory.declared["link"] and part.kinds[0] != "group":
+        return True
     scope, _, name = part.text.rpartition("::")
     if scope and scope == inventory.document.root.get("name"):
         return any(name in inventory.declared.get(kind, ()) for kind in part.kinds)
