@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -127,14 +128,15 @@ def _scopes(root: _Element) -> list[Scope]:
     own = {it: given | frozenset(_prefixes(_parameters(it))) for it in macros}
     if not given and not any(own.values()):
         return []
-    properties = [it for it in root.iter("{*}property") if _is_xacro(it)]
+    makes = _makes(root)
+    carriers = {names: _carriers(names, makes) for names in {given, *own.values()}}
     scopes: dict[_Element | None, Scope] = {}
     for element in root.iter("link", "joint", *_REFERENCES):
         home = next((it for it in element.iterancestors("{*}macro") if _is_xacro(it)), None)
         scope = scopes.get(home)
         if scope is None:
-            carriers = _carriers(own[home] if home is not None else given, properties)
-            scope = scopes[home] = Scope(home, carriers, [], [])
+            names = given if home is None else own[home]
+            scope = scopes[home] = Scope(home, carriers[names], [], [])
         _sort_in(scope, element)
     return list(scopes.values())
 
@@ -178,14 +180,24 @@ def _stem(name: Written) -> str:
     return _HOLES.sub("", name.text)
 
 
-def _carriers(names: frozenset[str], properties: list[_Element]) -> frozenset[str]:
-    """These names, and the properties made from them; three steps are as far as anybody goes."""
-    found = set(names)
-    for _ in range(3):
-        for it in properties:
-            value = it.get("value", "")
-            if "$" in value and not found.isdisjoint(_holes(value)):
-                found.add(it.get("name", ""))
+def _makes(root: _Element) -> Mapping[str, list[str]]:
+    """For each name the properties whose values it is in."""
+    makes: defaultdict[str, list[str]] = defaultdict(list)
+    for it in root.iter("{*}property"):
+        value = it.get("value", "")
+        for word in set(_holes(value)) if "$" in value and _is_xacro(it) else ():
+            makes[word].append(it.get("name", ""))
+    makes.pop("$", None)
+    return makes
+
+
+def _carriers(names: frozenset[str], makes: Mapping[str, list[str]]) -> frozenset[str]:
+    """These names, and the properties made from them."""
+    found, waiting = set(names), list(names)
+    while waiting:
+        new = set(makes.get(waiting.pop(), ())) - found
+        found |= new
+        waiting += new
     return frozenset(found)
 
 
