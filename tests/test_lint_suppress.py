@@ -312,7 +312,7 @@ IN_XACRO = [
     (f"{MACRO.replace('<link', HERE + '<link')}<xacro:m/>", []),
     (f"{MACRO}{HERE}\n<xacro:m/>", []),
     (f"{MACRO}<xacro:m/> {HERE}", []),
-    (f"{MACRO}{HERE}\n<gazebo/><xacro:m/>", ["MB501:3", "MB002:5"]),
+    (f"{MACRO}{HERE}\n<gazebo/>\n<xacro:m/>", ["MB501:3", "MB002:5"]),
     (f"{MACRO}{HERE}\n<xacro:m/>\n<xacro:m/>", ["MB501:3"]),
 ]
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
@@ -17,6 +18,8 @@ from multibot_rewrite.model import UsageError
 
 FORMAT = "urdf-lint-baseline"
 VERSION = 1
+# Of a message that names another line of the file only that much stays.
+_LINE = re.compile(r"\bline \d+")
 FIELDS = {"code": str, "file": str, "message": str, "count": int}
 
 
@@ -112,7 +115,8 @@ def baseline_text(findings: Iterable[LintFinding], path: str) -> bytes:
 
 
 def _key(finding: LintFinding, path: str) -> Key:
-    return Key(finding.code, _relative(finding.file, path), finding.message)
+    message = _LINE.sub("line N", finding.message)
+    return Key(finding.code, _relative(finding.file, path), message)
 
 
 def _relative(file: str, path: str) -> str:

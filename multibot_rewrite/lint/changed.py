@@ -77,9 +77,8 @@ def _base(rev: str) -> str:
 
 
 def _git(where: Sequence[str], *words: str) -> bytes:
-    environ = {**os.environ, "GIT_OPTIONAL_LOCKS": "0"}
     try:
-        done = subprocess.run(["git", *where, *words], capture_output=True, check=True, env=environ)
+        done = subprocess.run(["git", *where, *words], capture_output=True, check=True)
     except OSError as error:
         raise UsageError(f"git cannot be run: {error.strerror}; install it") from None
     except subprocess.CalledProcessError as error:

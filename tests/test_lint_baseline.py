@@ -1,0 +1,192 @@
+"""Known findings: written, read, held against new ones; files that are no baseline."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import UsageError
+from multibot_rewrite.lint.baseline import FORMAT, Baseline, baseline_text, beyond, read_baseline
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.settings import Settings
+
+
+def finding(
+    code: str = "MB501", file: str = "a.urdf", message: str = "m", line: int = 1
+) -> LintFinding:
+    return LintFinding(code, "error", message, "hint", file, line, 1)
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+
+
+def kept(
+    known: list[LintFinding], found: list[LintFinding], path: str = "b.json"
+) -> tuple[int, int]:
+    """How many are new and how many gone after a way through the file."""
+    Path(path).write_bytes(baseline_text(known, path))
+    new, gone = beyond(found, read_baseline(path), path)
+    return len(new), gone
+
+
+A, B = finding(), finding("MB502")
+KEPT = [
+    ([], [], (0, 0)),
+    ([A], [A], (0, 0)),
+    ([A], [], (0, 1)),
+    ([], [A], (1, 0)),
+    ([A], [A._replace(line=900, column=7)], (0, 0)),
+    ([A], [A._replace(level="note", hint="", arguments="sim:=gz", calls=("c",))], (0, 0)),
+    ([A], [A._replace(message="other")], (1, 1)),
+    ([finding(message="m, first at line 3")], [finding(message="m, first at line 12")], (0, 0)),
+    ([finding(message="line_3 of 4")], [finding(message="line_4 of 4")], (1, 1)),
+    ([A], [A._replace(file="b.urdf")], (1, 1)),
+    ([A], [B], (1, 1)),
+    ([A], [A, A._replace(line=2)], (1, 0)),
+    ([A, A._replace(line=2)], [A], (0, 1)),
+    ([A, A, A], [], (0, 3)),
+    ([A, A, B], [A, A, A, B, B], (2, 0)),
+]
+
+
+@pytest.mark.parametrize(("known", "found", "wanted"), KEPT)
+def test_only_what_is_on_top_is_new(
+    known: list[LintFinding], found: list[LintFinding], wanted: tuple[int, int]
+) -> None:
+    assert kept(known, found) == wanted
+
+
+def test_of_many_alike_the_last_are_new() -> None:
+    lines = [finding(line=line) for line in (1, 2, 3)]
+    Path("b.json").write_bytes(baseline_text(lines[:2], "b.json"))
+    assert beyond(lines, read_baseline("b.json"), "b.json") == ([lines[2]], 0)
+
+
+FILES = [
+    ("b.json", "a.urdf", "a.urdf"),
+    ("ci/b.json", "robots/a.urdf", "../robots/a.urdf"),
+    ("ci/b.json", "./ci/a.urdf", "a.urdf"),
+    ("b.json", "robots/../a.urdf", "a.urdf"),
+    ("b.json", "a.xacro (expanded)", "a.xacro (expanded)"),
+    ("b.json", "grün 'a\".urdf", "grün 'a\".urdf"),
+]
+
+
+@pytest.mark.parametrize(("path", "file", "written"), FILES)
+def test_files_hang_on_the_folder_of_the_baseline(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, path: str, file: str, written: str
+) -> None:
+    """So it is the same from wherever the lint runs."""
+    for folder in ("ci", "robots"):
+        (tmp_path / folder).mkdir()
+    assert kept([finding(file=file)], [finding(file=str(tmp_path / file))], path) == (0, 0)
+    assert json.loads(Path(path).read_bytes())["findings"][0]["file"] == written
+    monkeypatch.chdir(tmp_path / "robots")
+    there = f"../{path}"
+    assert beyond([finding(file=f"../{file}")], read_baseline(there), there) == ([], 0)
+
+
+def test_the_file_is_sorted_a_line_each() -> None:
+    found = [B, finding(file="0.urdf", message="z"), A, A, finding(message="é\u2028\n\ud800")]
+    text = baseline_text(found, "b.json")
+    assert text == baseline_text(reversed(found), "b.json")
+    assert text.decode().split("\n")[:3] == [
+        "{",
+        '"urdf-lint-baseline": 1,',
+        '"findings": [',
+    ]
+    entries = json.loads(text)["findings"]
+    assert [(it["file"], it["code"], it["count"]) for it in entries] == [
+        ("0.urdf", "MB501", 1),
+        ("a.urdf", "MB501", 2),
+        ("a.urdf", "MB501", 1),
+        ("a.urdf", "MB502", 1),
+    ]
+    assert len([line for line in text.split(b"\n") if line.startswith(b"  {")]) == 4
+    fewer = baseline_text([it for it in found if it != B], "b.json").split(b"\n")
+    assert len(set(text.split(b"\n")) - set(fewer)) <= 2
+
+
+def test_an_empty_one_is_a_baseline() -> None:
+    assert kept([], []) == (0, 0)
+    assert read_baseline("b.json") == Baseline({})
+
+
+def test_of_files_that_were_not_linted_nothing_is_gone(tmp_path: Path) -> None:
+    known = [finding(file="a.urdf"), finding(file="b.urdf"), finding(file="deleted.urdf")]
+    for name in ("a.urdf", "b.urdf"):
+        (tmp_path / name).touch()
+    (tmp_path / "b.json").write_bytes(baseline_text(known, "b.json"))
+    baseline = read_baseline("b.json")
+    assert beyond([], baseline, "b.json") == ([], 3)
+    assert beyond([], baseline, "b.json", ["./a.urdf"]) == ([], 2)
+    assert beyond([], baseline, "b.json", []) == ([], 1)
+
+
+def test_lines_of_a_real_file_may_move(tmp_path: Path) -> None:
+    robot = tmp_path / "a.urdf"
+    text = '<robot name="r">\n<link name="a"/>\n<link name="b"/>\n<link name="b"/></robot>'
+    settings = Settings(select=("MB2", "MB5"))
+    robot.write_text(text)
+    before = lint_file(str(robot), settings)
+    assert before
+    robot.write_text(text.replace("<link", "\n\n  <link"))
+    after = lint_file("a.urdf", settings)
+    assert before != after
+    assert kept(before, after) == (0, 0)
+
+
+def entry(**other: object) -> str:
+    it = {"code": "MB501", "file": "a", "message": "m", "count": 1, **other}
+    return json.dumps({FORMAT: 1, "findings": [it]})
+
+
+BROKEN = [
+    ("", "Expecting value"),
+    ("{", "Expecting property name"),
+    ("[]", '"urdf-lint-baseline": 1 is not in it'),
+    ("{}", '"urdf-lint-baseline": 1 is not in it'),
+    ('{"urdf-lint-baseline": 2, "findings": []}', "1 is not in it"),
+    ('{"urdf-lint-baseline": 1}', '"findings" is no list'),
+    ('{"urdf-lint-baseline": 1, "findings": {}}', '"findings" is no list'),
+    ('{"urdf-lint-baseline": 1, "findings": [1]}', "finding 1 does not have just code, file"),
+    (entry(line=3), "finding 1 does not have just"),
+    (entry(code=501), "'code' of finding 1 is 501"),
+    (entry(count=True), "'count' of finding 1 is True"),
+    (entry(count=0), "'count' of finding 1 is 0"),
+    (entry(count=1.5), "'count' of finding 1 is 1.5"),
+    (entry(message=None), "'message' of finding 1 is None"),
+    ("[" * 100000, "recursion"),
+    ('{"a": ' + "1" * 5000 + "}", "digits"),
+    (b"\xff\xfe\xfa", "decode"),
+    (b"{\xff", "decode"),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), BROKEN)
+def test_what_is_no_baseline_is_one_line(text: str | bytes, words: str) -> None:
+    Path("b.json").write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(UsageError) as caught:
+        read_baseline("b.json")
+    message = str(caught.value)
+    assert message.startswith("b.json: it is no baseline of urdf-lint: ")
+    assert message.endswith("; write one with --write-baseline b.json")
+    assert words in message
+    assert "\n" not in message
+
+
+@pytest.mark.parametrize(("path", "words"), [("none.json", "No such file"), (".", "directory")])
+def test_a_baseline_that_is_not_there_is_one_line(path: str, words: str) -> None:
+    with pytest.raises(UsageError, match=f"{path}: cannot be read: .*{words}"):
+        read_baseline(path)
+
+
+def test_entries_that_a_merge_left_twice_add_up() -> None:
+    one = json.loads(entry())["findings"][0]
+    Path("b.json").write_text(json.dumps({FORMAT: 1, "findings": [one, one]}))
+    assert list(read_baseline("b.json").counts.values()) == [2]
