@@ -240,6 +240,15 @@ def test_a_rule_without_its_settings_is_not_asked(
     assert told(linted(tmp_path, text, robots=("r1",))) == ["MB002:2"]
 
 
+def test_a_rule_that_asks_for_other_files_is_not_judged(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    text = robot(f"{HERE}\n<gazebo/>")
+    assert told(linted(tmp_path, text)) == ["MB002:2"]
+    monkeypatch.setitem(RULES, "MB501", RULES["MB501"]._replace(beside={"m.stl": ""}))
+    assert linted(tmp_path, text) == []
+
+
 def test_a_file_that_was_not_looked_at_to_its_end_is_not_judged() -> None:
     source = {"f": f'<robot name="r">\n{HERE}\n<link name="base"/></robot>'.encode()}
     settings = Settings(select=ON)

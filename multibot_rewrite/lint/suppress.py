@@ -148,9 +148,10 @@ def _unused(
 
 
 def _is_asked(code: str, file: str, settings: Settings) -> bool:
-    """Is a rule on, in that file and with the settings that it hangs on?"""
-    given = all(getattr(settings, option, True) for option in RULES[code].options)
-    return given and is_on(settings, code) and not is_silent(settings, file, code)
+    """Is a rule on, in that file, with the settings that it hangs on and without other files?"""
+    rule = RULES[code]
+    alone = not rule.beside and all(getattr(settings, it, True) for it in rule.options)
+    return alone and is_on(settings, code) and not is_silent(settings, file, code)
 
 
 def _removals(comment: Comment, idle: Sequence[Code]) -> Iterator[tuple[Edit, ...]]:
@@ -172,10 +173,8 @@ def _removal(comment: Comment) -> tuple[Edit, ...]:
     source, it = comment.source, comment.it
     start = len(source[: it.start].rstrip())
     end = len(source) - len(source[it.end :].lstrip())
-    if source[max(start - 1, 0) : start] not in (b">", b"") or source[end : end + 1] not in (
-        b"<",
-        b"",
-    ):
+    around = source[max(start - 1, 0) : start], source[end : end + 1]
+    if around[0] not in (b">", b"") or around[1] not in (b"<", b""):
         return ()
     first, last = it.lines
     if not source[first : it.start].strip() and not source[it.end : last].strip():
