@@ -196,6 +196,17 @@ def test_the_robot_as_a_whole(body: str, expected: str, tmp_path: Path) -> None:
     assert told(found(body, tmp_path, WHOLE)) == expected
 
 
+@pytest.mark.parametrize(("version", "expected"), [("1.0", "MB615:1"), ("1.2", "")])
+def test_a_capsule_is_known_from_version_1_1_on(
+    version: str, expected: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "robot.urdf"
+    shape = '<capsule radius="1" length="1"/>'
+    link = f'<link name="a"><visual><geometry>{shape}</geometry></visual></link>'
+    file.write_text(f'<robot name="r" version="{version}">{link}</robot>')
+    assert told(lint_file(str(file), GROUP)) == expected
+
+
 def test_how_much_gazebo_leaves_out_is_told(tmp_path: Path) -> None:
     (finding,) = found(robot(GOOD, MOVES, "", MOVES, GOOD, HOLDS, GOOD), tmp_path)
     assert finding.message.endswith("Gazebo leaves it out, with 2 links below it")

@@ -24,6 +24,8 @@ LONG, SHORT, HEAVY, LIGHT = 5.0, 1e-4, 500.0, 0.01
 LARGER, SMALLER, SMALL_SHAPE = 50.0, 0.01, 0.01
 LONG_SHAPE = 50.0
 LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0
+# What urdfdom takes without a <capsule>; it reads one from version 1.1 on.
+OLD_VERSIONS = ("1.0", "1")
 SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
 
 INERTIA = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>'
@@ -158,8 +160,8 @@ def inertia_missing(subject: Subject) -> Iterator[Problem]:
     "inertia-zero",
     WARNING,
     what="The inertia of a link that moves on its own is 0.",
-    why="The least torque turns it without bounds: physics engines become unstable, and MuJoCo "
-    "refuses the file ('mass and inertia of moving bodies must be larger than mjMINVAL').",
+    why="MuJoCo refuses the file ('mass and inertia of moving bodies must be larger than mjMINVAL'); "
+    "sdformat lets it through to the physics engine, which has nothing to divide a torque by.",
     fix="Write the inertia of a box or a cylinder of that mass and size.",
     bad=_moving(_inertial(inertia=_diagonal("0", "0", "0"))),
     good=_moving(_inertial()),
@@ -342,7 +344,8 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     "mass-tiny",
     NOTE,
     what="A link that moves on its own weighs less than a milligram.",
-    why="Solvers lose their accuracy where such a link carries or drives others of kilograms.",
+    why="Iterative solvers need many more steps where such a link carries or drives kilograms; MuJoCo "
+    "refuses a body below 1e-15 kg.",
     fix="Write the real mass, or make the joint fixed.",
     bad=_moving(_inertial("1e-8")),
     good=_moving(_inertial("0.01")),
@@ -367,8 +370,8 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
     "shape-size",
     WARNING,
     what="A box, cylinder or sphere has a size of 0 or below.",
-    why="sdformat takes its default instead, a box of one metre; MuJoCo refuses the file ('size "
-    "must be positive').",
+    why="sdformat warns and takes its default instead, half a metre or a metre; MuJoCo refuses the "
+    "file ('size must be positive').",
     fix="Write the size in metres; delete a shape that is not there.",
     bad=_visual('<box size="0 0 0"/>'),
     good=_visual('<box size="0.1 0.1 0.1"/>'),
@@ -414,9 +417,12 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
 )
 def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
-    if subject.document.root.tag != "robot":
+    root = subject.document.root
+    if root.tag != "robot":
         return
-    for element in subject.document.root.iter("visual", "collision"):
+    later = () if root.get("version", "1.0") in OLD_VERSIONS else ("capsule",)
+    known = {*SHAPES, "mesh", *later}
+    for element in root.iter("visual", "collision"):
         parent = element.getparent()
         if parent is None or parent.tag != "link":
             continue
@@ -426,8 +432,9 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
             lack = "<geometry>" if geometry is None else "shape in its <geometry>"
             message = f"<{element.tag}> of link {parent.get('name')!r} has no {lack}"
             yield Problem(element, message)
-        elif shape.tag not in SHAPES and shape.tag != "mesh":
-            message = f"<{element.tag}> of link {parent.get('name')!r}: unknown shape <{shape.tag}>"
+        elif shape.tag not in known:
+            tag = str(shape.tag).rpartition("}")[2]
+            message = f"<{element.tag}> of link {parent.get('name')!r}: unknown shape <{tag}>"
             yield Problem(shape, message)
 
 
@@ -454,8 +461,8 @@ def mesh_flat(subject: Subject) -> Iterator[Problem]:
     "mesh-mirrored",
     NOTE,
     what="A mesh is scaled by a negative number.",
-    why="It is a mirror image with its faces inside out: renderers that leave out back faces show "
-    "its inside, and some physics engines and converters refuse it.",
+    why="A mirror image turns the faces inside out: their normals point into the part, unless the "
+    "reader turns them back.",
     fix="Export the mirrored mesh, where that matters.",
     bad=_visual('<mesh filename="a.stl" scale="1 -1 1"/>'),
     good=_visual('<mesh filename="a.stl" scale="1 1 1"/>'),
@@ -566,7 +573,8 @@ def _fault(moments: Vector) -> str:
     low, middle, high = moments
     if _is_negative(moments):
         return f"is not positive definite: a principal moment is {low:.3g}"
-    return f"is impossible: the principal moment {high:.3g} is larger than {low:.3g} + {middle:.3g}"
+    small = " + ".join(f"{it if it > 1e-9 * high else 0:.3g}" for it in (low, middle))
+    return f"is impossible: the principal moment {high:.3g} is larger than {small}"
 
 
 def _eigenvalues(moments: tuple[float, ...]) -> Vector:

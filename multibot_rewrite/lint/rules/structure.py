@@ -329,7 +329,7 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
 @rule(
     "MB512",
     "limits-zero-range",
-    WARNING,
+    NOTE,
     what="A joint's limits leave it no way to go.",
     why="robot_state_publisher still waits for its position in joint_states and sends no transform "
     "without; MuJoCo takes equal limits for none and lets the joint go round.",
@@ -339,7 +339,7 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
     good=_pair("revolute", LIMIT),
 )
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
-    """Limits that are equal."""
+    """Limits that are equal: a slip of an exporter, or a frame that Gazebo shall not merge."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         if lower == upper:
             message = (
@@ -376,7 +376,8 @@ def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     WARNING,
     what="The greatest effort or velocity of a joint is below 0.",
     why="pinocchio refuses the file ('Some components of min_effort are greater than max_effort'), "
-    "SDF takes a negative effort for no limit, ros2_control and MoveIt leave out the sign.",
+    "sdformat documents a negative effort as not enforced, ros2_control and MoveIt drop the sign of a "
+    "velocity.",
     fix="Write the greatest absolute value.",
     bad=_pair("revolute", '<limit lower="-1" upper="1" effort="-5" velocity="1"/>'),
     good=_pair("revolute", LIMIT),
@@ -545,7 +546,7 @@ def _not_unit(robot: Robot, types: tuple[str, ...]) -> Iterator[Problem]:
     "fixed-joint-ignores",
     NOTE,
     what="A fixed joint has a limit, a mimic or a safety controller.",
-    why="urdfdom reads them and nobody uses them.",
+    why="urdfdom reads them, and a joint that cannot move has no use for them.",
     fix="Delete them, or give the joint the type that was meant.",
     bad=_pair("fixed", LIMIT),
     good=_pair("fixed"),
@@ -627,7 +628,7 @@ def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     "mimic-of-itself",
     ERROR,
     what="A joint mimics itself.",
-    why="sdformat refuses the joint ('cannot mimic itself'), MoveIt ignores every mimic of the "
+    why="Current sdformat refuses the joint ('cannot mimic itself'), MoveIt ignores every mimic of the "
     "robot, joint_state_publisher ends ('Found an infinite recursive mimic chain').",
     fix="Name the joint that it follows.",
     bad=_second('<mimic joint="k"/>'),
