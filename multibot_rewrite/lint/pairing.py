@@ -25,6 +25,8 @@ NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
 ENDINGS = ("*.urdf", "*.xacro")
 # So many files are looked into, and so many descriptions are read.
 MOST, TRIED = 200, 6
+# How many of an SRDF's names its URDF may lack: one of so many, or so many of a few.
+PART, SLIPS = 4, 2
 SRDF_MARK = ".srdf"
 
 
@@ -62,7 +64,7 @@ def robot_name(path: str) -> str:
 def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
     """The description that an SRDF belongs to, the one that has most of its names.
 
-    One that lacks more than half of them is that of another robot.
+    One that lacks more than a few of them is that of another robot or another variant.
     """
     if settings.urdf:
         return _read(settings.urdf, srdf, settings)
@@ -77,7 +79,9 @@ def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
             best = found
         if not found.misses:
             break
-    return best if best.misses * 2 <= len(_names(srdf)) else NOBODY
+    names = len(_names(srdf))
+    fits = best.misses * PART <= names or (best.misses <= SLIPS and best.misses < names)
+    return best if fits else NOBODY
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:

@@ -36,7 +36,7 @@ _OTHER = "MB220"
 # Only SDF has scopes.
 _SCOPE = "MB219"
 # Looking for what was meant costs: so many names, among so many.
-HINTED, COMPARED = 20, 2000
+HINTED, COMPARED = 10, 2000
 
 
 class Loose(NamedTuple):

@@ -547,7 +547,7 @@ def _one_slip(words: list[str], others: list[str]) -> bool:
     if len(pairs) != 1:
         return False
     one, two = pairs[0]
-    if not (one.isalpha() and two.isalpha()) or min(len(one), len(two)) < 4:
+    if not (one.isalpha() and two.isalpha()) or max(len(one), len(two)) < 4:
         return False
     while one and two and one[0] == two[0]:
         one, two = one[1:], two[1:]

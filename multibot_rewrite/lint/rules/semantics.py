@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from math import isfinite
 
@@ -62,7 +63,8 @@ APART = '<disable_collisions link1="a" link2="b" reason="Adjacent"/>'
     "MB801",
     "srdf-without-urdf",
     NOTE,
-    what="No URDF was found for the SRDF, so its links and joints could not be checked.",
+    what="No URDF was found that has the SRDF's robot name and most of its links and joints, so "
+    "they could not be checked.",
     why="An SRDF says nothing by itself; MoveIt leaves out all that its URDF does not have.",
     fix="Lint the URDF with it (the robot's name tells which), or give it with --urdf.",
     formats=(SRDF,),
@@ -74,7 +76,7 @@ def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
     """One finding a file."""
     root = subject.document.root
     if subject.beside is None:
-        message = f"no URDF of a robot {root.get('name', '')!r} was found"
+        message = f"no URDF of a robot {root.get('name', '')!r} with its links was found"
         yield Problem(root, message, "name", "give it with --urdf")
 
 
@@ -185,8 +187,18 @@ def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
     good=ARM + APART,
 )
 def stale_pair(subject: Subject) -> Iterator[Problem]:
-    """Both links of a pair."""
-    return undeclared(subject, "MB807")
+    """One finding a name, at its first pair."""
+    found = list(undeclared(subject, "MB807"))
+    names = Counter(_link(it) for it in found)
+    for it in found:
+        more = names.pop(_link(it), 0) - 1
+        if more >= 0:
+            told = f"; {more} more pairs name it" if more else ""
+            yield it._replace(message=it.message + told)
+
+
+def _link(problem: Problem) -> str:
+    return text_of(problem.element, problem.attribute or "")
 
 
 @rule(
@@ -217,23 +229,27 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     "MB809",
     "duplicate-pair",
     NOTE,
-    what="A pair of links is disabled twice.",
-    why="It changes nothing; a copy may have been meant for other links.",
-    fix="Delete one of the lines.",
+    what="Pairs of links are disabled twice.",
+    why="The second line changes nothing; a copy may have been meant for other links.",
+    fix="Delete the second line.",
     formats=(SRDF,),
     beside=BESIDE,
     bad=APART + '<disable_collisions link1="b" link2="a" reason="Never"/>',
     good=APART,
 )
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
-    """In this order or the other."""
-    seen = set()
+    """One finding a file; the order of the two does not matter."""
+    first: dict[frozenset[str], _Element] = {}
+    found = []
     for it in subject.document.root.iterchildren("disable_collisions"):
-        one, two = text_of(it, "link1"), text_of(it, "link2")
-        pair = frozenset((one, two))
-        if pair in seen:
-            yield Problem(it, f"{one!r} and {two!r} are disabled before", None, "delete the line")
-        seen.add(pair)
+        pair = frozenset((text_of(it, "link1"), text_of(it, "link2")))
+        if first.setdefault(pair, it) is not it:
+            found.append(it)
+    if found:
+        names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found[:SHOWN]]
+        more = ", ..." if len(found) > SHOWN else ""
+        message = f"{len(found)} pairs are disabled before: {', '.join(names)}{more}"
+        yield Problem(found[0], message, None, "delete the line")
 
 
 @rule(

@@ -1,0 +1,217 @@
+"""MB2: what is found, where, and what is no fault."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.settings import Settings
+
+LINKS = '<link name="base_link"/><link name="arm_link"/><link name="tip"/>'
+JOINT = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/>{}</joint>'
+SHOULDER = JOINT.format("shoulder", "revolute", "base_link", "arm_link", "")
+ROBOT = LINKS + SHOULDER + JOINT.format("wrist", "revolute", "arm_link", "tip", "")
+FIXED = LINKS + SHOULDER + JOINT.format("wrist", "fixed", "arm_link", "tip", "")
+FOLLOWS = '<mimic joint="shoulder"/>'
+MIMIC = LINKS + SHOULDER + JOINT.format("wrist", "revolute", "arm_link", "tip", FOLLOWS)
+CONTROL = '<ros2_control name="s" type="system">{}</ros2_control>'
+BOTH = '<joint name="shoulder"/><joint name="wrist"/>'
+COMMAND = (
+    '<joint name="shoulder"/><joint name="wrist"{}><command_interface name="position"/></joint>'
+)
+BLOCK = '<gazebo reference="{}">{}</gazebo>'
+SENSOR = '<sensor name="{}" type="imu">{}</sensor>'
+PLUGIN = '<gazebo><plugin filename="lib{}.so" name="p">{}</plugin></gazebo>'
+P3D = "<ros/><body_name>tip</body_name><frame_name>{}</frame_name>"
+DRIVE = PLUGIN.format("gazebo_ros_diff_drive", "<ros/><left_joint>{}</left_joint>")
+
+
+def lint(folder: Path, body: str, codes: tuple[str, ...] = ("MB2",)) -> list[LintFinding]:
+    file = folder / "in.urdf"
+    file.write_text(body if body.startswith("<robot") else f'<robot name="r">{body}</robot>')
+    return lint_file(str(file), Settings(select=codes))
+
+
+def found(folder: Path, body: str) -> list[str]:
+    return [it.code for it in lint(folder, body)]
+
+
+@pytest.mark.parametrize(
+    ("body", "codes"),
+    [
+        (ROBOT, []),
+        # a name of the other kind is not there
+        (ROBOT + CONTROL.format(BOTH + '<joint name="tip"/>'), ["MB214"]),
+        (ROBOT + CONTROL.format(BOTH), []),
+        # a joint in two systems is no duplicate, in one it is
+        (
+            ROBOT + CONTROL.format(BOTH) + CONTROL.format(BOTH).replace('name="s"', 'name="t"'),
+            [],
+        ),
+        (ROBOT + CONTROL.format(BOTH + '<joint name="wrist"/>'), ["MB204"]),
+        (ROBOT + CONTROL.format(BOTH + '<gpio name="wrist"/>'), []),
+        (ROBOT + CONTROL.format(BOTH) * 2, ["MB205"]),
+        # a sensor's name counts in its link
+        (ROBOT + BLOCK.format("tip", SENSOR.format("s", "") * 2), ["MB206"]),
+        (ROBOT + BLOCK.format("tip", SENSOR.format("s", "")) * 2, ["MB206"]),
+        (
+            ROBOT
+            + BLOCK.format("tip", SENSOR.format("s", ""))
+            + BLOCK.format("arm_link", SENSOR.format("s", "")),
+            [],
+        ),
+        # links may repeat a material
+        (ROBOT + '<material name="m"/>' * 2, ["MB207"]),
+        (
+            '<link name="a"><visual><material name="m"/></visual><visual><material name="m"/>'
+            "</visual></link>",
+            [],
+        ),
+        # a plugin of ROS 1 is no node
+        (ROBOT + PLUGIN.format("gazebo_ros_p3d", "<bodyName>tip</bodyName>") * 2, []),
+        (ROBOT + PLUGIN.format("gazebo_ros_p3d", P3D.format("world")) * 2, ["MB208"]),
+        (
+            ROBOT
+            + PLUGIN.format("gazebo_ros_p3d", P3D.format("world"))
+            + PLUGIN.format(
+                "gazebo_ros_p3d",
+                P3D.format("world").replace("<ros/>", "<ros><namespace>/b</namespace></ros>"),
+            ),
+            [],
+        ),
+        (
+            ROBOT + '<transmission name="t"><joint name="wrist"/></transmission>' * 2,
+            ["MB209", "MB228"],
+        ),
+        # the same value twice is no contradiction, two spellings of one property may be one
+        (ROBOT + BLOCK.format("tip", "<mu1>1</mu1>") * 2, []),
+        (
+            ROBOT
+            + BLOCK.format("tip", "<maxVel>1</maxVel>")
+            + BLOCK.format("tip", "<max_vel>2</max_vel>"),
+            ["MB210"],
+        ),
+        (ROBOT + BLOCK.format("tip", "<mu1>1</mu1><mu1>2</mu1>"), ["MB210"]),
+        (ROBOT + BLOCK.format("", "<mu1>1</mu1><mu1>2</mu1>"), []),
+        # the world, and what Gazebo makes, are there
+        (ROBOT + PLUGIN.format("gazebo_ros_p3d", P3D.format("world")), []),
+        (ROBOT + PLUGIN.format("gazebo_ros_p3d", P3D.format("odom")), []),
+        (ROBOT + DRIVE.format("shouder"), ["MB215"]),
+        (ROBOT + DRIVE.format("shoulder"), []),
+        # a description without a link is a part, and so is one that xacro has not made
+        (DRIVE.format("shoulder") + BLOCK.format("tip", ""), []),
+        (
+            '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arm/>'
+            '<link name="a"/><gazebo reference="b"/></robot>',
+            [],
+        ),
+        (ROBOT + BLOCK.format("", ""), []),
+        (ROBOT + BLOCK.format("wrist", ""), []),
+        # Gazebo Classic takes a name with the scope of the robot, of no other
+        (ROBOT + PLUGIN.format("LinkPlot3DPlugin", "<plot><link>r::tip</link></plot>"), []),
+        (
+            ROBOT + PLUGIN.format("LinkPlot3DPlugin", "<plot><link>x::tip</link></plot>"),
+            ["MB216"],
+        ),
+        # the joints of a Webots robot are those of its PROTO
+        (
+            ROBOT
+            + CONTROL.format(
+                BOTH
+                + "<hardware><plugin>webots_ros2_control::Ros2ControlSystem</plugin></hardware>"
+                '<joint name="finger"/>'
+            ),
+            [],
+        ),
+        # white space in an attribute is part of the name, in a text it is not
+        (LINKS + JOINT.format("j", "fixed", " base_link", "tip", ""), ["MB221"]),
+        (ROBOT + DRIVE.format(" shoulder\n"), []),
+        # mimic: an undeclared leader, a leader in another system, a command
+        (ROBOT.replace("</joint>", '<mimic joint="nobody"/></joint>', 1), ["MB211"]),
+        (MIMIC + CONTROL.format(BOTH), []),
+        (MIMIC + CONTROL.format('<joint name="wrist"/>'), ["MB227"]),
+        (MIMIC + CONTROL.format(COMMAND.format("")), ["MB226"]),
+        (MIMIC + CONTROL.format(COMMAND.format(' mimic="false"')), []),
+        (ROBOT + CONTROL.format(COMMAND.format("")), []),
+        # what cannot move is not driven, and what is driven elsewhere is not missing
+        (FIXED + CONTROL.format(BOTH), ["MB224"]),
+        (FIXED + '<transmission name="t"><joint name="wrist"/></transmission>', ["MB225"]),
+        (FIXED + CONTROL.format('<joint name="shoulder"/>'), []),
+        (ROBOT + CONTROL.format('<joint name="shoulder"/>'), ["MB228"]),
+        (ROBOT + CONTROL.format('<joint name="shoulder"/>') + DRIVE.format("wrist"), []),
+        (ROBOT + CONTROL.format(""), []),
+        (ROBOT + '<transmission name="t"><gap_joint name="wrist"/></transmission>', ["MB228"]),
+        (ROBOT + '<transmission name="t"/>', ["MB223"]),
+        # nothing falls over
+        ("<joint/><link/><link/><transmission/><ros2_control><joint/></ros2_control>", ["MB223"]),
+        ('<gazebo reference=""/><gazebo/><link name=" "/>', []),
+    ],
+)
+def test_what_is_found(tmp_path: Path, body: str, codes: list[str]) -> None:
+    assert sorted(found(tmp_path, body)) == sorted(codes)
+
+
+@pytest.mark.parametrize(
+    ("frame", "codes"),
+    [
+        ("tip", []),
+        # what a namespace, or a robot_state_publisher with a prefix, makes of a link
+        ("robot1/tip", []),
+        ("/tip", []),
+        ("base_lnik", ["MB217"]),
+        ("robot1/base_lnik", ["MB217"]),
+        ("base_lin", ["MB217"]),
+        ("Base_Link", ["MB217"]),
+        ("base-link", ["MB217"]),
+        # frames that drivers publish are called almost like links
+        ("base_link_optical", ["MB218"]),
+        ("arm2_link", ["MB218"]),
+        ("tap", ["MB218"]),
+        ("back_link", ["MB218"]),
+        ("robot1/odom", []),
+        ("map", []),
+    ],
+)
+def test_frames(tmp_path: Path, frame: str, codes: list[str]) -> None:
+    assert found(tmp_path, ROBOT + PLUGIN.format("gazebo_ros_p3d", P3D.format(frame))) == codes
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [("Tip", "tip"), ("x::arm_link", "arm_link"), ("arm-link", "arm_link"), ("zzz", "")],
+)
+def test_the_hint_is_the_name_that_was_meant(tmp_path: Path, name: str, near: str) -> None:
+    (it,) = lint(tmp_path, ROBOT + BLOCK.format(name, ""))
+    assert it.code == "MB212"
+    assert it.hint == (f"did you mean {near!r}?" if near else "")
+
+
+def test_the_attribute_at_fault_is_the_place(tmp_path: Path) -> None:
+    (it,) = lint(
+        tmp_path, '<robot name="r">\n <link name="a"/>\n  <gazebo\n reference="b"/></robot>'
+    )
+    assert (it.line, it.column) == (4, 2)
+
+
+def test_a_text_at_fault_is_the_place(tmp_path: Path) -> None:
+    body = f'<robot name="r">{ROBOT}\n' + DRIVE.format("x") + "</robot>"
+    (it,) = lint(tmp_path, body)
+    assert body.splitlines()[1][it.column - 1 :].startswith("x</left_joint>")
+
+
+def test_where_the_first_one_stands_is_told(tmp_path: Path) -> None:
+    (it,) = lint(tmp_path, '<robot name="r">\n<link name="a"/>\n<link name="a"/></robot>')
+    assert (it.code, it.line) == ("MB201", 3)
+    assert it.message.endswith("first at line 2")
+
+
+def test_thousands_of_wrong_names_take_no_time(tmp_path: Path) -> None:
+    links = "".join(f'<link name="link_number_{n}"/>' for n in range(4000))
+    blocks = "".join(BLOCK.format(f"lnik_number_{n}", "") for n in range(4000))
+    begin = time.perf_counter()
+    assert len(lint(tmp_path, links + blocks)) == 4000
+    assert time.perf_counter() - begin < 3
