@@ -361,7 +361,9 @@ def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
     values: dict[tuple[str, str], str] = {}
     for block in subject.document.root.iterchildren("gazebo"):
         target = block.get("reference", "")
-        for it in block.iterchildren(*SINGLE) if target else ():
+        for it in block if target else ():
+            if it.tag not in SINGLE:
+                continue
             text = " ".join((it.text or "").split())
             earlier = values.setdefault((target, SINGLE[it.tag]), text)
             if earlier != text:
