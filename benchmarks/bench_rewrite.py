@@ -12,13 +12,11 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import time
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 from lxml import etree
+from pairs import Row, child, paired, table
 from robots import robot
 
 from multibot_rewrite.cli.files import write_all
@@ -47,29 +45,6 @@ NOTE = """
 The proof reads, walks and strips the output anew, so it costs more than the rewrite. It is not
 optional.
 """
-Job = Callable[[], object]
-
-
-class Row(NamedTuple):
-    """One line of the table; ``ratio`` is the median over pairs."""
-
-    what: str
-    against: str
-    ratio: float
-    goal: str
-
-
-def paired(job: Job, floor: Job, runs: int = 15) -> float:
-    """Median of job/floor over alternating runs, each side timed alone."""
-    job(), floor()
-    return statistics.median(seconds(job) / seconds(floor) for _ in range(runs))
-
-
-def seconds(job: Job) -> float:
-    """Wall time of one call."""
-    start = time.perf_counter()
-    job()
-    return time.perf_counter() - start
 
 
 def unproved(source: bytes) -> bytes:
@@ -179,11 +154,6 @@ def command(source: bytes) -> list[Row]:
     ]
 
 
-def child(arguments: list[str]) -> None:
-    """Run a process to its end."""
-    subprocess.run(arguments, stderr=subprocess.DEVNULL, check=True)
-
-
 def peak(arguments: list[str]) -> float:
     """Peak memory of a process in MiB, taken by a small parent: a child starts with its parent's."""
     code = (
@@ -193,12 +163,6 @@ def peak(arguments: list[str]) -> float:
     python = [sys.executable, "-S", "-c", code, *arguments]
     result = subprocess.run(python, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
     return float(result.stdout)
-
-
-def table(rows: list[Row]) -> str:
-    """The rows as Markdown."""
-    head = "| what | against | ratio | goal |\n|---|---|--:|--:|\n"
-    return head + "".join(f"| {r.what} | {r.against} | {r.ratio:.3g} | {r.goal} |\n" for r in rows)
 
 
 def main() -> None:
