@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -262,13 +263,20 @@ def ring(size: int) -> str:
     return chain(size) + end
 
 
+def cost(shape: Callable[[int], str], size: int) -> float:
+    """Seconds of this process, whatever else the machine does; the best of three."""
+    root = etree.fromstring(f'<robot name="r">{shape(size)}</robot>')
+    spent = []
+    for _ in range(3):
+        start = time.process_time()
+        assert len(loops(read_robot(root))) == (shape is ring)
+        spent.append(time.process_time() - start)
+    return min(spent)
+
+
 @pytest.mark.parametrize("shape", [chain, star, ring])
-def test_large_robots_cost_what_they_are_long(shape: object, tmp_path: Path) -> None:
-    assert callable(shape)
-    root = etree.fromstring(f'<robot name="r">{shape(3000)}</robot>')
-    start = time.perf_counter()
-    assert len(loops(read_robot(root))) == (shape is ring)
-    assert time.perf_counter() - start < 1.0  # quadratic: minutes
+def test_large_robots_cost_what_they_are_long(shape: Callable[[int], str]) -> None:
+    assert cost(shape, 4000) < 9 * cost(shape, 1000)  # linear: 4, quadratic: 16
 
 
 @pytest.mark.parametrize(
