@@ -1,0 +1,43 @@
+"""Robots for RViz configs: a description made up of the names in the file."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import yaml
+
+from multibot_rewrite.companions.respell import Names
+from multibot_rewrite.companions.rviz import RvizRobot
+from multibot_rewrite.companions.rviz_read import rviz_data
+from multibot_rewrite.companions.yaml_text import YamlText, pairs
+from multibot_rewrite.naming import make_naming
+
+Declared = dict[str, dict[str, Any]]
+MAPS = {"Frames": "link", "Links": "link", "Joints": "joint"}
+
+
+def declared(document: YamlText) -> Declared:
+    """What a description of the robot in the file would declare."""
+    found: Declared = defaultdict(dict, {"link": {}, "joint": {}})
+    for kind, name in _names(document.root):
+        if name not in rviz_data()["fixed_keys"] and name not in rviz_data()["frames"]:
+            found[kind][name] = None
+    return found
+
+
+def _names(node: yaml.Node | None) -> Iterator[tuple[str, str]]:
+    for key, value in pairs(node):
+        if key.value in MAPS:
+            yield from ((MAPS[key.value], name.value) for name, _ in pairs(value))
+        yield from _names(value)
+    for item in node.value if isinstance(node, yaml.SequenceNode) else ():
+        yield from _names(item)
+
+
+def robots_of(names: Declared, layout: str, robots: Sequence[str], **more: Any) -> list[RvizRobot]:
+    """A robot of this description for each name."""
+    naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
+    both = ((name, Names(names, naming, name)) for name in robots)
+    return [RvizRobot(name, it, it, **more) for name, it in both]
