@@ -129,10 +129,9 @@ def main() -> None:
             f"CPython {platform.python_version()}, lxml {etree.__version__}, {os.cpu_count()} cores"
         )
         how = "python benchmarks/bench_lint.py --write"
-        PAGE.write_text(
-            f"# Benchmark of the lint\n\nMade by `{how}` in one run: medians of pairwise ratios, lower is"
-            f" better.\n{where}; a shared machine, so a digit more or less is noise.\n\n{text}"
-        )
+        made = f"Made by `{how}` in one run: medians of pairwise ratios, lower is better."
+        noise = "a shared machine, so a digit more or less is noise"
+        PAGE.write_text(f"# Benchmark of the lint\n\n{made}\n{where}; {noise}.\n\n{text}")
 
 
 if __name__ == "__main__":

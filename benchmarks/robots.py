@@ -59,6 +59,7 @@ def robot(links: int) -> bytes:
     """A URDF with that many links, about 2 kB each; as many names per kB (4.5) as the median of a
     thousand public files."""
     parts = ['<?xml version="1.0"?>\n<!-- made for measuring -->\n<robot name="rover">']
+    parts.append('\n  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material>')
     for n in range(links):
         parts.append(LINK.format(n=n))
         if n:

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 from multibot_rewrite.lint.failures import crash, failure, too_long
 from multibot_rewrite.lint.places import numbered, placed
-from multibot_rewrite.lint.records import LintFinding, Rule, Subject
+from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.lint.settings import Settings, level_of
 from multibot_rewrite.lint.subjects import read_subjects
@@ -51,20 +51,22 @@ def lint_data(path: str, data: bytes, settings: Settings) -> list[LintFinding]:
 
 def lint_subject(subject: Subject) -> list[LintFinding]:
     """What the rules that are on find in one document."""
-    rules = active_rules(subject.settings, subject.format)
-    return [finding for rule in rules for finding in _asked(rule, subject)]
-
-
-def _asked(rule: Rule, subject: Subject) -> list[LintFinding]:
-    try:
-        problems = list(rule.check(subject))
-    except Exception as error:  # a rule that crashes is told, and the others are asked all the same
-        return [crash(rule, subject, error)]
-    if not problems:
-        return []
+    settings = subject.settings
+    found: list[tuple[Rule, list[Problem]]] = []
+    crashes: list[LintFinding] = []
+    for rule in active_rules(settings, subject.format):
+        try:
+            problems = list(rule.check(subject))
+        except Exception as error:  # told as a finding, and the other rules are asked all the same
+            crashes.append(crash(rule, subject, error))
+            continue
+        if problems:
+            known = rule._replace(level=level_of(settings, rule.code, rule.level))
+            found.append((known, problems))
+    if not found:
+        return crashes
     numbers = numbered(subject)
-    rule = rule._replace(level=level_of(subject.settings, rule.code, rule.level))
-    return [placed(subject, numbers, problem, rule) for problem in problems]
+    return crashes + [placed(subject, numbers, it, rule) for rule, its in found for it in its]
 
 
 def _merged(found: Iterable[LintFinding]) -> list[LintFinding]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from types import ModuleType
 
 from multibot_rewrite.lint.records import Rule
@@ -36,6 +37,19 @@ RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 assert len(RULES) == len(_FOUND), "two rules have one code"
 
 
-def active_rules(settings: Settings, format_: str) -> list[Rule]:
+def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
     """The rules that are asked about a subject of that format."""
-    return [it for it in RULES.values() if format_ in it.formats and is_on(settings, it.code)]
+    levels = tuple(settings.levels.items())
+    return _active(settings.select, settings.ignore, levels, format_)
+
+
+@lru_cache(maxsize=16)
+def _active(
+    select: tuple[str, ...],
+    ignore: tuple[str, ...],
+    levels: tuple[tuple[str, str], ...],
+    format_: str,
+) -> tuple[Rule, ...]:
+    settings = Settings(select=select, ignore=ignore, levels=dict(levels))
+    rules = (it for it in RULES.values() if format_ in it.formats)
+    return tuple(it for it in rules if is_on(settings, it.code))
