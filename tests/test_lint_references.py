@@ -109,6 +109,7 @@ def found(folder: Path, body: str) -> list[str]:
             '<link name="a"/><gazebo reference="b"/></robot>',
             [],
         ),
+        (f"<robot>{ROBOT}{BLOCK.format('tipp', '')}</robot>", []),
         (ROBOT + BLOCK.format("", ""), []),
         (ROBOT + BLOCK.format("wrist", ""), []),
         # Gazebo Classic takes a name with the scope of the robot, of no other

@@ -104,8 +104,8 @@ class References(NamedTuple):
 def references(held: Held, shared: Collection[str]) -> References:
     """One pass over the document for all rules of this page.
 
-    A file without a link is a part of a description, what it names is declared elsewhere; and what
-    xacro was not asked to make yet cannot be missed.
+    What a part of a description names is declared elsewhere; and what xacro was not asked to make
+    yet cannot be missed.
     """
     inventory = held.inventory
     claims = doubtful(inventory)
@@ -118,11 +118,17 @@ def references(held: Held, shared: Collection[str]) -> References:
     return References(claims, by_code)
 
 
+def _is_part(inventory: Inventory) -> bool:
+    """A file without a link, or a robot without a name: something else includes it."""
+    root = inventory.document.root
+    return not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)
+
+
 def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
     """Is it declared after all: outside of this part, with the robot's own name as a scope, as
     Gazebo Classic takes it, or by the PROTO of a Webots robot?"""
     claim, part = loose
-    if not inventory.declared["link"] and part.kinds[0] != "group":
+    if _is_part(inventory) and part.kinds[0] != "group":
         return True
     scope, _, name = part.text.rpartition("::")
     if scope and scope == inventory.document.root.get("name"):
