@@ -294,8 +294,7 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
     for child in element.iterchildren("*"):
         if child.tag in known or not _is_own(child.tag):
             continue
-        free = [tag for tag in known if known[tag].times == "many" or tag not in count]
-        meant = _near(str(child.tag), _CORE if section.name == ROBOT else free)
+        meant = _near(str(child.tag), _CORE if section.name == ROBOT else known)
         if meant in missing:
             missing.remove(meant)
             message = f"<{element.tag}> has no <{meant}>"
@@ -330,12 +329,20 @@ def _strange(
 
 
 def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Fault]:
+    """What is read once and comes again with another content."""
     for tag, times in count.items():
         child = section.children.get(tag)
-        if times > 1 and child and child.times in ("once", "required"):
-            second = element.findall(tag)[1]
+        if times < 2 or child is None or child.times not in ("once", "required"):
+            continue
+        first, *others = element.findall(tag)
+        other = next((it for it in others if _written(it) != _written(first)), None)
+        if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads the first one alone"
-            yield Fault("repeated-element", second, None, message)
+            yield Fault("repeated-element", other, None, message)
+
+
+def _written(element: etree._Element) -> bytes:
+    return etree.tostring(element, method="c14n", with_tail=False)
 
 
 def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
@@ -357,7 +364,7 @@ def _near(name: str, known: Collection[str]) -> str:
 
 def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:
     """What is wrong with a value that is not fine at first sight."""
-    where = f"{element.tag}@{attribute} is {value!r}"
+    where = f"{element.tag}@{attribute} is {_short(value)!r}"
     if kind.type == "one":
         if value not in kind.choices:
             meant = _near(value.strip(), kind.choices)
@@ -378,6 +385,10 @@ def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> I
             yield Fault(named, element, attribute, f"{where}{problem}", hint)
 
 
+def _short(text: str) -> str:
+    return text if len(text) < 60 else f"{text[:56]} ..."
+
+
 def _is_unread(element: etree._Element) -> bool:
     """The axis of a joint that has none."""
     joint = element.getparent()
@@ -391,7 +402,11 @@ def _wrong(value: str, kind: str) -> tuple[str, str, str]:
     if not words:
         return "not-a-number", ", which is no number", ""
     if odd is not None and not _INFINITE.fullmatch(odd):
-        return "not-a-number", f": {odd!r} is no number" * (odd != value), _number_hint(value, odd)
+        return (
+            "not-a-number",
+            f": {_short(odd)!r} is no number" * (odd != value),
+            _number_hint(value, odd),
+        )
     if odd is not None or not all(isfinite(float(word)) for word in words):
         return "not-finite", ", which is not finite", "write a large number, or leave it out"
     return _miscounted(value, [float(word) for word in words], kind)
@@ -432,9 +447,8 @@ def _texts(root: etree._Element) -> Iterator[Fault]:
             continue
         pieces = [element.text, *(child.tail for child in element)]
         said = next(" ".join(it.split()) for it in pieces if it and it.strip())
-        said = said if len(said) < 40 else f"{said[:36]} ..."
         inside = "" if element.text and element.text.strip() else None
-        message = f"text {said!r} in <{element.tag}>, where nobody reads it"
+        message = f"text {_short(said)!r} in <{element.tag}>, where nobody reads it"
         yield Fault("stray-text", element, inside, message)
 
 

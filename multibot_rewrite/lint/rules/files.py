@@ -48,7 +48,8 @@ def _placed(subject: Subject, findings: Iterable[Finding]) -> Iterator[Problem]:
     ERROR,
     what="The file is not a robot description that can be read: broken XML, another encoding, "
     "DOCTYPE, empty, or another root element.",
-    why="Nothing loads it: robot_state_publisher and every spawner stop with an error.",
+    why="xacro, launch files and every other reader with a whole XML parser stop with an error. "
+    "urdfdom's takes some of it, so half of the system may run without the other half.",
     fix="Mend the XML where the finding points; save the file as UTF-8.",
     bad='<robot name="r"><link name="a"></robot>',
     good='<robot name="r"><link name="a"/></robot>',
@@ -236,7 +237,7 @@ def missing(subject: Subject) -> Iterator[Problem]:
     "MB116",
     "repeated-element",
     WARNING,
-    what="An element comes twice where loaders read one.",
+    what="An element comes twice, with different content, where loaders read one.",
     why="urdfdom takes the first and never looks at the others: what the second says does not "
     "happen. Other readers may take the last.",
     fix="Keep the one that is meant.",
@@ -404,8 +405,10 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
     """In the order of urdfdom: the robot's own materials first, then those of visuals."""
     root = subject.document.root
     tops = _found(_MATERIALS, root)
-    for material in tops:
-        if not _defines(material) and not _misspelled(subject, material):
+    bare = [it for it in tops if not _defines(it)]
+    misspelled = _misspelled(subject) if bare else set()
+    for material in bare:
+        if material not in misspelled:
             name = material.get("name", "")
             yield Problem(material, f"material {name!r} has neither colour nor texture", "name")
     defined = {it.get("name") for it in tops}
@@ -425,9 +428,10 @@ def _found(path: etree.XPath, root: etree._Element) -> list[etree._Element]:
     return path(root)  # type: ignore[return-value]
 
 
-def _misspelled(subject: Subject, material: etree._Element) -> bool:
-    """Does another rule say that what it has is wrongly written?"""
-    return any(material in (it.element, it.element.getparent()) for it in subject.faults)
+def _misspelled(subject: Subject) -> set[etree._Element | None]:
+    """Elements of which another rule says that they, or a child, are wrongly written."""
+    elements = [it.element for it in subject.faults]
+    return {*elements, *(it.getparent() for it in elements)}
 
 
 def _defines(material: etree._Element) -> bool:
@@ -453,11 +457,11 @@ def material_differs(subject: Subject) -> Iterator[Problem]:
     """Each visual whose own definition does not count."""
     root = subject.document.root
     looks = [it for it in _found(_LOOKS, root) if len(it) and it.get("name") and _defines(it)]
-    first: dict[str, Look] = {}
-    for material in (*(_found(_MATERIALS, root) if looks else ()), *looks):
+    tops = _found(_MATERIALS, root) if looks else []
+    first = {it.get("name", ""): _look(it) for it in reversed(tops)}
+    for material in looks:
         name = material.get("name", "")
-        before = first.setdefault(name, _look(material))
-        if before != _look(material):
+        if first.setdefault(name, _look(material)) != _look(material):
             hint = "the first definition of the name counts"
             message = f"material {name!r} has another colour or texture than its first definition"
             yield Problem(material, message, "name", hint)

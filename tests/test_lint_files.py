@@ -1,0 +1,232 @@
+"""Rules MB1 about files: what cannot be read, and at which place; encodings, materials, fixes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_data, lint_file
+from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.lint.settings import ArgumentSet, Settings
+
+XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+ONE = Settings(select=("MB1",))
+
+
+def codes(source: str | bytes, *select: str) -> list[str]:
+    data = source if isinstance(source, bytes) else source.encode()
+    found = lint_data("robot.urdf", data, Settings(select=select or ("MB1",)))
+    return [it.code for it in found]
+
+
+def looks(*materials: str, before: str = "") -> str:
+    """Links that look like these materials, in this order."""
+    body = "".join(
+        f'<link name="l{at}"><visual><geometry><sphere radius="1"/></geometry>{it}</visual></link>'
+        for at, it in enumerate(materials)
+    )
+    return f'<robot name="r">{before}{body}</robot>'
+
+
+RED = '<material name="m"><color rgba="1 0 0 1"/></material>'
+GREEN = '<material name="m"><color rgba="0 1 0 1"/></material>'
+NAME = '<material name="m"/>'
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        (looks(NAME), ["MB131"]),
+        (looks(NAME, NAME), ["MB131", "MB131"]),
+        (looks(RED, NAME), []),
+        # urdfdom reads links in order: the later one does not help the earlier one.
+        (looks(NAME, RED), ["MB131"]),
+        (looks(NAME).replace("</robot>", RED + "</robot>"), []),
+        (looks('<material name="m"><texture filename="t.png"/></material>', NAME), []),
+        (looks('<material name="m"><color/></material>'), ["MB131"]),
+        (looks('<material name="m"><ambient>1 0 0 1</ambient></material>'), ["MB131"]),
+        # Without a name nothing is looked up.
+        (looks('<material name=""/>', '<material name=""><color rgba="0 0 0 1"/></material>'), []),
+        (looks(before=NAME), ["MB131"]),
+        (looks(NAME, before=NAME), ["MB131"]),
+        (looks(before='<material name="m"><texture filename="t.png"/></material>'), []),
+        (looks(GREEN, before=RED), ["MB132"]),
+        (looks(GREEN, RED, GREEN), ["MB132"]),
+        (looks(RED, RED.replace("1 0 0 1", " 1.0 0 0.0 1")), []),
+        (looks(RED.replace("1 0 0 1", "x")), ["MB130"]),
+        (looks(before=RED.replace("1 0 0 1", "1 0 0")), ["MB130"]),
+        # Materials of Gazebo are scripts of its own.
+        (
+            '<robot name="r"><gazebo reference="a"><material>Gazebo/Red</material></gazebo></robot>',
+            [],
+        ),
+        ('<robot name="r"><material/></robot>', ["MB115"]),
+        ('<robot name="r"><material name="m"><colour/></material></robot>', ["MB110"]),
+    ],
+)
+def test_materials(source: str, expected: list[str]) -> None:
+    assert codes(source) == expected
+
+
+ROBOT = b'<robot name="r"><link name="a"/></robot>'
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        (ROBOT, []),
+        (b'<?xml version="1.0"?>' + ROBOT, []),
+        (b"<?xml version='1.0' encoding='utf-8' standalone='yes'?>" + ROBOT, []),
+        (b'<?xml version="1.0" encoding="US-ASCII"?>' + ROBOT, []),
+        (b'<?xml version="1.1" encoding="utf-8"?>' + ROBOT, ["MB140"]),
+        (b'<?xml version="1.1" encoding="latin1"?>' + ROBOT, ["MB140", "MB140"]),
+        (b'<?xml version="1.0" encoding="gb2312"?>' + ROBOT, ["MB140"]),
+        (b'<?xml version="0.0"?>' + ROBOT, ["MB101"]),
+        (b'<?xml version="1.0" encoding="latin1"?><robot name="\xe4"/>', ["MB101"]),
+        (b"\xef\xbb\xbf" + ROBOT, ["MB141"]),
+        (b'\xef\xbb\xbf<?xml version="1.1"?>' + ROBOT, ["MB140", "MB141"]),
+        (b'<robot name="r" xmlns:a="u" xmlns:b="v"><b:x/></robot>', ["MB142"]),
+        (b'<robot name="r" xmlns:a="u"><link name="l" a:ignore="1"/></robot>', []),
+        # A declaration further down, or of the default namespace, is no prefix of the root.
+        (b'<robot name="r"><gazebo xmlns:a="u"/></robot>', []),
+        (b"<robot name='r' note='xmlns:a=\"u\"'/>", ["MB114"]),
+        (b"", ["MB101"]),
+        (b"<mujoco/>", ["MB101"]),
+        (b"<robot name='r'><link name='a'></robot>", ["MB101"]),
+        (b"<!DOCTYPE robot><robot name='r'/>", ["MB101"]),
+    ],
+)
+def test_encodings(source: bytes, expected: list[str]) -> None:
+    assert codes(source) == expected
+
+
+@pytest.mark.parametrize(
+    ("source", "mended"),
+    [
+        (b"\xef\xbb\xbf" + ROBOT, ROBOT),
+        (
+            b'<?xml version="1.1" encoding="latin1"?>' + ROBOT,
+            b'<?xml version="1.0" encoding="UTF-8"?>' + ROBOT,
+        ),
+        (
+            b'<robot name="r"\n  xmlns:xacro="http://www.ros.org/wiki/xacro"  xmlns:b=\'v\'>'
+            b"<b:x/></robot>",
+            b"<robot name=\"r\"  xmlns:b='v'><b:x/></robot>",
+        ),
+        (b'<robot xmlns:xacro="x" name="r"/>', b'<robot name="r"/>'),
+    ],
+)
+def test_fixes_take_away_what_is_not_used(source: bytes, mended: bytes) -> None:
+    assert fix("robot.urdf", source, ONE)[0] == mended
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ('<link name="a"/>\n<xacro:include filename="x"/>', (2, 1)),
+        ('<link name="a"/>\n  <link name="${x}"/><link name="${y}"/>', (2, 3)),
+        ('<link name="ä"/><link name="$(arg x)"/>', (1, 17)),
+        ("<!-- ${x} $(arg y) -->", None),
+        ('<link name="$100"/>', None),
+    ],
+)
+def test_leftover_xacro_is_told_once(body: str, expected: tuple[int, int] | None) -> None:
+    source = f"<robot name='r' {XACRO}>\n{body}</robot>"
+    found = lint_data("r.urdf", source.encode(), Settings(select=("MB105",)))
+    assert [(it.line - 1, it.column) for it in found] == ([expected] if expected else [])
+
+
+def test_a_substitution_is_no_wrong_number() -> None:
+    body = '<link name="a"><inertial><mass value="${m}"/><origin xyz="0 0"/></inertial></link>'
+    assert codes(f'<robot name="r">{body}</robot>', "MB12", "MB105") == ["MB105", "MB121"]
+
+
+def failed(folder: Path, body: str, **beside: str) -> tuple[str, str, int, int, str, str]:
+    for name, text in beside.items():
+        (folder / f"{name}.xacro").write_text(text)
+    file = folder / "robot.urdf.xacro"
+    file.write_text(f'<robot name="r" {XACRO}>\n{body}\n<link name="last"/></robot>')
+    (found,) = lint_file(str(file), Settings(select=("MB10",)))
+    return found.code, Path(found.file).name, found.line, found.column, found.message, found.hint
+
+
+TWICE = (
+    '<xacro:macro name="leg" params="n">\n<link name="${n}"/>\n'
+    '<link name="${n + m}"/></xacro:macro>'
+)
+
+
+@pytest.mark.parametrize(
+    ("body", "code", "place", "said", "hint"),
+    [
+        ('<link type="t"\n  name="$(arg side)_x"/>', "MB103", (3, 3), "side", "side:=VALUE"),
+        ('<link name="${nope}"/>', "MB103", (2, 7), "'nope' is not defined", "define it"),
+        ("<link name='a'><x>\n${1/0}</x></link>", "MB103", (2, 16), "division by zero", ""),
+        ("<xacro:leg n='a'/>", "MB103", (2, 1), "unknown macro name: xacro:leg", "include"),
+        (f"{TWICE}\n<xacro:leg n='a'/>", "MB103", (4, 7), "macro 'leg' that line 5", "define"),
+        (f"{TWICE}\n<xacro:leg/>", "MB103", (5, 1), "Undefined parameters [n]", "parameters"),
+        (f"{TWICE}\n<xacro:leg n='1'  o='2'/>", "MB103", (5, 19), "Invalid parameter", "params"),
+        ("<xacro:arg name='a'/>", "MB103", (2, 1), "missing attribute", "default"),
+        ("<xacro:if value='maybe'/>", "MB103", (2, 1), "not a boolean", "true"),
+        ("<xacro:insert_block name='b'/>", "MB103", (2, 1), 'Undefined block "b"', "*NAME"),
+        ("<xacro:include filename='nope.xacro'/>", "MB102", (2, 1), "No such file", "path"),
+        (
+            "<xacro:macro name='m'><xacro:m/></xacro:macro><xacro:m/>",
+            "MB103",
+            (2, 23),
+            "rec",
+            "back",
+        ),
+    ],
+)
+def test_a_failed_expansion_is_told_where_it_failed(
+    tmp_path: Path, body: str, code: str, place: tuple[int, int], said: str, hint: str
+) -> None:
+    found = failed(tmp_path, body)
+    assert (found[0], found[2:4]) == (code, place)
+    assert said in found[4]
+    assert hint in found[5]
+
+
+def test_a_failure_in_an_included_file_is_told_there(tmp_path: Path) -> None:
+    library = f"<robot {XACRO}>\n{TWICE}</robot>"
+    body = "<xacro:include filename='lib.xacro'/>\n<xacro:leg n='a'/>"
+    code, file, line, column, message, _ = failed(tmp_path, body, lib=library)
+    assert (code, file, line, column) == ("MB103", "lib.xacro", 4, 7)
+    assert "macro 'leg' that line 3 of robot.urdf.xacro calls" in message
+
+
+def test_broken_xml_in_an_included_file_is_told_there(tmp_path: Path) -> None:
+    found = failed(tmp_path, "<xacro:include filename='lib.xacro'/>", lib="<a>\n<b></a>")
+    assert found[:4] == ("MB103", "lib.xacro", 2, 6)
+
+
+def test_an_argument_that_is_given_is_not_missing(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf.xacro"
+    file.write_text(f'<robot name="r" {XACRO}><link name="$(arg side)"/></robot>')
+    given = ArgumentSet("*", (("side", "left"),))
+    assert lint_file(str(file), Settings(select=("MB1",), arguments=(given,))) == []
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    for path in (tmp_path / "nope.urdf", tmp_path / "nope.urdf.xacro", tmp_path):
+        (found,) = lint_file(str(path), ONE)
+        assert (found.code, found.line, found.file) == ("MB102", 1, str(path))
+
+
+def test_faults_of_an_expansion_are_told_in_the_source(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf.xacro"
+    body = '<xacro:macro name="m" params="n">\n<link name="${n}"><inertail/></link></xacro:macro>'
+    file.write_text(f'<robot name="r" {XACRO}>{body}<xacro:m n="a"/><xacro:m n="b"/></robot>')
+    found = lint_file(str(file), ONE)
+    assert {(it.code, it.line, it.column) for it in found} == {("MB110", 2, 19)}
+    assert all(it.calls and not it.edits for it in found)
+
+
+def test_worlds_are_told_one_by_one() -> None:
+    source = (
+        '<?xml version="1.0"?>\n<sdf version="1.9">\n<world name="w"/>\n<world name="v"/></sdf>'
+    )
+    found = lint_data("w.sdf", source.encode(), Settings(select=("MB109",)))
+    assert [it.line for it in found] == [3, 4]
