@@ -37,7 +37,7 @@ FILES = (
     "plain.urdf",
     "with space, colon: and %41#?.urdf",
     "new\nline|`.urdf",
-    "日本😀.urdf",
+    "日本😀\u2028.urdf",
     os.fsdecode(b"b\xff\xfe.urdf"),
 )
 # What hangs on the base, so that the base is no finding.
@@ -156,7 +156,7 @@ def test_only_the_module_of_a_format_is_loaded() -> None:
 def test_text_is_a_line_a_finding() -> None:
     first = LintFinding("MB501", ERROR, "'é' is lost", "", "a b.urdf", 4, 3)
     calls = ("p/r.urdf.xacro:5: wheel", "p/r.urdf.xacro:8: axle")
-    more = first._replace(hint="join it", calls=calls, arguments="sim:=gz n:=2", level=NOTE)
+    more = first._replace(hint="join it", calls=calls, arguments="sim:=gz n:=2", level=WARNING)
     assert rendered("text", [first, more], []).splitlines() == [
         "a b.urdf:4:3: MB501 'é' is lost",
         "a b.urdf:4:3: MB501 'é' is lost (join it) [with sim:=gz n:=2]",
@@ -258,6 +258,13 @@ def test_json_tells_of_macros_and_edits(nasty: Linted) -> None:
         {"file": "arm.urdf.xacro", "line": 5, "macro": "wheel"},
         {"file": "arm.urdf.xacro", "line": 8, "macro": "axle"},
     ]
+
+
+def test_a_call_is_read_from_its_end() -> None:
+    calls = ("a:3: b.xacro:5: wheel",)
+    finding = LintFinding("MB501", ERROR, "m", "", "a", 1, 1, calls)
+    (call,) = report("json", Linted([finding], []))["findings"][0]["calls"]
+    assert call == {"file": "a:3: b.xacro", "line": 5, "macro": "wheel"}
 
 
 def test_json_has_no_lone_surrogate(nasty: Linted) -> None:
@@ -399,10 +406,19 @@ def test_a_sarif_fix_mends_as_the_edit_does(here: Path) -> None:
     assert mended.encode() == source[: edit.start] + edit.before + source[edit.end :]
 
 
-def test_a_sarif_fix_of_a_file_that_went_is_left_out(here: Path) -> None:
-    finding = LintFinding(
-        "MB501", ERROR, "m", "", "gone.urdf", 1, 1, edits=(Edit(0, 1, b"", None),)
-    )
+@pytest.mark.parametrize(
+    ("content", "edit"),
+    [
+        pytest.param(None, Edit(0, 0, b"x", None), id="gone"),
+        pytest.param(b"short", Edit(0, 6, b"x", None), id="shorter"),
+    ],
+)
+def test_a_sarif_fix_of_a_file_that_changed_is_left_out(
+    content: bytes | None, edit: Edit, here: Path
+) -> None:
+    if content:
+        Path("a.urdf").write_bytes(content)
+    finding = LintFinding("MB501", ERROR, "m", "", "a.urdf", 1, 1, edits=(edit,))
     assert "fixes" not in report("sarif", Linted([finding], []))["runs"][0]["results"][0]
 
 
@@ -418,6 +434,8 @@ def test_services_get_paths_relative_to_where_the_lint_runs(spelled: str, here: 
     assert location == {"uri": "a/b.urdf", "uriBaseId": "%SRCROOT%"}
     assert report("gitlab", linted)[0]["location"]["path"] == "a/b.urdf"
     assert "file=a/b.urdf," in rendered("github", *linted)
+    assert "\n#### a/b.urdf\n" in rendered("markdown", *linted)
+    assert '<testsuite name="a/b.urdf"' in rendered("junit", *linted)
     assert rendered("text", *linted).startswith(f"{path}:1:1: ")
     assert report("json", linted)["findings"][0]["file"] == path
 
@@ -536,7 +554,12 @@ def test_junit_has_a_suite_a_file_and_a_case_a_finding(linted: Linted) -> None:
     assert len(cases) == len(linted.findings) + clean
     failed = [case for case in cases if any(isinstance(it, Failure) for it in case.result)]
     assert len(failed) == sum(it.level != NOTE for it in linted.findings)
-    names = Counter((case.classname, case.name) for case in cases)
+
+
+def test_no_two_junit_cases_have_one_name(linted: Linted) -> None:
+    twice = linted._replace(findings=[*linted.findings, *linted.findings])
+    suites = list(JUnitXml.fromstring(rendered("junit", *twice).encode()))
+    names = Counter((case.classname, case.name) for suite in suites for case in suite)
     assert set(names.values()) <= {1}
 
 
@@ -583,8 +606,11 @@ def test_markdown_shows_what_was_found(nasty: Linted) -> None:
     told = Counter(tuple(row) for row in cells(rendered("markdown", *nasty)))
     expected = Counter()
     for it in nasty.findings:
-        first, *calls = text.lines(it)
-        what = "<br>".join([first.partition(f" {it.code} ")[2], *(line.strip() for line in calls)])
+        _, *calls = text.lines(it)
+        hint = f" ({it.hint})" if it.hint else ""
+        given = f" [with {it.arguments}]" if it.arguments else ""
+        first = text.one_line(f"{it.message}{hint}{given}")
+        what = "<br>".join([first, *(line.strip() for line in calls)])
         expected[(str(it.line), it.level, f"{it.code} {RULES[it.code].name}", what)] += 1
     assert told == expected
 
