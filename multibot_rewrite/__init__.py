@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from multibot_rewrite.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.model import (
@@ -17,8 +19,6 @@ if TYPE_CHECKING:
         UsageError,
         VocabularyError,
     )
-
-__version__ = "0.1.0"
 
 __all__ = [
     "Change",

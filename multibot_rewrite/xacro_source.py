@@ -13,8 +13,7 @@ from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriting.document import MAX_BYTES, locate, tag_end
-from multibot_rewrite.xacro_trace import _KEY as ORIGIN
-from multibot_rewrite.xacro_trace import Origin, Trace, tracing
+from multibot_rewrite.xacro_trace import ORIGIN, Origin, Trace, tracing
 
 # What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.

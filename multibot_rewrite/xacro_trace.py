@@ -14,7 +14,7 @@ from xml.dom import UserDataHandler
 
 from multibot_rewrite.rewriting.document import start_offsets
 
-_KEY = "multibot_origin"
+ORIGIN = "multibot_origin"
 _CALL = "xacro:call"
 
 
@@ -60,11 +60,11 @@ class Trace:
         elements = document.getElementsByTagName("*")
         if len(elements) == len(starts):
             for element, start in zip(elements, starts, strict=True):
-                element.setUserData(_KEY, Origin(file, start, ()), self)
+                element.setUserData(ORIGIN, Origin(file, start, ()), self)
 
     def origins(self, document: Any) -> tuple[Origin | None, ...]:
         """The origins of an expanded document's elements, in document order."""
-        return tuple(element.getUserData(_KEY) for element in document.getElementsByTagName("*"))
+        return tuple(element.getUserData(ORIGIN) for element in document.getElementsByTagName("*"))
 
 
 @contextmanager
@@ -92,7 +92,7 @@ def _reader(parse: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
 
 def _caller(handle: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
     def called(node: Any, macros: Any, symbols: Any) -> Any:
-        origin = node.getUserData(_KEY)
+        origin = node.getUserData(ORIGIN)
         # A dynamic call comes back under the name of its macro.
         if origin is None or node.tagName == _CALL or not node.tagName.startswith("xacro:"):
             return handle(node, macros, symbols)

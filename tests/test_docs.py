@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.lint.words import page as rules_page
 from multibot_rewrite.rewriting.pipeline import prepare
 from multibot_rewrite.vocabulary.__main__ import page
 
@@ -24,6 +26,10 @@ MODULES = {
 
 def test_the_page_of_plugins_is_current() -> None:
     assert (ROOT / "docs" / "plugins.md").read_text() == page()
+
+
+def test_the_page_of_rules_is_current() -> None:
+    assert (ROOT / "docs" / "lint-rules.md").read_text() == rules_page()
 
 
 def test_the_readme_shows_commands() -> None:
@@ -59,6 +65,10 @@ def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_every_finding_code_is_documented() -> None:
     page_text = (ROOT / "docs" / "findings.md").read_text()
-    source = "".join(p.read_text() for p in (ROOT / "multibot_rewrite").rglob("*.py"))
-    assert set(re.findall(r'"(M[BRG]\d{3})"', source)) == set(re.findall(r"M[BRG]\d{3}", page_text))
+    files = (p for p in (ROOT / "multibot_rewrite").rglob("*.py") if "lint" not in p.parts)
+    source = "".join(path.read_text() for path in files)
+    codes = re.findall(r'"(M[BRGF]\d{3})"', source)
+    # What a lint rule tells as well is on the page of rules, too.
+    told = set(re.findall(r"M[BRGF]\d{3}", page_text))
+    assert set(codes) - RULES.keys() == told - RULES.keys()
     assert prepare.__doc__

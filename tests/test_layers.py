@@ -20,7 +20,7 @@ from multibot_rewrite import model
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("model", "bulk"),
+    ("model", "bulk", "version"),
     ("rosnames", "naming"),
     ("vocabulary",),
     ("rewriters",),
@@ -94,7 +94,7 @@ def test_no_module_imports_itself_by_a_detour() -> None:
 
 def test_the_check_sees_the_imports_there_are() -> None:
     assert inner("library.py") >= {"model.py", "naming.py", "rewriting/pipeline.py"}
-    assert inner("__init__.py") == {"library.py", "model.py"}
+    assert inner("__init__.py") == {"library.py", "model.py", "version.py"}
 
 
 def test_heavy_packages_have_one_door_each() -> None:
@@ -122,7 +122,7 @@ def test_a_start_loads_no_more_than_it_needs() -> None:
 
 def test_the_package_alone_loads_nothing() -> None:
     there = {name for name in loaded("import multibot_rewrite") if name.startswith(PACKAGE.name)}
-    assert there == {PACKAGE.name}
+    assert there == {PACKAGE.name, f"{PACKAGE.name}.version"}
 
 
 def test_all_names_what_is_there() -> None:
@@ -133,7 +133,7 @@ def test_all_names_what_is_there() -> None:
 
 def test_all_is_complete() -> None:
     offered = {name.rpartition(".")[2] for name in imports(SOURCES["__init__.py"])}
-    assert offered - {"annotations", "import_module", "TYPE_CHECKING"} == set(
+    assert offered - {"annotations", "import_module", "TYPE_CHECKING", "__version__"} == set(
         multibot_rewrite.__all__
     )
 

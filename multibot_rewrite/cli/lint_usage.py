@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite import __version__
 from multibot_rewrite.cli.usage import Parser
 from multibot_rewrite.lint.formats import FORMATS
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.version import __version__
 
 PROGRAM = "urdf-lint"
 USAGE = "%(prog)s PATH... [NAME:=VALUE...] [options]"

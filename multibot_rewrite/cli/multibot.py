@@ -14,8 +14,8 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import Any
 
-from multibot_rewrite import __version__
 from multibot_rewrite.cli.process import PROGRAM, Parser, guarded
+from multibot_rewrite.version import __version__
 
 COMMANDS = MappingProxyType(
     {

@@ -7,9 +7,9 @@ import os
 import re
 from typing import Any, NoReturn
 
-from multibot_rewrite import __version__
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import LAYOUTS, SEPARATORS, SHARED_FRAMES, SHARED_TOPICS
+from multibot_rewrite.version import __version__
 
 UNUSABLE = 2
 USAGE = "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]"

@@ -70,8 +70,12 @@ def _shaped(subject: Subject) -> Subject:
 
 
 def _only_defines(root: _Element) -> bool:
-    """Nothing but definitions for other files: expanded alone it is an empty robot."""
-    return all(_local(child) in DEFINITIONS for child in root.iterchildren("*"))
+    """Nothing but definitions for other files: expanded alone it is an empty robot.
+
+    What only includes may be a whole robot, one that also defines macros is read by others.
+    """
+    tags = {_local(child) for child in root.iterchildren("*")}
+    return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)
 
 
 def _local(element: _Element) -> str:

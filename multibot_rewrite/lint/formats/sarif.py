@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from multibot_rewrite import __version__
 from multibot_rewrite.lint.formats.shared import (
     calls,
     circumstances,
@@ -21,6 +20,7 @@ from multibot_rewrite.lint.formats.shared import (
 from multibot_rewrite.lint.records import LintFinding, Rule
 from multibot_rewrite.model import Edit
 from multibot_rewrite.rewriting.document import locate
+from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]
 SCHEMA = (

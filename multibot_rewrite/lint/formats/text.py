@@ -1,4 +1,5 @@
-"""Lines for people and editors: ``file:line:column: CODE message (hint)``."""
+"""Lines for people and editors: ``file:line:column: CODE message (hint)``, ``note:`` before what does
+not make the lint fail."""
 
 from __future__ import annotations
 
@@ -28,5 +29,6 @@ def lines(finding: LintFinding, *, colour: bool = False) -> Iterator[str]:
     it = finding
     code = f"{_PAINT.get(it.level, '')}{it.code}{_PLAIN}" if colour else it.code
     place = f"{one_line(path_given(it.file))}:{it.line}:{it.column}"
-    yield f"{place}: {code} {said(it)}{circumstances(it)}"
+    note = "note: " if it.level == NOTE else ""
+    yield f"{place}: {code} {note}{said(it)}{circumstances(it)}"
     yield from (f"    {line}" for line in via(it, path_given))
