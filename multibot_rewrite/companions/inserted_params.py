@@ -1,0 +1,128 @@
+"""Parameters that a file does not set and whose default is every robot's: lines to insert."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.known_params import KnownNode, Param, in_release
+from multibot_rewrite.companions.respelled_params import Desk
+from multibot_rewrite.companions.sections import Found, Section, finding, flattened, pattern_of
+from multibot_rewrite.companions.spelled import SPELLERS, expressible
+from multibot_rewrite.companions.template import GRAPH
+from multibot_rewrite.companions.uses import Uses
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, quoted
+from multibot_rewrite.model import WARNING, Finding
+
+DEFAULT = "# multibot: the default is every robot's"
+OFF = "# multibot: the default puts the namespace before frames"
+_FRAMES = ("frame", "link", "stem")
+
+
+class Line(NamedTuple):
+    """A parameter to insert: its comment, path and value as YAML."""
+
+    comment: str
+    path: str
+    value: str
+
+
+def inserted(
+    desk: Desk, pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
+) -> Iterator[Splice | Finding]:
+    """Lines for the first section of each known node; what ``beside`` sets is set as well."""
+    everywhere = _everywhere(pages, beside)
+    done: set[str] = set()
+    for section, _ in pages:
+        if section.node is None or section.shared or section.inner or section.full in done:
+            continue
+        done.add(section.full)
+        same = [uses.known for other, uses in pages if other.full == section.full]
+        here = set().union(*same) | _set_for(section, everywhere)
+        lines = list(missing(desk.context, section.node, here))
+        if lines:
+            yield _insert(desk.document, section.body, lines)
+
+
+def missing(context: Context, node: KnownNode, here: set[str]) -> Iterator[Line]:
+    """What a node takes by default and no two robots may share."""
+    for param in node.defaults:
+        if param.path in here or not _has(param, context):
+            continue
+        if param.kind == "off":
+            yield Line(OFF, param.path, "false")
+        elif param.kind in _FRAMES and expressible(context, param.kind):
+            text = SPELLERS[param.kind](context, param.default)
+            if text != param.default:
+                yield Line(DEFAULT, param.path, quoted(text))
+
+
+def _has(param: Param, context: Context) -> bool:
+    return not param.distros or in_release(param.distros, context.distro)
+
+
+def _everywhere(
+    pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
+) -> list[tuple[str, str, set[str]]]:
+    """Other places that set parameters: the path and its name, the pattern, what it sets."""
+    wild = [(it.path, it.full, it.body) for it, _ in pages if it.wild]
+    wild += [(it.path, f"/{it.path}", it.body) for it in beside]
+    return [(path, full, {name for name, _ in flattened(body)}) for path, full, body in wild]
+
+
+def _set_for(section: Section, everywhere: Iterable[tuple[str, str, set[str]]]) -> set[str]:
+    found: set[str] = set()
+    for path, full, names in everywhere:
+        if path == section.path or ("*" in path and re.fullmatch(pattern_of(full), section.full)):
+            found |= names
+    return found
+
+
+def _insert(document: YamlText, body: yaml.MappingNode, lines: Sequence[Line]) -> Splice | Finding:
+    """The lines before the first parameter, as far in as it is."""
+    if not body.value:
+        text = ", ".join(f"{line.path}: {line.value}" for line in lines)
+        at = body.start_mark.index + 1
+        return Splice(at, at, text)
+    at = body.value[0][0].start_mark.index
+    before = document.text[document.text.rfind("\n", 0, at) + 1 : at]
+    if body.flow_style:
+        text = "".join(f"{line.path}: {line.value}, " for line in lines)
+        return Splice(at, at, text)
+    if before.strip():
+        names = ", ".join(line.path for line in lines)
+        message = f"{names}: the default is every robot's, and here is no place for a line"
+        hint = "put each parameter on a line of its own"
+        return finding(document, body, "MF124", WARNING, message, hint)
+    end = ("\r\n" if "\r\n" in document.text else "\n") + before
+    return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
+
+
+def _texts(lines: Sequence[Line]) -> Iterator[str]:
+    for comment in dict.fromkeys(line.comment for line in lines):
+        yield comment
+        yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
+
+
+def without_section(
+    document: YamlText, sections: Iterable[str], context: Context, nodes: Mapping[str, KnownNode]
+) -> Iterator[Finding]:
+    """Nodes of the stack that no section is for, though their defaults are every robot's.
+
+    ``nodes`` are the known ones by the stack's name, ``sections`` the full names that have one.
+    """
+    patterns = [re.compile(pattern_of(full)) for full in sections]
+    for name, node in nodes.items():
+        place = context.nodes[name]
+        if GRAPH not in place or any(it.fullmatch(place) for it in patterns):
+            continue
+        lines = list(missing(context, node, set()))
+        if lines:
+            words = ", ".join(f"{it.path}: {it.value}" for it in lines)
+            message = f"{name} has no section, and defaults that are every robot's"
+            hint = f"write {name}: ros__parameters: with {words}"
+            yield Finding("MF125", WARNING, message, hint, document.file, 1, 1)
