@@ -170,7 +170,7 @@ def test_repositories_in_the_repository(repo: Path, tmp_path: Path) -> None:
     put(other, "part.xacro", XACRO.format(""))
     commit(other)
     git(repo, "submodule", "--quiet", "add", str(other), "sub")
-    put(repo, "top.xacro", including("sub/part.xacro"))
+    put(repo, "top.xacro", including("$(find other)/part.xacro"))
     commit(repo)
     files = ["a.urdf", "sub/c.urdf", "top.xacro"]
     assert changed_since("HEAD", files) == []
@@ -251,6 +251,14 @@ def test_who_reads_a_changed_file_changed(
     found = changed_since("HEAD", every(repo))
     whole = {it if "." in it else f"{it}.xacro" for it in wanted}
     assert set(found) == (whole - {name} if how == "deleted" else whole)
+
+
+def test_an_included_file_that_moved_away(repo: Path) -> None:
+    put(repo, "top.xacro", including("$(find r)/part.xacro"))
+    put(repo, "part.xacro")
+    commit(repo)
+    git(repo, "mv", "part.xacro", "moved.xacro")
+    assert changed_since("HEAD", every(repo)) == ["moved.xacro", "top.xacro"]
 
 
 def test_an_ignored_file_beside_is_read(repo: Path) -> None:

@@ -12,9 +12,9 @@ import pytest
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.directives import ALWAYS_TOLD, read_directives
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.records import LintFinding, Problem, Subject
+from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
+from multibot_rewrite.lint.settings import ArgumentSet, Settings, is_on
 from multibot_rewrite.lint.suppress import unsuppressed
 
 PAGE = (Path(__file__).parent.parent / "docs" / "lint-config.md").read_text()
@@ -31,9 +31,15 @@ def links(subject: Subject) -> Iterator[Problem]:
             yield Problem(link.element, f"link {link.name!r}")
 
 
+def asked(settings: Settings, format_: str) -> list[Rule]:
+    """As the registry has it, of the rules there are at this moment."""
+    return [it for it in RULES.values() if format_ in it.formats and is_on(settings, it.code)]
+
+
 @pytest.fixture(autouse=True)
 def simple_rule(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is found is told by this file alone."""
+    monkeypatch.setattr("multibot_rewrite.lint.check.active_rules", asked)
     monkeypatch.setitem(RULES, "MB501", REAL._replace(check=links, options={}))
     for code in QUIET:
         monkeypatch.setitem(RULES, code, RULES[code]._replace(check=lambda _: (), options={}))
@@ -83,6 +89,7 @@ REACH = [
     (f'{HERE}\ntext\n<link name="a"/>', ["MB002:2", "MB501:4"]),
     (f'<![CDATA[<link>]]>\n{HERE}\n<link name="a"/>', []),
     (f'<!-- {HERE[4:]}\n<link name="a"/>', []),
+    (f'{HERE}\n<?pi?>\n<link name="a"/>', ["MB002:2", "MB501:4"]),
     # More than one code.
     (f'{ignore("MB501, MB502")}\n<link name="a"/>', ["MB002:2"]),
     (f'{ignore("MB502 MB501")}\n<link name="a"/>', ["MB002:2"]),
@@ -228,6 +235,24 @@ def test_unused_is_told_only_of_rules_that_are_asked(
 ) -> None:
     text = f'<robot name="r">\n{HERE}\n<link name="base"/></robot>'
     assert told(linted(tmp_path, text, **options)) == ([] if spared else ["MB002:2"])
+
+
+@pytest.mark.parametrize(
+    ("body", "wanted"),
+    [
+        (f'<link name="base"/>\n{HERE}', ["MB002:3"]),
+        (f"{HERE}\n{HERE}", ["MB002:2", "MB002:3"]),
+        (f"<a>\n{HERE}\n</a>", []),  # a text could begin there
+        (f"<a/> {HERE}", []),
+        (f'<a\nb="c"/> {HERE}', []),
+    ],
+)
+def test_where_nothing_can_be_found_it_is_told_of_every_rule(
+    tmp_path: Path, body: str, wanted: list[str]
+) -> None:
+    found = linted(tmp_path, robot(body), select=("MB0",))
+    assert told(found) == wanted
+    assert {it.hint for it in found} <= {"put it on the line above the element"}
 
 
 def test_a_rule_without_its_settings_is_not_asked(
