@@ -1,0 +1,254 @@
+"""Nav2's behavior trees for any number of robots: the ports that name services, topics and frames.
+
+A name in a port is remapped by rcl as any other of the BT navigator's. ``{entry}`` is an entry of
+the blackboard and stays; what is put into one is followed into the subtrees that read it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, Any, NamedTuple
+from xml.sax.saxutils import escape
+
+from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.known_params import in_release
+from multibot_rewrite.companions.param_topics import FROM_NODE, topic
+from multibot_rewrite.companions.spelled import SPELLERS, is_plain
+from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
+from multibot_rewrite.companions.undeclared import lacks, renamed, said_of
+from multibot_rewrite.companions.yaml_text import Splice
+from multibot_rewrite.model import WARNING, Finding, InputError
+from multibot_rewrite.rewriting.document import Document, finding, read_document, value_slot
+from multibot_rewrite.rewriting.mentions import mentioned
+from multibot_rewrite.rosnames import check_topic_name
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+NAVIGATOR = "bt_navigator"
+# <Action ID="Spin"/> is <Spin/>.
+_FORMS = frozenset({"Action", "Condition", "Decorator", "Control"})
+_SUBTREES = frozenset({"SubTree", "SubTreePlus"})
+_SHARED = ("_autoremap", "__autoremap", "__shared_blackboard")
+_MODEL = "TreeNodesModel"
+_GRAPH_KINDS = {"service": "service", "topic": "topic", "action": "topic"}
+
+
+class _Port(NamedTuple):
+    """A value: the element it stands at, where that starts, and what it names; empty for nothing
+    that is known."""
+
+    element: _Element
+    start: int
+    attribute: str
+    value: str
+    kind: str
+
+
+class _Trees(NamedTuple):
+    """The trees of a file by their id; ``braces`` tells that only ``{entry}`` is an entry (4.x)."""
+
+    by_id: Mapping[str, _Element]
+    braces: bool
+
+
+def behavior_tree(data: bytes, file: str, context: Context) -> Companion:
+    """A behavior tree with holes for a robot, and what a person should know about it.
+
+    Raises InputError, in one line, for what is no behavior tree.
+    """
+    if not data.strip():
+        raise InputError(f"{file}:1: the file is empty; a behavior tree starts with <root>")
+    document = read_document(data, file)
+    if document.root.tag != "root":
+        place = f"{file}:{document.root.sourceline or 1}"
+        raise InputError(f"{place}: no behavior tree: it starts with <{document.root.tag}>")
+    if any(hole.encode() in data for hole in (GRAPH, SPELLED)):
+        raise InputError(f"{file}: the words {GRAPH} and {SPELLED} are this tool's own")
+    ports = list(_ports(document))
+    splices = [*_spliced(document, context, ports), *_defaults(document, context)]
+    return Companion(cut(data.decode(), splices), tuple(_findings(document, context, ports)))
+
+
+@cache
+def _known() -> Mapping[str, Any]:
+    import yaml
+
+    text = files("multibot_rewrite.companions").joinpath("behavior_tree.yaml").read_text()
+    return dict(yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)))
+
+
+def _ports(document: Document) -> Iterator[_Port]:
+    """Every attribute with what it names, those of models for editors aside."""
+    trees = _trees(document.root)
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        if _is_model(element):
+            yield from _model_default(element, start, trees)
+            continue
+        for attribute, value in element.items():
+            kind = _kind(element, str(attribute), str(value), trees)
+            yield _Port(element, start, str(attribute), str(value), kind)
+
+
+def _trees(root: _Element) -> _Trees:
+    found = {str(it.get("ID", "")): it for it in root.iter("BehaviorTree")}
+    return _Trees(found, str(root.get("BTCPP_format", "3")).startswith("4"))
+
+
+def _is_model(element: _Element) -> bool:
+    return element.tag == _MODEL or any(it.tag == _MODEL for it in element.iterancestors())
+
+
+def _model_default(element: _Element, start: int, trees: _Trees) -> Iterator[_Port]:
+    """BT.CPP takes defaults from models of subtrees; other models are for editors."""
+    above = element.getparent()
+    if above is None or above.tag not in _SUBTREES or "default" not in element.attrib:
+        return
+    name, value = str(element.get("name", "")), str(element.get("default"))
+    kind = _entries(trees, str(above.get("ID", "")), ()).get(name) or _known()["ports"].get(name)
+    yield _Port(element, start, "default", value, kind or "")
+
+
+def _kind(element: _Element, attribute: str, value: str, trees: _Trees) -> str:
+    """What a literal names; empty for entries of the blackboard."""
+    if _entry(element, value, trees):
+        return ""
+    if element.tag == "SetBlackboard" and attribute == "value":
+        tree = next((it for it in element.iterancestors("BehaviorTree")), None)
+        entries = _entries(trees, str(tree.get("ID", "")) if tree is not None else "", ())
+        return entries.get(str(element.get("output_key", "")).strip("{}"), "")
+    if attribute in _known()["keep"]:
+        return ""
+    return _port_kind(element, attribute, trees, ())
+
+
+def _port_kind(element: _Element, attribute: str, trees: _Trees, above: tuple[str, ...]) -> str:
+    if element.tag in _SUBTREES:
+        inside = _entries(trees, str(element.get("ID", "")), above).get(attribute)
+        return inside or _known()["ports"].get(attribute, "")
+    own = _known()["nodes"].get(_node_name(element), {})
+    return str(own.get(attribute) or _known()["ports"].get(attribute, ""))
+
+
+def _node_name(element: _Element) -> str:
+    return str(element.get("ID", "")) if element.tag in _FORMS else str(element.tag)
+
+
+def _entry(element: _Element, value: str, trees: _Trees) -> str:
+    """The entry of the blackboard that a value is; empty for a literal."""
+    if value.startswith("{") and value.endswith("}"):
+        return value[1:-1]
+    # A plain SubTree of BT.CPP 3 maps entries by their bare names.
+    return value if element.tag == "SubTree" and not trees.braces else ""
+
+
+def _entries(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, str]:
+    """What the entries that a tree reads are used as, in it and in the subtrees below."""
+    tree = trees.by_id.get(name)
+    if tree is None or name in above:
+        return {}
+    found: dict[str, str] = {}
+    for element in tree.iter("*"):
+        for attribute, value in element.items():
+            entry = _entry(element, str(value), trees)
+            if entry and attribute not in ("ID", "name", *_SHARED):
+                kind = _port_kind(element, str(attribute), trees, (*above, name))
+                found |= {entry: kind} if kind and entry not in found else {}
+        if any(element.get(it) in ("true", "1") for it in _SHARED):
+            below = _entries(trees, str(element.get("ID", "")), (*above, name))
+            found = {**below, **found}
+    return found
+
+
+def _respelled(context: Context, kind: str, value: str) -> str:
+    if kind in _GRAPH_KINDS:
+        # Spelled out even where a rule of the navigator's would do: rules miss its helper nodes.
+        return topic(context, NAVIGATOR, _GRAPH_KINDS[kind], value, FROM_NODE, {}).text
+    if not is_plain(value):
+        return value
+    return SPELLERS[kind](context, value)
+
+
+def _spliced(document: Document, context: Context, ports: Iterable[_Port]) -> Iterator[Splice]:
+    for port in ports:
+        new = _respelled(context, port.kind, port.value) if port.kind else port.value
+        if new == port.value:
+            continue
+        slot = value_slot(document.source, port.start, port.attribute, port.value)
+        if slot is None:
+            place = f"{document.file}:{port.element.sourceline}"
+            raise InputError(f"{place}: {port.attribute} cannot be edited; write it on one line")
+        written = document.source[slot[0] : slot[1]].decode() == port.value
+        text = new if written else escape(new, {'"': "&quot;", "'": "&apos;"})
+        first, last = (_character(document, at) for at in slot)
+        yield Splice(first, last, text)
+
+
+def _defaults(document: Document, context: Context) -> Iterator[Splice]:
+    """Ports whose default is every robot's: they are written out."""
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        name = _node_name(element)
+        for it in _known()["defaults"] if not _is_model(element) else ():
+            if it["node"] != name or it["port"] in element.attrib or it["unless"] in element.attrib:
+                continue
+            new = _respelled(context, it["kind"], it["value"])
+            if in_release(it["distros"], context.distro) and new != it["value"]:
+                at = _character(document, start + 1 + len(str(element.tag).encode()))
+                yield Splice(at, at, f' {it["port"]}="{new}"')
+
+
+def _character(document: Document, at: int) -> int:
+    """Templates count characters, documents bytes."""
+    source = document.source
+    return at if source.isascii() else len(source[:at].decode())
+
+
+def _findings(document: Document, context: Context, ports: Iterable[_Port]) -> Iterator[Finding]:
+    told: set[tuple[str, str]] = set()
+    names = renamed(context)
+    for port in ports:
+        said = _said(context, port, names)
+        if said is None or (said[0] == "MF401" and (port.kind, port.value) in told):
+            continue
+        told.add((port.kind, port.value))
+        slot = value_slot(document.source, port.start, port.attribute, port.value)
+        code, message, hint = said
+        yield finding(document, slot[0] if slot else port.start, code, WARNING, message, hint)
+
+
+def _said(context: Context, port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
+    """What is to be said of one value."""
+    if port.element.tag == "include":
+        message = f"another tree is included: {port.value!r}"
+        return "MF403", message, "give it as a behavior tree as well, for each robot"
+    if port.kind == "frame":
+        known = not lacks(context, "frame", port.value)
+        return None if known else ("MF401", *said_of(context, "frame", port.value))
+    if port.kind in _GRAPH_KINDS:
+        fault = check_topic_name(port.value) if is_plain(port.value) else None
+        message = f"{port.kind} {port.value!r} is none: {fault.reason if fault else ''}"
+        return ("MF404", message, "it stays as it is: correct it") if fault else None
+    return None if port.kind else _mention(port, names)
+
+
+def _mention(port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
+    known = _known()
+    text = port.value
+    if port.attribute in known["keep"] or (text[:1] == "{" and text[-1:] == "}"):
+        return None
+    if port.attribute in known["scripts"]:
+        words = [it.strip() for it in text.replace('"', "'").split("'")[1::2]]
+    else:
+        words = [text]
+    held = next((it for it in words if mentioned(it, names) or _is_absolute(it)), "")
+    if not held:
+        return None
+    message = f"unclaimed mention: {port.attribute} holds {held!r}, and nothing says what it means"
+    return "MF402", message, "it stays as it is: see whether it has to name one robot's"
+
+
+def _is_absolute(text: str) -> bool:
+    """What can only be a name of the graph, if it is no path of a file."""
+    return text[:1] == "/" and is_plain(text) and check_topic_name(text) is None
