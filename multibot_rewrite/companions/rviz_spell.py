@@ -57,11 +57,14 @@ def spelled(place: Place, robot: RvizRobot) -> str:
 
 
 def without_placeholder(value: str, lead: str) -> str:
-    """A name without what a launch file would have replaced by the robot's namespace."""
+    """A name without what a launch file would have replaced by the robot's namespace.
+
+    It stays where that is all of it, or where another placeholder is left.
+    """
     for word in rviz_data()["placeholders"]:
-        bare = value.lstrip("/")
-        if bare.startswith(word) and bare != word:
-            return lead + bare[len(word) :].lstrip("/")
+        bare = value.lstrip("/").removeprefix(word).lstrip("/")
+        if value.lstrip("/").startswith(word) and bare and "<" not in bare:
+            return lead + bare
     return value
 
 

@@ -185,39 +185,43 @@ def _entry(
     ros = both or text_of(node, ROS) or text_of(node, GZ)
     gz = both or text_of(node, GZ) or text_of(node, ROS)
     bare_ros, bare_gz = (without_placeholder(name, "/") for name in (ros, gz))
-    if text_of(node, SERVICE) or _is_open(bare_ros, bare_gz):
-        return _Entry(node, block, ros, gz, ros, gz, not text_of(node, SERVICE))
-    new_gz = gz_topic(context, bare_gz, model, text_of(node, "gz_type_name"))
+    found = _MODEL.fullmatch(bare_gz)
+    another = found and found["model"] != model and not _PLACEHOLDER.search(found["model"])
+    if text_of(node, SERVICE) or another:
+        return _Entry(node, block, ros, gz, ros, gz, False)
+    new_gz = gz_topic(context, bare_gz, text_of(node, "gz_type_name"))
     new_ros = robot_topic(context.topics, bare_ros, known)
-    own = new_gz != gz or new_ros != ros
+    own = new_gz != gz or new_ros != ros or bool(_PLACEHOLDER.search(ros + gz))
     if own:
-        # In full: a relative name would follow the namespace of the bridge.
-        new_gz, new_ros = (f"/{name.lstrip('/')}" for name in (new_gz, new_ros))
+        new_gz, new_ros = _in_full(new_gz), _in_full(new_ros)
     return _Entry(node, block, ros, gz, new_ros, new_gz, own)
 
 
-def _is_open(ros: str, gz: str) -> bool:
-    """Something is left for a launch file to fill in, beside the model's name."""
-    found = _MODEL.fullmatch(gz)
-    rest = found["above"] + (found["rest"] or "") if found else gz
-    return bool(_PLACEHOLDER.search(ros + rest))
+def _in_full(name: str) -> str:
+    """A relative name would follow the namespace of the bridge; one to be filled in stays."""
+    return name if _PLACEHOLDER.search(name) else f"/{name.lstrip('/')}"
 
 
-def gz_topic(context: Context, name: str, model: str, gz_type: str = "") -> str:
+def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     """A gz topic as the rewritten description and the spawned model have it."""
     found = _MODEL.fullmatch(name)
+    rest = (found["rest"] or "") if found else name
+    if _PLACEHOLDER.search(rest):
+        return name
     if found:
-        if found["model"] != model and not _PLACEHOLDER.search(found["model"]):
-            return name
-        rest = _PART.sub(
-            lambda it: f"{it[1]}/{respell(context.names, it[1], it[2])}", found["rest"] or ""
-        )
-        return f"{found['above']}{MODEL}{rest}"
+        return found["above"] + MODEL + _PART.sub(lambda it: _part(context, it), rest)
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):
         return name
     base, ending = _family(name, gz_type) if context.topics.naming.topics == POSTFIX else (name, "")
     return respell(context.topics, "topic", base, namespaced=False) + ending
+
+
+def _part(context: Context, found: re.Match[str]) -> str:
+    """A link, joint or sensor in a topic's name; one that is not declared stays."""
+    kind, name = found.groups()
+    known = is_declared(context.names, kind, name)
+    return f"{kind}/{respell(context.names, kind, name) if known else name}"
 
 
 def _family(name: str, gz_type: str) -> tuple[str, str]:
@@ -251,9 +255,10 @@ def _side(
 ) -> Iterator[Splice]:
     """One side's name, and the other's where the file leaves it to be the same."""
     other = GZ if key == ROS else ROS
+    new = entry.new_ros if key == ROS else entry.new_gz
     alone = not text_of(entry.node, other) and entry.new_ros != entry.new_gz
-    text = names[key] + (f"{ends}{other}: {names[other]}" if alone else "")
-    if text != node.value:
+    if alone or new != node.value:
+        text = names[key] + (f"{ends}{other}: {names[other]}" if alone else "")
         yield Splice(node.start_mark.index, node.end_mark.index, text)
 
 
@@ -274,18 +279,24 @@ def _without(document: YamlText, gone: Sequence[_Entry], entries: Sequence[_Entr
 def _remarks(document: YamlText, entry: _Entry, context: Context) -> Iterator[Finding]:
     node = entry.node
     if _PLACEHOLDER.search(entry.new_ros + entry.new_gz):
-        message = f"{entry.ros!r} or its gz topic holds a placeholder, so the entry stays as it is"
-        hint = "write the names of one robot, without its own name"
+        message = f"{entry.ros!r} or its gz topic holds a placeholder that stays"
+        hint = "fill it for each robot, or write the names of one robot without its own name"
         yield _finding(document, node, "MF503", WARNING, message, hint)
     elif not text_of(node, SERVICE) and not is_topic(entry.ros):
         message = f"{entry.ros!r} is no name of a ROS topic"
         yield _finding(document, node, "MF501", WARNING, message, f"give the entry a {ROS}")
-    elif text_of(node, SERVICE) and not text_of(node, SERVICE).strip("/").startswith("world/"):
+    for kind, name in _PART.findall(entry.gz if MODEL in entry.new_gz else ""):
+        if not is_declared(context.names, kind, name) and not _PLACEHOLDER.search(name):
+            message = f"the description has no {kind} {name!r}{_nearest(name, context, kind)}"
+            yield _finding(document, node, "MF507", WARNING, message, "mend the name")
+    if text_of(node, SERVICE) and not text_of(node, SERVICE).strip("/").startswith("world/"):
         message = f"service {text_of(node, SERVICE)!r} is bridged once for all robots"
         yield _finding(document, node, "MF503", WARNING, message, "name it by hand for each robot")
     for key, there in pairs(node):
         if key.value not in KEYS:
-            message = f"unknown key {key.value!r}, which the bridge reads over{_nearest(key.value)}"
+            message = (
+                f"unknown key {key.value!r}, which the bridge reads over{_near(key.value, KEYS)}"
+            )
             yield _finding(document, key, "MF504", WARNING, message, "mend the key")
         elif key.value not in (BOTH, ROS, GZ, "frame_id") and _is_mention(there, context):
             message = (
@@ -299,10 +310,14 @@ def _is_mention(node: yaml.Node, context: Context) -> bool:
     return is_text(node) and any(is_declared(known, it, node.value) for it in ("link", "joint"))
 
 
-def _nearest(key: str) -> str:
+def _nearest(name: str, context: Context, kind: str) -> str:
+    return _near(name, context.names.declared.get(kind, ()))
+
+
+def _near(name: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches
 
-    near = get_close_matches(key, KEYS, 1, 0.6)
+    near = get_close_matches(name, list(known), 1, 0.6)
     return f", did you mean {near[0]!r}?" if near else ""
 
 
