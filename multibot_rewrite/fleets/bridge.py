@@ -242,7 +242,7 @@ def _splices(document: YamlText, entry: _Entry, context: Context) -> Iterator[Sp
         if key.value == BOTH and entry.new_ros != entry.new_gz:
             text = ends.join(f"{side}: {name}" for side, name in names.items())
             yield Splice(key.start_mark.index, node.end_mark.index, text)
-        elif key.value == BOTH:
+        elif key.value == BOTH and entry.new_ros != node.value:
             yield replaced(node, entry.new_ros)
         elif key.value in names:
             yield from _side(entry, key.value, node, names, ends)
