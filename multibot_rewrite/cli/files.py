@@ -10,25 +10,62 @@ from contextlib import contextmanager, suppress
 from multibot_rewrite.model import UsageError
 
 
-def write_all(items: Iterable[tuple[str, bytes]]) -> None:
-    """Write every (path, data) beside its target, then rename; on an error nothing is left behind.
+def write_all(items: Iterable[tuple[str, bytes]], folders: bool = False) -> None:
+    """Write every (path, data) beside its target, then rename; on an error everything is as it was.
 
-    An existing file keeps its mode bits, a link stays a link. Raises UsageError with path, cause
-    and remedy.
+    ``folders`` makes those that are missing. An existing file keeps its mode bits, a link stays a
+    link. Raises UsageError with path, cause and remedy.
     """
     staged: dict[str, str] = {}
+    made: list[str] = []
     try:
         for path, data in items:
             with _explained(path):
+                if folders:
+                    _make_folders(os.path.dirname(path), made)
                 _stage(path, data, staged)
-        for target, temporary in list(staged.items()):
-            with _explained(target):
-                os.replace(temporary, target)
-            del staged[target]
+        _commit(staged)
+        made.clear()
     finally:
         for temporary in staged.values():
             with suppress(FileNotFoundError):
                 os.unlink(temporary)
+        for folder in reversed(made):
+            with suppress(OSError):
+                os.rmdir(folder)
+
+
+def _make_folders(folder: str, made: list[str]) -> None:
+    missing = []
+    while folder and not os.path.isdir(folder):
+        missing.append(folder)
+        folder = os.path.dirname(folder)
+    for path in reversed(missing):
+        os.mkdir(path)
+        made.append(path)
+
+
+def _commit(staged: dict[str, str]) -> None:
+    """Rename all, or give every target back what it was."""
+    done: list[tuple[str, str]] = []
+    try:
+        for target, temporary in list(staged.items()):
+            with _explained(target):
+                backup = f"{temporary}.old" if os.path.lexists(target) else ""
+                if backup:
+                    os.link(target, backup)
+                # Noted before it is done: an interrupt in between leaves nothing.
+                done.append((target, backup))
+                os.replace(temporary, target)
+            del staged[target]
+    except BaseException:
+        for target, backup in reversed(done):
+            with suppress(FileNotFoundError):
+                os.replace(backup, target) if backup else os.unlink(target)
+        raise
+    for _, backup in done:
+        if backup:
+            os.unlink(backup)
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:

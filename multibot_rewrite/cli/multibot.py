@@ -19,6 +19,7 @@ from multibot_rewrite.version import __version__
 
 COMMANDS = MappingProxyType(
     {
+        "build": "everything a fleet needs, from its fleet file",
         "check": "is the running system what was planned?",
         "coverage": "how much of a set of descriptions is known, and what is not",
         "learn": "nodes and stacks for remap and plan, from nodes that are running now",

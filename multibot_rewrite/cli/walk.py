@@ -38,7 +38,7 @@ def find_files(
 def _below(
     top: str, suffixes: tuple[str, ...], unreadable: Callable[[OSError], None]
 ) -> Iterator[str]:
-    """In order of names; links to folders are followed, each folder is visited once."""
+    """In order of names, without hidden folders; links are followed, each folder is visited once."""
     seen = set()
     for folder, folders, files in os.walk(top, onerror=unreadable, followlinks=True):
         real = os.path.realpath(folder)
@@ -46,7 +46,7 @@ def _below(
             folders.clear()
             continue
         seen.add(real)
-        folders.sort()
+        folders[:] = sorted(it for it in folders if not it.startswith("."))
         paths = [os.path.join(folder, name) for name in sorted(_named(files, suffixes))]
         # A dead link is told of when it is read; a pipe would never end.
         yield from (path for path in paths if os.path.isfile(path) or not os.path.exists(path))

@@ -41,12 +41,11 @@ def lint_data(path: str, data: bytes, settings: Settings) -> list[LintFinding]:
             for subject in read_subjects(path, data, settings):
                 found += lint_subject(subject)
                 sources = {**subject.sources, **sources}
-            found = unsuppressed(_merged(found), sources, settings)
     except InputError as error:
         found.append(failure(path, str(error), settings))
     except _TooLongError:
         found.append(too_long(path, settings.seconds))
-    return sorted(_merged(found), key=_order)
+    return sorted(unsuppressed(_merged(found), sources, settings), key=_order)
 
 
 def lint_subject(subject: Subject) -> list[LintFinding]:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from collections.abc import Iterable, Mapping, Sequence
+from typing import NamedTuple, TypeVar
 
 from lxml.etree import _Element
 
@@ -44,6 +44,9 @@ class Joint(NamedTuple):
     parts: Mapping[str, _Element]
 
 
+_Named = TypeVar("_Named", Link, Joint)
+
+
 class Robot(NamedTuple):
     """A URDF's own links and joints, in document order.
 
@@ -72,8 +75,8 @@ def read_robot(root: _Element) -> Robot:
     return Robot(
         links,
         joints,
-        {it.name: it for it in reversed(links)},
-        {it.name: it for it in reversed(joints)},
+        _firsts(links),
+        _firsts(joints),
         above,
         below,
         _bodies(links, above, below),
@@ -96,6 +99,14 @@ def _inertial(element: _Element) -> Inertial:
         None if mass is None else value_of(mass, "value"),
         moments if len(moments) == len(MOMENTS) else None,
     )
+
+
+def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
+    """The first thing of each name, in document order."""
+    order: dict[str, _Named] = {}
+    for it in things:
+        order.setdefault(it.name, it)
+    return order
 
 
 def _joint(element: _Element) -> Joint:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from fnmatch import fnmatch
 
 from lxml.etree import _Element
 
@@ -12,7 +11,7 @@ from multibot_rewrite.lint.pairing import SRDF_MARK, find_pair
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import read_robot
 from multibot_rewrite.lint.schema import read_faults
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
+from multibot_rewrite.lint.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
@@ -45,7 +44,7 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
 
 
 def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject]:
-    sets = [given for given in settings.arguments if fnmatch(path, given.pattern)]
+    sets = [given for given in settings.arguments if matches(path, given.pattern)]
     try:
         yield _expanded(path, data, DEFAULT, settings)
     except InputError as error:

@@ -1,0 +1,199 @@
+"""A planned fleet -> every file that belongs to it, in memory: one function a kind of file."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.companions.context import Companion
+from multibot_rewrite.companions.graph_names import known_topics
+from multibot_rewrite.companions.rviz import RvizRobot, rviz
+from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.fleet import expected
+from multibot_rewrite.fleets import bridge, spawn, teleop, transforms
+from multibot_rewrite.fleets.companions import Kin, behavior_trees, kin_of, lua, moveit, params
+from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.model import Finding, UsageError
+from multibot_rewrite.remap import forms
+from multibot_rewrite.remap.bridge import bridge as carried
+from multibot_rewrite.sources import read_file
+
+PLAN, TABLE, COMMANDS = "plan.yaml", "remappings.yaml", "commands.md"
+
+
+class Artefact(NamedTuple):
+    """A file to be written: its path below the output folder, its text, what it is made from."""
+
+    path: str
+    data: bytes
+    sources: tuple[str, ...] = ()
+
+
+Made = Iterator[Artefact | Finding]
+
+
+class Artefacts(NamedTuple):
+    """Everything of a fleet, in the order of paths, and what a person should know about it."""
+
+    files: tuple[Artefact, ...]
+    findings: tuple[Finding, ...]
+
+
+def make_artefacts(plan: FleetPlan) -> Artefacts:
+    """Every file of a fleet; raises InputError for a companion that cannot be read or rewritten."""
+    made = [it for make in _MAKERS for it in make(plan)]
+    files = sorted(it for it in made if isinstance(it, Artefact))
+    for one, other in itertools.pairwise(files):
+        if one.path == other.path:
+            both = f"{', '.join(one.sources)} and {', '.join(other.sources)}"
+            raise UsageError(f"{one.path}: two results would go to this one file, of {both}")
+    told = dict.fromkeys(it for it in made if isinstance(it, Finding))
+    told.update(dict.fromkeys(it for robot in plan.robots for it in robot.findings))
+    return Artefacts(tuple(files), tuple(told))
+
+
+def _descriptions(plan: FleetPlan) -> Made:
+    for robot in plan.robots:
+        source = robot.spec.description
+        yield Artefact(_own(robot, _plain(source)), robot.description, (source,))
+        if robot.srdf:
+            yield Artefact(_own(robot, _plain(robot.spec.srdf)), robot.srdf, (robot.spec.srdf,))
+
+
+def _plain(path: str) -> str:
+    """The file's name once xacro is expanded."""
+    name = os.path.basename(path).removesuffix(".xacro")
+    return name if "." in name else f"{name}.urdf"
+
+
+def _own(robot: Described, name: str) -> str:
+    return f"{robot.spec.name}/{name}"
+
+
+def _companions(plan: FleetPlan) -> Made:
+    kinds: dict[str, Callable[[FleetPlan, Kin, str], Companion]] = {
+        "params": params,
+        "moveit": moveit,
+        "behavior_trees": behavior_trees,
+    }
+    for kind, make in kinds.items():
+        for kin in kin_of(plan):
+            for path in kin.robots[0].spec.companions.get(kind, ()):
+                made = make(plan, kin, path)
+                yield from made.findings
+                for robot in kin.robots:
+                    text = fill(made.template, robot.spec.namespace, robot.spec.spelled)
+                    yield Artefact(_own(robot, os.path.basename(path)), text.encode(), (path,))
+    for kin in kin_of(plan):
+        for path in kin.robots[0].spec.companions.get("lua", ()):
+            yield from lua(kin, path)
+
+
+def _rviz(plan: FleetPlan) -> Made:
+    groups: dict[str, list[Described]] = {}
+    for robot in plan.robots:
+        for path in robot.spec.companions.get("rviz", ()):
+            groups.setdefault(path, []).append(robot)
+    for path, robots in groups.items():
+        shown = [_shown(plan, robot) for robot in robots]
+        world = transforms.world_of(plan.file, plan.fleet.naming)
+        made, findings = rviz(_yaml(path), shown, world=world)
+        yield from findings
+        for it in made:
+            name = os.path.basename(path)
+            where = f"{it.robot}/{name}" if it.robot else name
+            yield Artefact(where, it.text.encode(), (path,))
+
+
+def _shown(plan: FleetPlan, robot: Described) -> RvizRobot:
+    spec = robot.spec
+    names = robot.names._replace(robot=spec.spelled)
+    topics = robot.topics._replace(robot=spec.namespace)
+    known = known_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
+    return RvizRobot(spec.name, names, topics, spec.colour, known)
+
+
+def _bridges(plan: FleetPlan) -> Made:
+    """One bridge a robot, and one for what is the same for all."""
+    generated, left = carried(plan.fleet.inventories, plan.fleet.naming)
+    shared: list[tuple[str, str]] = []
+    for kin in kin_of(plan):
+        paths = kin.robots[0].spec.companions.get("bridge", ())
+        read = [(path, bridge.bridge(_yaml(path), kin.context)) for path in paths]
+        for path, made in read:
+            yield from made.own.findings
+            shared += [(path, made.shared)] if made.shared else []
+        for robot in kin.robots:
+            spec = robot.spec
+            words = spec.namespace, spec.spelled, spec.model
+            texts = [(path, bridge.filled(it.own.template, *words)) for path, it in read]
+            own = [it for it in generated if it.robot == spec.namespace]
+            text, findings = bridge.merged(texts, own)
+            yield from findings
+            if text:
+                yield Artefact(_own(robot, "bridge.yaml"), text.encode(), tuple(paths))
+    if any(it.robot for it in generated) or shared:
+        text, findings = bridge.merged(
+            dict.fromkeys(shared), [it for it in generated if not it.robot]
+        )
+        yield from findings
+        yield Artefact("bridge.yaml", text.encode(), tuple({path: 0 for path, _ in shared}))
+    for it in left:
+        hint = "give it a topic, for a bridge to carry"
+        message = f"{it.what} of {it.robot} has a gz topic that only the world knows"
+        file = next(r.spec.description for r in plan.robots if r.spec.namespace == it.robot)
+        yield Finding("MF505", "warning", message, hint, file, it.line, 1)
+
+
+def _tables(plan: FleetPlan) -> Made:
+    table = plan.fleet.table
+    yield Artefact(PLAN, to_yaml(expected(plan.fleet)).encode())
+    yield Artefact(TABLE, forms.as_yaml(table).encode())
+    yield Artefact("remappings.py", forms.launch(table).encode())
+
+
+def _commands(plan: FleetPlan) -> Made:
+    """The lines that start what no file does, robot by robot."""
+    placed = transforms.place(plan)
+    spawned, remarks = spawn.spawns(plan)
+    yield from (*placed.findings, *remarks)
+    rows = ["# Commands of this fleet\n"]
+    for robot, how, drive in zip(plan.robots, spawned, teleop.teleops(plan), strict=True):
+        own = [it for it in placed.transforms if it.robot == robot.spec.namespace]
+        rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
+        rows += [f"{transforms.command(it)}\n" for it in own]
+        rows += [f"{spawn.gz_command(how)}\n", f"# Gazebo Classic: {spawn.classic_command(how)}\n"]
+        rows += [f"{teleop.command(drive)}\n", "```\n"]
+    yield Artefact(COMMANDS, "".join(rows).encode())
+    for pose in placed.initial:
+        robot = next(it for it in plan.robots if it.spec.namespace == pose.robot)
+        yield Artefact(_own(robot, "start_pose.yaml"), _start_pose(plan, pose))
+
+
+def _start_pose(plan: FleetPlan, pose: transforms.InitialPose) -> bytes:
+    import yaml
+
+    tables = plan.fleet.table.nodes
+    node = next(it for it in tables if (it.robot, it.node) == (pose.robot, pose.node))
+    full = f"{node.namespace.rstrip('/')}/{node.name}"
+    data = {full: {"ros__parameters": dict(pose.values)}}
+    return yaml.safe_dump(data, sort_keys=False).encode()
+
+
+def _yaml(path: str) -> YamlText:
+    return read_yaml(read_file(path), path)
+
+
+_MAKERS: tuple[Callable[[FleetPlan], Made], ...] = (
+    _descriptions,
+    _companions,
+    _rviz,
+    _bridges,
+    _tables,
+    _commands,
+)

@@ -1,0 +1,71 @@
+"""Companion files of robots that share everything but their names: each is read and planned once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.companions import params as ros_params
+from multibot_rewrite.companions.behavior_tree import behavior_tree
+from multibot_rewrite.companions.context import Companion, Context, make_context
+from multibot_rewrite.companions.lua import lua as lua_options
+from multibot_rewrite.companions.moveit import moveit as moveit_file
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.fleet import facts_of
+from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.model import Finding
+from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.sources import read_file
+
+
+class Kin(NamedTuple):
+    """Robots of one description, with the same nodes and companion files."""
+
+    robots: tuple[Described, ...]
+    facts: tuple[NodeFacts, ...]
+    context: Context
+
+
+def kin_of(plan: FleetPlan) -> Iterator[Kin]:
+    """The groups of a fleet, in the order of their first robots."""
+    groups: dict[object, list[Described]] = {}
+    for robot in plan.robots:
+        spec = robot.spec
+        files = tuple(spec.companions.items())
+        key = spec.description, spec.srdf, tuple(spec.arguments.items()), spec.stacks, files
+        groups.setdefault(key, []).append(robot)
+    for robots in groups.values():
+        facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None)
+        declared, naming = robots[0].names.declared, plan.fleet.naming
+        yield Kin(tuple(robots), facts, make_context(declared, naming, facts, plan.file.distro))
+
+
+def params(plan: FleetPlan, kin: Kin, path: str) -> Companion:
+    """A ROS parameter file; what the others of the robot set is not inserted in it."""
+    paths = kin.robots[0].spec.companions["params"]
+    read = {it: read_yaml(read_file(it), it) for it in paths}
+    beside = [document for it, document in read.items() if it != path]
+    words = {word for it in plan.robots for word in (it.spec.namespace, it.spec.spelled)}
+    made = ros_params.params(
+        read[path], kin.context, beside=beside, facts=kin.facts, robots=sorted(words)
+    )
+    if path != paths[0]:
+        return made
+    more = ros_params.without_sections(list(read.values()), kin.context)
+    return made._replace(findings=(*made.findings, *more))
+
+
+def moveit(plan: FleetPlan, kin: Kin, path: str) -> Companion:
+    """One of MoveIt's files."""
+    return moveit_file(read_yaml(read_file(path), path), kin.context)
+
+
+def behavior_trees(plan: FleetPlan, kin: Kin, path: str) -> Companion:
+    """A behavior tree of Nav2."""
+    return behavior_tree(read_file(path), path, kin.context)
+
+
+def lua(kin: Kin, path: str) -> Iterator[Finding]:
+    """What cartographer's options have to be changed to by hand."""
+    yield from lua_options(read_file(path).decode("utf-8", "replace"), path, kin.context).findings
