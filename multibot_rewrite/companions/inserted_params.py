@@ -20,7 +20,7 @@ from multibot_rewrite.model import WARNING, Finding
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"
-_FRAMES = ("frame", "link", "stem")
+_FRAMES = ("frame", "link", "stem", "joint_prefix")
 
 
 class Line(NamedTuple):
@@ -46,6 +46,17 @@ def inserted(
         lines = list(missing(desk.context, section.node, here))
         if lines:
             yield _insert(desk.document, section.body, lines)
+        yield from _inexpressible(desk, section, section.node, here)
+
+
+def _inexpressible(
+    desk: Desk, section: Section, node: KnownNode, here: set[str]
+) -> Iterator[Finding]:
+    for param in node.defaults:
+        if param.path not in here and not expressible(desk.context, param.kind):
+            message = f"{param.path} can only put something before names, and the naming is a postfix"
+            key = section.keys[-1]
+            yield finding(desk.document, key, "MF117", WARNING, message, "use affix: prefix")
 
 
 def missing(context: Context, node: KnownNode, here: set[str]) -> Iterator[Line]:

@@ -181,8 +181,13 @@ def _node(name: str, item: Item, old: KnownNode | None) -> KnownNode:
         words_of(keys, "known_by") or (old.known_by if old else ()),
         word_of(keys, "note", old.note if old else ""),
         _tree(params.values()),
-        tuple(it for it in params.values() if it.default and "<" not in it.path),
+        tuple(it for it in params.values() if _has_default(it)),
     )
+
+
+def _has_default(param: Param) -> bool:
+    """Does the node take something for granted that has to be there once, under this very path?"""
+    return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
 
 
 def _param(path: str, item: Item, absolute: str) -> Param:
@@ -240,7 +245,7 @@ def _anywhere(
         kind = params[0].kind
         sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
         said = _guess(path.rpartition(".")[2], tuple(guesses.items())) == kind
-        if len({it.kind for it in params}) == 1 and (sure or said):
+        if kind != "exclusive" and len({it.kind for it in params}) == 1 and (sure or said):
             yield params[0]._replace(default="", absolute="")
 
 

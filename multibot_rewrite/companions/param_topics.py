@@ -114,7 +114,8 @@ def _landing(
     if not good:
         return Landing(texts[0], led[0])
     # A rule moves what the node makes of the name as well: <costmap>_updates, <image>/compressed.
-    return Landing(good[0] if naming.topics == NAMESPACE else good[-1])
+    ruled = naming.topics != NAMESPACE and reach == FROM_NODE
+    return Landing(good[-1] if ruled else good[0])
 
 
 def _wanted(context: Context, kind: str, value: str, node: NodeFacts) -> str:

@@ -50,8 +50,9 @@ def params(
 
     ``known`` is what is known of nodes' parameters, ``beside`` the other parameter files that the
     robot's nodes get: what they set is not inserted here. ``facts`` are those of the robot's nodes,
-    whose remap rules move topics too. ``robots`` are the words that stand for robots in names: a file
-    that has one of them in its names is refused. Raises InputError for a file that is none or that rcl refuses.
+    whose remap rules move topics too. ``robots`` are the words that stand for robots in names: it is
+    an error to have one of them in a name. Raises InputError for a file that is none or that rcl
+    refuses.
     """
     with uncollected():
         _check_holes(document)

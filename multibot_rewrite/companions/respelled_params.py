@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -28,6 +29,7 @@ from multibot_rewrite.rosnames import check_topic_name
 # What must be among the description's names, by the kinds that are looked at.
 _CLOSED = {"joint": ("joint",), "link": ("link",), "sensor": ("sensor",)}
 _PREFIXES = ("stem", "link_prefix", "joint_prefix")
+_PLACEHOLDER = re.compile(r"<[^>]*>|\$\([^)]*\)|\$?\{[^}]*\}")
 # Kinds of which a guess needs the description's word.
 _UNSURE = ("frame", "sensor", "interface")
 # A pattern that lets everything pass or nothing names no robot's name.
@@ -134,7 +136,7 @@ def about_names(desk: Desk, section: Section, uses: Uses) -> Iterator[Finding]:
     """What a person should know of a section's names and of its form."""
     for use in uses.names:
         yield from _about(desk, use)
-    guessed = [use.key for use in uses.names if use.param is None and use.kind != "keep"]
+    guessed = [use.key for use in uses.names if use.param is None and _is_taken(desk, use)]
     if guessed and section.node is None and not section.wild:
         words = ", ".join(dict.fromkeys(key.value for key in guessed))
         message = f"node {section.path} is not known: what holds names is guessed from {words}"
@@ -163,10 +165,15 @@ def _about(desk: Desk, use: Use) -> Iterator[Finding]:
     if said:
         code, level, message, hint = said
         yield finding(desk.document, use.scalar, code, level, message, hint)
-    if not is_plain(use.value) and ("<" in use.value or "$" in use.value):
-        message = f"{use.value} stays: a launch file has to fill it"
+    if found := _PLACEHOLDER.search(use.value):
+        message = f"{found[0]} stays: a launch file has to fill it"
         hint = "if the fill is the robot's name, write the name without it"
         yield finding(desk.document, use.scalar, "MF110", WARNING, message, hint)
+
+
+def _is_taken(desk: Desk, use: Use) -> bool:
+    """Does the guess make a name of it?"""
+    return use.kind in ("topic", "service") or _text(desk.context, use) != use.value
 
 
 _Said = tuple[str, str, str, str]
@@ -209,7 +216,7 @@ def _no_topic(use: Use) -> _Said | None:
 
 
 def _inexpressible(desk: Desk, use: Use) -> _Said | None:
-    if not use.value or expressible(desk.context, use.kind):
+    if expressible(desk.context, use.kind):
         return None
     message = f"{use.key.value} can only put something before names, and the naming is a postfix"
     return "MF117", WARNING, message, "use affix: prefix"

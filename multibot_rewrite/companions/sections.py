@@ -30,6 +30,9 @@ from multibot_rewrite.rosnames import check_node_name
 PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"
 _ANY = ("*", "**")
+# What a launch file fills.
+_FILLED = re.compile(r"[<${]")
+_PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Nodes of old releases that live inside another: they have sections, and no names of their own.
 _INNER = ("_rclcpp_node", "_client")
@@ -155,10 +158,14 @@ def known_sections(found: Iterable[Found], context: Context, known: Known) -> li
 
 def _section(it: Found, context: Context, known: Known, types: Mapping[str, str]) -> Section:
     name = it.path.rpartition("/")[2]
-    wild = any(token in _ANY for token in it.path.split("/"))
+    filled = bool(_FILLED.search(it.path))
+    wild = filled or any(token in _ANY for token in it.path.split("/"))
     place = context.nodes.get(name if wild else it.path, "")
     shared = bool(place) and GRAPH not in place
-    full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
+    if filled:
+        full = it.path
+    else:
+        full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
     inner = name.endswith(_INNER)
     node = None if name in _ANY else identified(name, it.body, known, types)
     return Section(it.keys, it.path, it.body, full, node, wild, shared, inner)
@@ -213,15 +220,22 @@ def key_splices(document: YamlText, sections: Sequence[Section]) -> list[Splice 
     new: dict[int, tuple[yaml.ScalarNode, str]] = {}
     told: list[Splice | Finding] = []
     for section in sections:
-        texts = [key.value for key in section.keys] if section.shared else _texts(section)
+        kept = section.shared or section.full == section.path
+        texts = [key.value for key in section.keys] if kept else _texts(section)
         for key, text in zip(section.keys, texts, strict=True):
             _, other = new.setdefault(id(key), (key, text))
             if other != text:
                 message = f"{key.value!r} holds sections that cannot have one name: {other}, {text}"
                 hint = "give each section its own key: node: ros__parameters:"
                 told.append(finding(document, key, "MF101", ERROR, message, hint))
-    told += [replaced(key, text) for key, text in new.values() if text != key.value]
+    told += [_key_splice(key, text) for key, text in new.values() if text != key.value]
     return told
+
+
+def _key_splice(key: yaml.ScalarNode, text: str) -> Splice:
+    """A pattern needs no quotes, as long as no star comes first."""
+    splice = replaced(key, text)
+    return splice if key.style or not _PATTERN.fullmatch(text) else splice._replace(new=text)
 
 
 def _texts(section: Section) -> list[str]:
@@ -265,7 +279,7 @@ def _about_namespace(document: YamlText, section: Section, context: Context) -> 
     """A namespace that is written out: of one robot, or one below each robot's."""
     tokens = section.path.split("/")
     key = section.keys[0]
-    if section.path in context.nodes or tokens[0] == "**" or "<" in section.path:
+    if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
         return
     tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
     stack = next((tail for tail in tails if tail in context.nodes), "")
@@ -281,7 +295,10 @@ def _about_namespace(document: YamlText, section: Section, context: Context) -> 
 
 def _about_name(document: YamlText, section: Section) -> Iterator[Finding]:
     for at, key in enumerate(section.keys):
-        if "<" in key.value or "$(" in key.value:
+        if _FILLED.search(key.value):
+            message = f"section {section.path} stays: a launch file has to fill it"
+            hint = "write the node's name alone, and the namespace is put there"
+            yield finding(document, key, "MF110", WARNING, message, hint)
             continue
         names = (it for it in key.value.strip("/").split("/") if it not in _ANY)
         faults = ((it, check_node_name(it)) for it in names)

@@ -21,6 +21,8 @@ _NUMBER = re.compile(r"[-+.\d]")
 _STEM = re.compile(r"(.*?)\d+")
 # Words of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
+# Nothing at all is what stands before a name that has no prefix yet.
+_TAKE_EMPTY = ("link_prefix", "joint_prefix")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
 
 
@@ -150,7 +152,7 @@ def _values(
             continue
         # Theirs may be booleans and numbers.
         text = str(scalar.value) if kind in ("off", "exclusive") else name_in(scalar)
-        if not text:
+        if not text and not (scalar.style and kind in _TAKE_EMPTY):
             continue
         kind = kind or guess(known, key.value)
         if kind:

@@ -1,0 +1,118 @@
+"""Measure parameter files against other ways to namespace them: ratios, taken in pairs in one run.
+
+python benchmarks/bench_params.py [FILE]            print the table
+python benchmarks/bench_params.py [FILE] --write    and put it into docs/benchmark-params.md
+
+FILE is a Nav2 parameter file; without one, Nav2's own is looked for in the corpus.
+"""
+
+from __future__ import annotations
+
+import gc
+import os
+import platform
+import sys
+import tempfile
+from pathlib import Path
+
+import yaml
+from pairs import Row, paired, seconds, table
+
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.params import params
+from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.stacks import load_stack
+
+ROOT = Path(__file__).parent.parent
+PAGE = ROOT / "docs" / "benchmark-params.md"
+NAV2 = "nav2_params/ros-navigation+navigation2/nav2_bringup__params__nav2_params.yaml"
+FILE = ROOT.parent / "shared" / "corpus" / NAV2
+DECLARED: dict[str, dict[str, None]] = {
+    "link": dict.fromkeys(("base_link", "base_footprint", "base_scan")),
+    **{kind: {} for kind in ("joint", "model", "group", "frame", "sensor")},
+}
+
+
+def context(layout: str, affix: str) -> Context:
+    """Nav2 on a robot of three links."""
+    naming = make_naming(layout=layout, affix=affix)
+    return make_context(DECLARED, naming, load_stack("nav2"))  # type: ignore[arg-type]
+
+
+def first(data: bytes, setting: Context) -> str:
+    """A file for its first robot."""
+    companion = params(read_yaml(data, "nav2_params.yaml"), setting)
+    return fill(companion.template, "robot1", "robot1")
+
+
+def load_and_dump(data: bytes) -> str:
+    """What nav2_common's RewrittenYaml does: load, put a key on top, dump; both in Python."""
+    return yaml.dump({"robot1": yaml.safe_load(data)})
+
+
+def raw_write(data: bytes, path: str) -> None:
+    """The file as it is, on the disk."""
+    with open(path, "wb") as file:
+        file.write(data)
+
+
+def rows(data: bytes) -> list[Row]:
+    """All measurements."""
+    l2, l4 = context("L2", "prefix"), context("L4", "postfix")
+    template = params(read_yaml(data, "nav2_params.yaml"), l2).template
+    again, composed = "fill(template)", "yaml.compose, which reads it"
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "raw.yaml")
+        return [
+            Row("first robot, L2", "PyYAML load and dump (RewrittenYaml)",
+                paired(lambda: first(data, l2), lambda: load_and_dump(data)), "0.1"),
+            Row("first robot, L4", "PyYAML load and dump (RewrittenYaml)",
+                paired(lambda: first(data, l4), lambda: load_and_dump(data)), "0.1"),
+            Row("first robot, L2", composed,
+                paired(lambda: first(data, l2), lambda: read_yaml(data, "x"), 60), ""),
+            Row(f"each further robot: {again}", "first robot",
+                paired(lambda: fill(template, "robot2", "robot2"), lambda: first(data, l2), 60), "0.1"),
+            Row("first robot, L2", "a raw write of the file",
+                paired(lambda: first(data, l2), lambda: raw_write(data, path), 60), ""),
+            Row(f"each further robot: {again}", "a raw write of the file",
+                paired(lambda: fill(template, "robot2", "robot2"), lambda: raw_write(data, path), 60), "1"),
+        ]  # fmt: skip
+
+
+def least(data: bytes, runs: int = 200) -> float:
+    """Milliseconds for a file's first robot, at best: other work on the machine aside."""
+    setting = context("L2", "prefix")
+    gc.collect()
+    return 1000 * min(seconds(lambda: first(data, setting)) for _ in range(runs))
+
+
+def page(data: bytes) -> str:
+    """The page as Markdown."""
+    lines = data.count(b"\n")
+    return f"""# Benchmark of parameter files
+
+Made by `python benchmarks/bench_params.py --write` in one run, on Nav2's own file of {lines} lines
+(CPython {platform.python_version()}, {os.cpu_count()} cores, a shared machine). Ratios are medians of
+pairs measured in turn; what is known of nodes is loaded before.
+
+{table(rows(data))}
+At best {least(data):.1f} ms for the first robot, in process (goal: 3 ms).
+"""
+
+
+def main(arguments: list[str]) -> None:
+    """Print the page, or write it."""
+    paths = [it for it in arguments if not it.startswith("-")]
+    path = Path(paths[0]) if paths else FILE
+    if not path.exists():
+        sys.exit(f"{path}: there is no such file; name a Nav2 parameter file")
+    text = page(path.read_bytes())
+    print(text)
+    if "--write" in arguments:
+        PAGE.write_text(text)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
