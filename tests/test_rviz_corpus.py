@@ -195,7 +195,7 @@ def check_together(source: Any, result: Any) -> None:
 
 
 def topics(group: dict[str, Any]) -> str:
-    return str([one for one in leaves(group["Displays"])])
+    return str(list(leaves(group["Displays"])))
 
 
 def same(old: dict[str, Any], new: dict[str, Any], robot: str, layout: str) -> bool:

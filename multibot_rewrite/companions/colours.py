@@ -12,8 +12,9 @@ Colour = tuple[int, int, int]
 _STEP = 0.618034
 
 
-def read_colour(given: str | tuple[int, ...]) -> Colour:
-    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else."""
+def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
+    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else, which names
+    the robot."""
     if not isinstance(given, str):
         red, green, blue = given
         return red, green, blue
@@ -32,7 +33,8 @@ def read_colour(given: str | tuple[int, ...]) -> Colour:
 
     near = get_close_matches(given, known, 1, 0.5)
     hint = f"did you mean {near[0]!r}?" if near else "write #rrggbb or [r, g, b]"
-    raise InputError(f"colour {given!r} is not known; {hint}")
+    whose = f"robot {robot!r}: " if robot else ""
+    raise InputError(f"{whose}colour {given!r} is not known; {hint}")
 
 
 def palette(at: int) -> Colour:
