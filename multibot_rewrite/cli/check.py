@@ -35,7 +35,7 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 def options(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
     parser.epilog = MORE
-    parser.add_argument("plan", metavar="PLAN", help="what multibot plan wrote")
+    parser.add_argument("plan", metavar="PLAN", help="what multibot plan wrote, or a fleet file")
     seen = parser.add_mutually_exclusive_group()
     seen.add_argument("--snapshot", metavar="FILE", help="what multibot snapshot wrote")
     seen.add_argument(
@@ -48,12 +48,26 @@ def options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Compare, print a line for each finding, sum up; returns the exit code."""
     pictures.check(options)
-    plan = from_yaml(read_file(options.plan), options.plan)
+    plan = _plan(options.plan)
     try:
         return _watch(options, plan) if options.watch else _check(options, plan)
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+
+
+def _plan(path: str) -> Expectation:
+    """The plan that a file holds, or that follows from a fleet file."""
+    from multibot_rewrite.fleets.fleet_file import is_fleet, read_fleet
+
+    data = read_file(path)
+    if not is_fleet(data):
+        return from_yaml(data, path)
+    from multibot_rewrite.fleet import expected
+    from multibot_rewrite.fleets.plan import plan_fleet
+    from multibot_rewrite.fleets.started import started
+
+    return expected(started(plan_fleet(read_fleet(path))))
 
 
 def _check(options: argparse.Namespace, plan: Expectation) -> int:

@@ -11,18 +11,22 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.fleet import Fleet, make_fleet
-from multibot_rewrite.model import ERROR
+from multibot_rewrite.model import ERROR, UsageError
 from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS
 from multibot_rewrite.remap.records import Problem
+
+FLEET_FILES = (".yaml", ".yml")
+USUAL = {"layout": "postfix", "affix": "postfix", "shared_topics": ",".join(SHARED_TOPICS)}
 
 
 def options(parser: argparse.ArgumentParser) -> None:
     """Add the options that say which robots, nodes and layout."""
     names = ", ".join(f"{layout.name} ({layout.short})" for layout in LAYOUTS)
     shared = ",".join(SHARED_TOPICS)
-    parser.add_argument("input", metavar="INPUT", help="the robot's description, not rewritten")
+    help_ = "the robot's description, not rewritten; or a fleet file (*.yaml), which says the rest"
+    parser.add_argument("input", metavar="INPUT", help=help_)
     parser.add_argument(
-        "robots", nargs="+", metavar="ROBOT", help="names of the robots; NAME:=VALUE is for xacro"
+        "robots", nargs="*", metavar="ROBOT", help="names of the robots; NAME:=VALUE is for xacro"
     )
     parser.add_argument(
         "--stack", action="append", default=[], metavar="NAME", help="nodes that every robot runs"
@@ -44,10 +48,34 @@ def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
     """
     if options.output:
         check_target(options.output, [options.input], "--output")
+    if options.input.endswith(FLEET_FILES):
+        made = _from_file(options, also)
+    else:
+        made = _from_words(options, also)
+    _tell(made.table.problems)
+    return made
+
+
+def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
+    from multibot_rewrite.fleets.fleet_file import read_fleet  # one description needs none of it
+    from multibot_rewrite.fleets.plan import plan_fleet
+    from multibot_rewrite.fleets.started import started
+
+    given = [name for name in ("robots", "stack", "nodes", "topics") if getattr(options, name)]
+    given += [name for name, usual in USUAL.items() if getattr(options, name) != usual]
+    if given:
+        raise UsageError(f"{options.input} says which {given[0]} there are: leave that out")
+    return started(plan_fleet(read_fleet(options.input), also))
+
+
+def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
+    robots = [word for word in options.robots if ":=" not in word]
+    if not robots:
+        raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
     arguments = [word for word in options.robots if ":=" in word]
-    made = make_fleet(
+    return make_fleet(
         options.input,
-        [word for word in options.robots if ":=" not in word],
+        robots,
         [*options.stack, *also],
         nodes=options.nodes,
         vocabulary=configured_vocabulary(options.input),
@@ -57,8 +85,6 @@ def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
         topics=options.topics,
         shared_topics=options.shared_topics.split(","),
     )
-    _tell(made.table.problems)
-    return made
 
 
 def deliver(options: argparse.Namespace, text: str) -> None:

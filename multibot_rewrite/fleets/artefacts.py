@@ -10,13 +10,14 @@ from typing import NamedTuple
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.graph_names import known_topics
 from multibot_rewrite.companions.rviz import RvizRobot, rviz
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.template import GRAPH, SPELLED, fill
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.fleet import expected
 from multibot_rewrite.fleets import bridge, spawn, teleop, transforms
 from multibot_rewrite.fleets.companions import Kin, behavior_trees, kin_of, lua, moveit, params
 from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.fleets.started import started
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.remap import forms
@@ -85,13 +86,22 @@ def _companions(plan: FleetPlan) -> Made:
         for kin in kin_of(plan):
             for path in kin.robots[0].spec.companions.get(kind, ()):
                 made = make(plan, kin, path)
-                yield from made.findings
+                yield from (_said(it, kin.robots[0]) for it in made.findings)
                 for robot in kin.robots:
                     text = fill(made.template, robot.spec.namespace, robot.spec.spelled)
                     yield Artefact(_own(robot, os.path.basename(path)), text.encode(), (path,))
     for kin in kin_of(plan):
         for path in kin.robots[0].spec.companions.get("lua", ()):
             yield from lua(kin, path)
+
+
+def _said(finding: Finding, robot: Described) -> Finding:
+    """A finding about a file for any robot, told with the names of the first."""
+    words = {GRAPH: robot.spec.namespace, SPELLED: robot.spec.spelled}
+    message, hint = finding.message, finding.hint
+    for hole, word in words.items():
+        message, hint = message.replace(hole, word), hint.replace(hole, word)
+    return finding._replace(message=message, hint=hint)
 
 
 def _rviz(plan: FleetPlan) -> Made:
@@ -151,8 +161,12 @@ def _bridges(plan: FleetPlan) -> Made:
 
 
 def _tables(plan: FleetPlan) -> Made:
-    table = plan.fleet.table
-    yield Artefact(PLAN, to_yaml(expected(plan.fleet)).encode())
+    fleet = started(plan)
+    table = fleet.table
+    # The same wherever the command was run.
+    folder = os.path.dirname(os.path.abspath(plan.file.file))
+    sources = {node: os.path.relpath(place, folder) for node, place in fleet.sources.items()}
+    yield Artefact(PLAN, to_yaml(expected(fleet._replace(sources=sources))).encode())
     yield Artefact(TABLE, forms.as_yaml(table).encode())
     yield Artefact("remappings.py", forms.launch(table).encode())
 

@@ -68,4 +68,4 @@ def behavior_trees(plan: FleetPlan, kin: Kin, path: str) -> Companion:
 
 def lua(kin: Kin, path: str) -> Iterator[Finding]:
     """What cartographer's options have to be changed to by hand."""
-    yield from lua_options(read_file(path).decode("utf-8", "replace"), path, kin.context).findings
+    yield from lua_options(read_file(path).decode("utf-8", "replace"), path, kin.context)

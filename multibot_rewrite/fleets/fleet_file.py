@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
@@ -21,6 +22,8 @@ LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
 POLICY = ("layout", "affix", "topics", "groups", "separators", "shared_frames", "shared_topics")
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 Path = tuple[Any, ...]
+# What stands behind ``robots:``, empty lines and comments aside.
+_ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
 
 
 class Pose(NamedTuple):
@@ -93,6 +96,12 @@ def read_fleet(path: str) -> FleetFile:
         tuple(_listed(data.get("vocabulary", []))),
         robots,
     )
+
+
+def is_fleet(data: bytes) -> bool:
+    """Is this a fleet file? Its robots are a list; those of a plan have their names as keys."""
+    found = _ROBOTS.search(data)
+    return found is not None and found[1][:1] in (b"-", b"[")
 
 
 def _with_includes(path: str, above: tuple[str, ...]) -> _Read:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleet import Fleet, assemble, facts_of, merge
@@ -17,17 +18,20 @@ class FleetPlan(NamedTuple):
     fleet: Fleet
 
 
-def plan_fleet(file: FleetFile) -> FleetPlan:
+def plan_fleet(file: FleetFile, also: Sequence[str] = ()) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
-    Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    ``also`` are nodes that every robot runs, too. Raises as ``rewrite_all``, and UsageError for an
+    unknown stack.
     """
     robots = describe(file.robots, file.policy, file.vocabulary)
     stacks: dict[tuple[str, ...], list[Described]] = {}
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
     fleets = [
-        assemble([it.member for it in group], facts_of(names, file.nodes or None), file.policy)
+        assemble(
+            [it.member for it in group], facts_of((*names, *also), file.nodes or None), file.policy
+        )
         for names, group in stacks.items()
     ]
     return FleetPlan(file, tuple(robots), merge(fleets))

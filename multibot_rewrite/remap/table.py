@@ -62,11 +62,11 @@ def _build(
 ) -> Table:
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's differs in nothing but the robot's name.
-    names_of = frozenset(node.name for node in nodes if not node.shared)
-    own = [(node, node_table(PROBE, node, naming, names_of)) for node in nodes if not node.shared]
-    meant = list(_names(own))
+    others = frozenset(node.name for node in nodes if not node.shared)
+    own = [(node, node_table(PROBE, node, naming, others)) for node in nodes if not node.shared]
+    meant = list(names_of(own))
     names = {
-        robot: [*_renamed(meant, robot), *_names(plugins.get(robot, ()))]
+        robot: [*_renamed(meant, robot), *names_of(plugins.get(robot, ()))]
         for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
     }
     problems = [
@@ -75,7 +75,7 @@ def _build(
         *_meeting(names, naming),
     ]
     problems += [found for robot in robots for found in _useless(plugins.get(robot, ()))]
-    kept = [*_names(shared), *(name for robot in robots for name in names[robot])]
+    kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]
     for robot in robots:
         tables += [*_copies(own, robot), *(table for _, table in plugins.get(robot, ()))]
@@ -210,7 +210,8 @@ def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
     return tuple(rule for rule in found if rule is not None)
 
 
-def _names(pairs: Pairs) -> Iterator[Name]:
+def names_of(pairs: Pairs) -> Iterator[Name]:
+    """Where each name of these nodes leads."""
     for node, table in pairs:
         bound = bind(table.name, table.namespace, parsed(table.rules))
         bare = bind(table.name, table.namespace, ())
