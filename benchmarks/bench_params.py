@@ -13,6 +13,7 @@ import os
 import platform
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 
 import yaml
@@ -63,6 +64,7 @@ def rows(data: bytes) -> list[Row]:
     l2, l4 = context("L2", "prefix"), context("L4", "postfix")
     template = params(read_yaml(data, "nav2_params.yaml"), l2).template
     again, composed = "fill(template)", "yaml.compose, which reads it"
+    second = partial(fill, template, "robot2", "robot2")
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "raw.yaml")
         return [
@@ -73,11 +75,11 @@ def rows(data: bytes) -> list[Row]:
             Row("first robot, L2", composed,
                 paired(lambda: first(data, l2), lambda: read_yaml(data, "x"), 60), ""),
             Row(f"each further robot: {again}", "first robot",
-                paired(lambda: fill(template, "robot2", "robot2"), lambda: first(data, l2), 60), "0.1"),
+                paired(second, lambda: first(data, l2), 60), "0.1"),
             Row("first robot, L2", "a raw write of the file",
                 paired(lambda: first(data, l2), lambda: raw_write(data, path), 60), ""),
             Row(f"each further robot: {again}", "a raw write of the file",
-                paired(lambda: fill(template, "robot2", "robot2"), lambda: raw_write(data, path), 60), "1"),
+                paired(second, lambda: raw_write(data, path), 60), "1"),
         ]  # fmt: skip
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from pathlib import Path
 
 import pytest
 import yaml
@@ -18,6 +19,7 @@ from multibot_rewrite.companions.known_params import (
     known_params,
 )
 from multibot_rewrite.companions.params import params, without_sections
+from multibot_rewrite.companions.params_page import page
 from multibot_rewrite.companions.template import GRAPH, fill
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.model import Finding, InputError, UsageError
@@ -25,6 +27,7 @@ from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.known import extended, stack_of
 from multibot_rewrite.remap.stacks import built_in, load_stack
 
+ROOT = Path(__file__).parent.parent
 LINKS = ("base_link", "base_footprint", "laser", "tool0")
 JOINTS = ("left_wheel", "right_wheel", "shoulder", "elbow")
 SENSORS = ("imu_sensor",)
@@ -636,3 +639,27 @@ def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str)
     template = params(read_yaml(source.encode(), "p"), setting(policy)).template
     one, two = fill(template, "robot1", "r1"), fill(template, f"g{robot}", f"s{robot}")
     assert one.replace("robot1", f"g{robot}").replace("r1", f"s{robot}") == two
+
+
+# ---------------------------------------------------------------- the page
+
+
+def test_the_page_has_the_table_and_every_code() -> None:
+    text = (ROOT / "docs" / "params.md").read_text()
+    assert text.endswith(page(built_in_params()))
+    source = "".join(
+        (ROOT / "multibot_rewrite" / "companions" / name).read_text()
+        for name in ("sections.py", "respelled_params.py", "inserted_params.py")
+    )
+    assert set(re.findall(r"MF1\d\d", text)) == set(re.findall(r'"(MF1\d\d)"', source))
+
+
+def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "params.md").read_text()
+    path = tmp_path / "more.yaml"
+    path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
+    source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")
+    text, _ = made(source, known=known_params(str(path)))
+    assert "base: r1/mast_base" in text
+    assert "motors: [r1_elbow]" in text
+    assert "limits: {r1_elbow: {max: 1}}" in text

@@ -54,7 +54,9 @@ def _inexpressible(
 ) -> Iterator[Finding]:
     for param in node.defaults:
         if param.path not in here and not expressible(desk.context, param.kind):
-            message = f"{param.path} can only put something before names, and the naming is a postfix"
+            message = (
+                f"{param.path} can only put something before names, and the naming is a postfix"
+            )
             key = section.keys[-1]
             yield finding(desk.document, key, "MF117", WARNING, message, "use affix: prefix")
 

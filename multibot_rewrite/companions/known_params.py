@@ -5,8 +5,8 @@ From ``params.yaml`` and files of the same shape.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
-from fnmatch import fnmatchcase
 from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
@@ -83,7 +83,8 @@ class KnownNode(NamedTuple):
 
 class Known(NamedTuple):
     """All known nodes; ``names`` and ``types`` lead to them. ``anywhere`` holds what is the same in
-    every node that has it, ``guesses`` last words of other paths, ``sent`` frames that nodes send.
+    every node that has it, ``guesses`` last words of other paths (``guessing`` as one expression),
+    ``sent`` frames that nodes send.
     """
 
     nodes: Mapping[str, KnownNode]
@@ -91,6 +92,7 @@ class Known(NamedTuple):
     types: Mapping[str, str]
     anywhere: Branch
     guesses: Mapping[str, tuple[str, ...]]
+    guessing: re.Pattern[str]
     sent: frozenset[str]
 
 
@@ -134,13 +136,17 @@ def in_release(words: str, distro: str) -> bool:
 
 def guess(known: Known, path: str) -> str:
     """The kind that the last word of a path makes likely; empty for none."""
-    return _guess(path.rpartition(".")[2], tuple(known.guesses.items()))
+    found = known.guessing.fullmatch(path, path.rfind(".") + 1)
+    return (found.lastgroup or "") if found else ""
 
 
-@lru_cache(maxsize=4096)
-def _guess(last: str, guesses: tuple[tuple[str, tuple[str, ...]], ...]) -> str:
-    found = (kind for kind, words in guesses if any(fnmatchcase(last, it) for it in words))
-    return next(found, "")
+def _guessing(guesses: Mapping[str, tuple[str, ...]]) -> re.Pattern[str]:
+    """One expression for all guesses, with a group for each kind."""
+    every = {
+        kind: "|".join(re.escape(it).replace(r"\*", ".*") for it in words)
+        for kind, words in guesses.items()
+    }
+    return re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
 
 
 def _known(
@@ -162,7 +168,8 @@ def _known(
     types = {type_: it.name for it in nodes.values() for type_ in it.types}
     names |= {name: name for name in nodes}
     sent |= frozenset(words_of(top, "sent"))
-    return Known(nodes, names, types, _tree(_anywhere(nodes, guesses)), guesses, sent)
+    guessing = _guessing(guesses)
+    return Known(nodes, names, types, _tree(_anywhere(nodes, guessing)), guesses, guessing, sent)
 
 
 def _node(name: str, item: Item, old: KnownNode | None) -> KnownNode:
@@ -231,9 +238,7 @@ def _releases(keys: Mapping[str, Item], key: str) -> str:
     return words
 
 
-def _anywhere(
-    nodes: Mapping[str, KnownNode], guesses: Mapping[str, tuple[str, ...]]
-) -> Iterator[Param]:
+def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:
     """Parameters that are likely the same in a node nobody knows: several nodes have them, all with
     one meaning, or their name says as much."""
     found: dict[str, list[Param]] = {}
@@ -244,8 +249,12 @@ def _anywhere(
     for path, params in found.items():
         kind = params[0].kind
         sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
-        said = _guess(path.rpartition(".")[2], tuple(guesses.items())) == kind
-        if kind != "exclusive" and len({it.kind for it in params}) == 1 and (sure or said):
+        said = guessing.fullmatch(path.rpartition(".")[2])
+        if (
+            kind != "exclusive"
+            and len({it.kind for it in params}) == 1
+            and (sure or (said and said.lastgroup == kind))
+        ):
             yield params[0]._replace(default="", absolute="")
 
 

@@ -165,7 +165,7 @@ def _about(desk: Desk, use: Use) -> Iterator[Finding]:
     if said:
         code, level, message, hint = said
         yield finding(desk.document, use.scalar, code, level, message, hint)
-    if found := _PLACEHOLDER.search(use.value):
+    if not is_plain(use.value) and (found := _PLACEHOLDER.search(use.value)):
         message = f"{found[0]} stays: a launch file has to fill it"
         hint = "if the fill is the robot's name, write the name without it"
         yield finding(desk.document, use.scalar, "MF110", WARNING, message, hint)
@@ -266,13 +266,10 @@ def unclaimed(desk: Desk, pages: Sequence[Uses]) -> Iterator[Finding]:
     }
     either = {**claimed, **declared}
     for uses in pages:
-        found = [(it, either) for it in uses.unclaimed]
-        for scalar, names in (*found, *((it, declared) for it in uses.keys)):
-            text = str(scalar.value)
-            kind = names.get(text)
-            if kind is None:
-                continue
-            message = f"{text!r} is a {kind} of the robot, and nothing says what it is here"
+        found = [(it, either[it.value]) for it in uses.unclaimed if it.value in either]
+        found += [(it, declared[it.value]) for it in uses.keys if it.value in declared]
+        for scalar, kind in found:
+            message = f"{scalar.value!r} is a {kind} of the robot, and nothing says what it is here"
             hint = "if it is a name, describe the parameter in a file of parameters"
             yield finding(desk.document, scalar, "MF123", WARNING, message, hint)
 

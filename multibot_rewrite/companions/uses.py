@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.companions.known_params import Branch, Known, Param, guess
 from multibot_rewrite.companions.sections import Section
-from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs
+from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.model import InputError
 
 STRING = "tag:yaml.org,2002:str"
@@ -76,6 +75,8 @@ def _walk(
         if not isinstance(key, yaml.ScalarNode):
             place = f"{document.file}:{line_of(key)}"
             raise InputError(f"{place}: a key is a mapping or a list; write a name")
+        if key.value in seen:
+            uses.twice.append(key)
         seen.add(key.value)
         below = _below(states, key.value, key) if states else states
         if not below:
@@ -85,16 +86,6 @@ def _walk(
         # Most parameters are numbers that nothing is known of.
         elif below or value.tag not in _NO_NAMES:
             _claim(key, value, below, body, known, uses)
-    if len(seen) < len(body.value):
-        uses.twice.extend(_repeated(body))
-
-
-def _repeated(body: yaml.MappingNode) -> Iterator[yaml.ScalarNode]:
-    seen = set()
-    for key, _ in pairs(body):
-        if key.value in seen:
-            yield key
-        seen.add(key.value)
 
 
 def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
