@@ -17,6 +17,7 @@ from multibot_rewrite.companions.rviz import RvizText, rviz, start_command
 from multibot_rewrite.companions.rviz_read import rviz_data
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.model import Finding, InputError, UsageError
+from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 
@@ -485,6 +486,35 @@ def test_known_classes_have_known_words() -> None:
         *("regex", "file", "siblings", "keep"),
     }
     assert set(rviz_data()["flags"].values()) == {"dock", "shared", "process", "absolute"}
+
+
+def test_a_map_that_is_shared_stays_once() -> None:
+    text = config("Class: rviz_default_plugins/Map\nTopic: /map\nUpdate Topic: /map_updates")
+    assert manager(text=text)["Displays"][0]["Name"] == "robot1"
+    robots = robots_of(declared(), "L2", ROBOTS)
+    naming = make_naming("L2", "prefix", shared_topics=("map", "map_updates"))
+    shared = [
+        it._replace(
+            names=it.names._replace(naming=naming), topics=it.topics._replace(naming=naming)
+        )
+        for it in robots
+    ]
+    assert rviz(read_yaml(text.encode(), "one.rviz"), shared)[0][0].text == text
+
+
+def test_volatile_descriptions_are_told_once() -> None:
+    model = (
+        "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile"
+    )
+    other = "    - Name: two\n" + "".join(f"      {line}\n" for line in model.splitlines())
+    assert codes(config(model, other)).count("MF214") == 1
+
+
+def test_orientation_frames_are_no_frames() -> None:
+    rows = "Covariance:\n  Orientation:\n    Frame: Fixed"
+    text = config(f"Class: rviz_default_plugins/Odometry\nTopic: /odom\n{rows}")
+    made = manager(text=text)["Displays"][0]["Displays"][0]
+    assert made["Covariance"]["Orientation"]["Frame"] == "Fixed"
 
 
 TOKEN = st.from_regex(r"[a-z][a-z0-9]{0,5}", fullmatch=True)

@@ -46,6 +46,7 @@ def notes(config: Config, robots: Robots, world: str, together: bool) -> Iterato
         *_fixed_frame(config, robots, world, together),
         *_left_out(config, robots, together),
         *_view(config, robots, together),
+        *_volatile(config),
     ]
     for one in leaves(config.displays):
         if not one.known:
@@ -153,9 +154,20 @@ def _properties(config: Config, one: Shown, robots: Robots, together: bool) -> I
         if key.value == "Visibility" and one.flag == DOCK and together and pairs(there):
             message = f"what {one.name!r} shows of other displays is reset: they are in groups now"
             yield _finding(config, key, "MF212", message, "choose again in its Visibility")
-    if text_of(value(one.node, "Description Topic"), "Durability Policy") == "Volatile":
-        message = f"{one.name!r} may never hear a description published before it: it is Volatile"
-        yield _finding(config, one.node, "MF214", message, "Durability Policy: Transient Local")
+
+
+def _volatile(config: Config) -> Iterator[Finding]:
+    """Said once: nearly every saved config has it."""
+    found = [
+        one
+        for one in leaves(config.displays)
+        if text_of(value(one.node, "Description Topic"), "Durability Policy") == "Volatile"
+    ]
+    if found:
+        names = ", ".join(repr(one.name) for one in found)
+        message = f"{names} may miss a description published before rviz2 starts: it is Volatile"
+        hint = "Durability Policy: Transient Local below Description Topic"
+        yield _finding(config, found[0].node, "MF214", message, hint)
 
 
 def _names(config: Config, one: Shown, robots: Robots) -> Iterator[Finding]:
