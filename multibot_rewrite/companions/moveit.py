@@ -28,7 +28,7 @@ from multibot_rewrite.companions.spelled import SPELLERS, expressible, is_plain
 from multibot_rewrite.companions.spelled import node as node_name
 from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
 from multibot_rewrite.companions.undeclared import lacks, renamed, said_of
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, line_of, quoted
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import NAMESPACE, affix
 from multibot_rewrite.remap.records import NodeFacts
@@ -287,8 +287,7 @@ def _mentions(
     names = renamed(context)
     for scalar in unclaimed:
         text = str(scalar.value)
-        name = mentioned(text, names)
-        if name or _is_absolute(text):
+        if is_text(scalar) and (mentioned(text, names) or _is_absolute(text)):
             message = f"unclaimed mention: {text!r}, and nothing known says what it means"
             hint = "it stays as it is: see whether it has to name one robot's"
             yield finding(document, scalar, "MF302", WARNING, message, hint)

@@ -1,0 +1,284 @@
+"""Behavior trees: ports at any depth, through the blackboard, byte for byte."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from lxml import etree
+
+from multibot_rewrite.companions.behavior_tree import behavior_tree
+from multibot_rewrite.companions.context import JAZZY, Context, make_context
+from multibot_rewrite.companions.template import fill
+from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.table import build_table
+
+LAYOUTS = ("L1", "L2", "L3", "L4")
+DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}
+FACTS = stack_of(built_in(), "nav2")
+
+
+def context(layout: str = "L2", distro: str = JAZZY, **more: str) -> Context:
+    affix = more.pop("affix", "postfix" if layout == "L4" else "prefix")
+    return make_context(DECLARED, make_naming(layout, affix, **more), FACTS, distro)  # type: ignore[arg-type]
+
+
+def run(text: str | bytes, it: Context) -> tuple[str, tuple[Finding, ...]]:
+    made = behavior_tree(text if isinstance(text, bytes) else text.encode(), "t.xml", it)
+    return fill(made.template, "amr", "sp"), made.findings
+
+
+def tree(body: str, form: str = ' BTCPP_format="4"') -> str:
+    return f'<root{form}><BehaviorTree ID="Main">{body}</BehaviorTree></root>'
+
+
+def one(body: str, layout: str = "L2", form: str = ' BTCPP_format="4"') -> str:
+    """What a node becomes."""
+    before, behind = tree("|", form).split("|")
+    new = run(tree(body, form), context(layout))[0]
+    assert new.startswith(before) and new.endswith(behind)
+    return new[len(before) : -len(behind)]
+
+
+def codes(text: str, it: Context) -> list[tuple[str, int]]:
+    return [(found.code, found.line) for found in run(text, it)[1]]
+
+
+# (node, {layout: what it becomes}); a layout that is not there leaves the node as it is.
+NODES = {
+    "a relative service": (
+        '<ClearEntireCostmap service_name="local_costmap/clear_it"/>',
+        {"L4": '<ClearEntireCostmap service_name="local_costmap/clear_it/amr"/>'},
+    ),
+    "an absolute service": (
+        '<Action ID="ClearEntireCostmap" service_name="/local_costmap/clear_it"/>',
+        {
+            "L1": '<Action ID="ClearEntireCostmap" service_name="/amr/local_costmap/clear_it"/>',
+            "L2": '<Action ID="ClearEntireCostmap" service_name="/amr/local_costmap/clear_it"/>',
+            "L4": '<Action ID="ClearEntireCostmap" service_name="/local_costmap/clear_it/amr"/>',
+        },
+    ),
+    "an action": (
+        "<Spin server_name='spin'/>",
+        {"L4": "<Spin server_name='spin/amr'/>"},
+    ),
+    "a private service of a node": (
+        '<Call service_name="amcl/get_state"/>',
+        {"L4": '<Call service_name="amcl_amr/get_state"/>'},
+    ),
+    "a node": ('<Ask node_name="amcl"/>', {"L4": '<Ask node_name="amcl_amr"/>'}),
+    "topics": (
+        '<PlannerSelector topic_name="planner_selector"/><IsBatteryLow battery_topic="/battery"/>',
+        {
+            "L1": '<PlannerSelector topic_name="planner_selector"/>'
+            '<IsBatteryLow battery_topic="/amr/battery"/>',
+            "L2": '<PlannerSelector topic_name="planner_selector"/>'
+            '<IsBatteryLow battery_topic="/amr/battery"/>',
+            "L4": '<PlannerSelector topic_name="planner_selector/amr"/>'
+            '<IsBatteryLow battery_topic="/battery/amr"/>',
+        },
+    ),
+    "frames": (
+        '<GoalReached global_frame="map" robot_base_frame="base_link"/>'
+        '<DistanceTraveled global_frame="odom"/>',
+        {
+            "L2": '<GoalReached global_frame="map" robot_base_frame="sp/base_link"/>'
+            '<DistanceTraveled global_frame="sp/odom"/>',
+            "L4": '<GoalReached global_frame="map" robot_base_frame="base_link/sp"/>'
+            '<DistanceTraveled global_frame="odom/sp"/>',
+        },
+    ),
+    "ports that only one node means so": (
+        '<TransformAvailable parent="map" child="base_link"/><Other parent="map" child="x"/>',
+        {
+            "L2": '<TransformAvailable parent="map" child="sp/base_link"/>'
+            '<Other parent="map" child="x"/>',
+            "L4": '<TransformAvailable parent="map" child="base_link/sp"/>'
+            '<Other parent="map" child="x"/>',
+        },
+    ),
+    "the blackboard": ('<Spin server_name="{spin}" goal="{goal}" spin_dist="1.57"/>', {}),
+    "nothing": ('<Spin server_name="" name="base_link" ID="odom"/>', {}),
+    "placeholders": ('<Spin server_name="$(var x)/spin" robot_base_frame="${frame}"/>', {}),
+    "escapes": (
+        "<A robot_base_frame=\"base&#95;link\" global_frame='odom&quot;'/>",
+        {
+            "L2": "<A robot_base_frame=\"sp/base_link\" global_frame='sp/odom&quot;'/>",
+            "L4": "<A robot_base_frame=\"base_link/sp\" global_frame='odom&quot;/sp'/>",
+        },
+    ),
+    "a default that is every robot's": (
+        '<TruncatePathLocal distance="1"/><Action ID="TruncatePathLocal" pose="{pose}"/>',
+        {
+            "L2": '<TruncatePathLocal robot_frame="sp/base_link" distance="1"/>'
+            '<Action ID="TruncatePathLocal" pose="{pose}"/>',
+            "L4": '<TruncatePathLocal robot_frame="base_link/sp" distance="1"/>'
+            '<Action ID="TruncatePathLocal" pose="{pose}"/>',
+        },
+    ),
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@pytest.mark.parametrize("name", NODES)
+def test_a_node_for_a_robot(name: str, layout: str) -> None:
+    text, wanted = NODES[name]
+    assert one(text, layout) == wanted.get("L2" if layout == "L3" else layout, text)
+
+
+def test_a_port_that_is_set_is_not_inserted() -> None:
+    body = '<TruncatePathLocal robot_frame="tool"/>'
+    assert one(body) == '<TruncatePathLocal robot_frame="sp/tool"/>'
+    text = tree("<TruncatePathLocal/>")
+    assert run(text, context(distro="lyrical"))[0] == text
+
+
+SUBTREES = """<root BTCPP_format="4">
+  <!-- service_name="/clear" -->
+  <BehaviorTree ID="Main">
+    <SubTree ID="Clean" costmap="/clear" frame="base_link" other="/clear" robot_base_frame="tool"/>
+    <SetBlackboard value="odom" output_key="far"/>
+    <SubTree ID="Deeper" where="{far}"/>
+  </BehaviorTree>
+  <BehaviorTree ID="Clean">
+    <Sequence><ClearEntireCostmap service_name="{costmap}"/>
+    <SubTree ID="Deeper" where="{frame}"/></Sequence>
+  </BehaviorTree>
+  <BehaviorTree ID="Deeper"><GoalReached robot_base_frame="{where}"/></BehaviorTree>
+</root>
+"""
+
+
+def test_literals_are_followed_into_subtrees() -> None:
+    new, found = run(SUBTREES, context())
+    wanted = SUBTREES.replace('costmap="/clear"', 'costmap="/amr/clear"')
+    wanted = wanted.replace('frame="base_link"', 'frame="sp/base_link"')
+    wanted = wanted.replace('="tool"', '="sp/tool"').replace('value="odom"', 'value="sp/odom"')
+    assert new == wanted
+    column = SUBTREES.splitlines()[3].index('other="') + len('other="') + 1
+    assert [(it.code, it.line, it.column) for it in found] == [("MF402", 4, column)]
+
+
+def test_subtrees_that_share_the_blackboard() -> None:
+    text = SUBTREES.replace('where="{frame}"', '_autoremap="true"').replace("{where}", "{frame}")
+    assert 'frame="sp/base_link"' in run(text, context())[0]
+
+
+def test_a_subtree_of_itself_ends() -> None:
+    body = '<SubTree ID="Main" a="/b"/><Spin server_name="{a}"/>'
+    assert 'a="/amr/b"' in run(tree(body), context())[0]
+
+
+def test_subtrees_of_version_3_map_bare_names() -> None:
+    body = '<SubTree ID="Main" robot_base_frame="base_link"/>'
+    assert one(body, form="") == body
+    plus = '<SubTreePlus ID="Main" robot_base_frame="base_link"/>'
+    assert one(plus, form="") == plus.replace("base_link", "sp/base_link")
+
+
+def test_models_for_editors_stay_and_those_of_subtrees_do_not() -> None:
+    text = """<root BTCPP_format="4">
+  <TreeNodesModel>
+    <Action ID="Spin"><input_port name="global_frame" default="odom" robot_base_frame="tool"/></Action>
+    <SubTree ID="A"><input_port name="global_frame" default="odom"/><input_port name="b"/></SubTree>
+    <Action ID="X"><TruncatePathLocal/></Action>
+  </TreeNodesModel>
+</root>
+"""
+    line = '<SubTree ID="A"><input_port name="global_frame" default="odom"/>'
+    assert run(text, context()) == (text.replace(line, line.replace("odom", "sp/odom")), ())
+
+
+def test_bytes_around_stay() -> None:
+    text = (
+        '\ufeff<?xml version="1.0"?>\r\n<!-- odom ä -->\r\n<root   BTCPP_format = "4" >\r\n'
+        '\t<BehaviorTree ID="ä">\r\n\t\t<A\r\n\t\t  robot_base_frame\t=\t"base_link"\r\n\t\t/>\r\n'
+        "<![CDATA[ base_link ]]></BehaviorTree>\r\n</root>\r\n"
+    )
+    assert run(text, context())[0] == text.replace('"base_link"', '"sp/base_link"')
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"", "t.xml:1: the file is empty; a behavior tree starts with <root>"),
+        (b"<root><a></root>", "t.xml:1:"),
+        (b"<robot/>", "t.xml:1: no behavior tree: it starts with <robot>"),
+        (b"<!DOCTYPE root><root/>", "DOCTYPE and entities are not accepted"),
+        ("<root a='ä'/>".encode("latin-1"), "UTF-8"),
+        (b"<root a='multibotGraphHole'/>", "this tool's own"),
+    ],
+)
+def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:
+    with pytest.raises(InputError) as raised:
+        run(data, context())
+    assert said in str(raised.value) and "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize(
+    ("body", "found"),
+    [
+        ('<A robot_base_frame="base_lnk"/><B robot_base_frame="base_lnk"/>', ["MF401"]),
+        ('<A global_frame="odom"/><B global_frame="map"/>', []),
+        ('<A target="base_link"/>', ["MF402"]),
+        ('<A target="/scan"/>', ["MF402"]),
+        ('<A target="a/base_link"/>', ["MF402"]),
+        ('<A target="/tmp/a.yaml" planner_id="base_link" behavior_tree="/a/b"/>', []),
+        ("<Script code=\" frame:='base_link' \"/>", ["MF402"]),
+        ("<A _skipIf=\"frame == 'odom'\"/>", []),
+        ('<A service_name="1/b"/>', ["MF404"]),
+    ],
+)
+def test_findings(body: str, found: list[str]) -> None:
+    assert [code for code, _ in codes(tree(body), context())] == found
+
+
+def test_an_unknown_frame_is_told_with_the_nearest() -> None:
+    text = tree('<A robot_base_frame="base_lnk"/>')
+    (found,) = run(text, context("L1"))[1]
+    assert found.hint == "did you mean 'base_link'?"
+    assert found.column == text.index("base_lnk") + 1
+
+
+def test_another_file_is_said() -> None:
+    text = '<root BTCPP_format="4">\n<include path="other.xml"/></root>'
+    assert codes(text, context()) == [("MF403", 2)]
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_services_are_those_that_the_table_has(layout: str) -> None:
+    naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
+    served = {it.name for it in build_table(["amr", "b"], FACTS, naming).names if it.robot == "amr"}
+    for name in ("local_costmap/clear_entirely_local_costmap", "planner_selector", "spin"):
+        port = "server_name" if name == "spin" else "service_name"
+        node = etree.fromstring(one(f'<A {port}="{name}"/>', layout))
+        lead = "/" if layout == "L4" else "/amr/"
+        assert lead + str(node.get(port)) in served
+
+
+VALUES = st.sampled_from(["base_link", "odom", "map", "/a/b", "{x}", "", "a'b", "1.5", "ä"])
+PORTS = st.sampled_from(["server_name", "robot_frame", "value", "topic_name", "name", "dist"])
+FRAMES, TOPICS = {"base_link", "odom"}, {"/a/b"}
+
+
+@given(st.lists(st.dictionaries(PORTS, VALUES), max_size=4), st.sampled_from(LAYOUTS))
+def test_only_known_ports_change(nodes: list[dict[str, str]], layout: str) -> None:
+    body = "".join(
+        "<N " + " ".join(f'{key}="{value}"' for key, value in it.items()) + "/>" for it in nodes
+    )
+    old, new = (etree.fromstring(it) for it in (tree(body), run(tree(body), context(layout))[0]))
+    for before, after in zip(old.iter(), new.iter(), strict=True):
+        assert before.tag == after.tag and before.keys() == after.keys()
+        for key, value in before.items():
+            assert (after.get(key) != value) == changes(layout, key, value)
+
+
+def changes(layout: str, key: str, value: str) -> bool:
+    if key == "robot_frame":
+        return layout != "L1" and value not in ("map", "{x}", "")
+    if key not in ("server_name", "topic_name"):
+        return False
+    return value in TOPICS if layout != "L4" else value in {*TOPICS, *FRAMES, "map"}

@@ -1,0 +1,154 @@
+"""Cartographer's Lua: plain assignments are spelled, everything else stays and is told."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.lua import OWN_FILES, lua, lua_file, tokens_of
+from multibot_rewrite.companions.template import fill
+from multibot_rewrite.model import InputError
+from multibot_rewrite.naming import make_naming
+
+LAYOUTS = ("L1", "L2", "L3", "L4")
+DECLARED = {"link": {"base_link": None, "imu_link": None}, "joint": {}}
+
+
+def context(layout: str = "L2") -> Context:
+    naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
+    return make_context(DECLARED, naming, ())  # type: ignore[arg-type]
+
+
+def text_of(text: str, layout: str = "L2") -> str:
+    return fill(lua_file(text, "a.lua", context(layout)).template, "amr", "sp")
+
+
+def codes(text: str, layout: str = "L2") -> list[tuple[str, int]]:
+    return [(it.code, it.line) for it in lua_file(text, "a.lua", context(layout)).findings]
+
+
+OPTIONS = """\
+include "map_builder.lua"
+-- published_frame = "base_link"
+--[[ tracking_frame = "imu_link" ]] options = {\r
+  map_frame = "map",
+  tracking_frame = 'imu_link', --[==[ x ]] ]==]
+  published_frame = "base_link";
+  ["odom_frame"] = "odom",
+  provide_odom_frame = true, use_odometry = false, num_laser_scans = 1,
+  lookup_transform_timeout_sec = 0.2, pose = 5e-3, ratio = 1.,
+}
+options.tracking_frame = "base_link"
+return options
+"""
+BEHIND = {"imu_link", "base_link", "odom"}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_plain_assignments(layout: str) -> None:
+    wanted = OPTIONS
+    for at, line in enumerate(OPTIONS.splitlines()):
+        if layout == "L1" or at < 3:
+            continue
+        new = line
+        for name in BEHIND:
+            for quote in "'\"":
+                spelled = f"{name}/sp" if layout == "L4" else f"sp/{name}"
+                new = new.replace(f"= {quote}{name}{quote}", f"= {quote}{spelled}{quote}")
+        wanted = wanted.replace(f"\n{line}\n", f"\n{new}\n")
+    assert text_of(OPTIONS, layout) == wanted
+    assert (wanted == OPTIONS) == (layout == "L1")
+    assert codes(OPTIONS, layout) == []
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "prefix .. 'base_link'",
+        "'base_link' .. suffix",
+        "base",
+        "[[base_link]]",
+        "'base\\95link'",
+        "os.getenv('FRAME') or 'base_link'",
+        "'base_link' or x",
+        "f'base_link'",
+        "nil",
+    ],
+)
+def test_what_is_no_plain_string_is_only_told(value: str) -> None:
+    text = f"options = {{\n  published_frame = {value},\n}}\n"
+    assert text_of(text) == text
+    assert ("MF451", 2) in codes(text)
+    assert ("MF451", 2) not in codes(text, "L1")
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ('tracking_frame = "base_lnk"', [("MF452", 1)]),
+        ('tracking_frame = "odom"', []),
+        ('include "my_base.lua"', [("MF453", 1)]),
+        ("\ninclude('my_base.lua')", [("MF453", 2)]),
+        ('local frame = "base_link"', [("MF454", 1)]),
+        ('-- "base_link"\nlocal a = "base"', []),
+        ('x.published_frame == "base_link"', [("MF454", 1)]),
+        ('my_published_frame = "base_link"', [("MF454", 1)]),
+    ],
+)
+def test_findings(text: str, found: list[tuple[str, int]]) -> None:
+    assert text_of(text) == text or found in ([("MF452", 1)], [])
+    assert codes(text) == found
+
+
+def test_what_includes_of_cartographer_hold_needs_no_word() -> None:
+    assert codes("".join(f'include "{name}"\n' for name in sorted(OWN_FILES))) == []
+
+
+def test_a_person_is_told_what_each_must_become() -> None:
+    found = lua(OPTIONS, "a.lua", context())
+    assert [(it.code, it.line) for it in found] == [("MF455", line) for line in (5, 6, 7, 11)]
+    assert "tracking_frame = 'imu_link'" in found[0].message and "ROBOT/imu_link" in found[0].hint
+    assert lua(OPTIONS, "a.lua", context("L1")) == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ('a = 1\nb = "x\n', 2),
+        ("a = 'x", 1),
+        ("\n--[[ x", 2),
+        ("--[==[ x ]]", 1),
+        ("a = [[ x", 1),
+        ("a = [=[ x ]]", 1),
+    ],
+)
+def test_what_does_not_end_is_one_line(text: str, line: int) -> None:
+    with pytest.raises(InputError, match=rf"^a\.lua:{line}: no Lua: .*close it$"):
+        lua_file(text, "a.lua", context())
+
+
+PIECES = st.sampled_from(
+    [
+        '"a\\"b"',
+        "'c'",
+        "[[ d\n]]",
+        "[=[ ]] ]=]",
+        "-- e\n",
+        "--[[ f ]]",
+        "x",
+        "1.5e-3",
+        "..",
+        "=",
+        "{",
+    ]
+)
+
+
+@given(st.lists(PIECES))
+def test_tokens_are_the_text(pieces: list[str]) -> None:
+    text = " ".join(pieces)
+    found = list(tokens_of(text, "a.lua"))
+    assert all(text.startswith(it.text, it.at) for it in found)
+    assert [it.text for it in found] == [it for it in pieces if not it.startswith("--")]
