@@ -94,8 +94,21 @@ def bridge(document: YamlText, context: Context, known: Mapping[str, str] = NOTH
     """
     _refuse(document)
     findings: list[Finding] = []
-    entries: list[_Entry] = []
+    entries = _entries(document, context, known, findings)
+    own = [it for it in entries if it.own]
+    shared = [it for it in entries if not it.own]
+    splices = [splice for it in own for splice in _splices(document, it, context)]
+    template = cut(document.text, [*_only(document, own), *splices]) if own else cut("", ())
+    text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
+    return BridgeFile(Companion(template, tuple(findings)), text)
+
+
+def _entries(
+    document: YamlText, context: Context, known: Mapping[str, str], findings: list[Finding]
+) -> list[_Entry]:
+    """The entries that the bridge loads; what is to be told of any goes to the findings."""
     model = _model_of(document, findings)
+    found: list[_Entry] = []
     assert document.root is not None
     for node, block in zip(document.root.value, blocks(document, document.root), strict=True):
         fault = _fault(node)
@@ -103,19 +116,9 @@ def bridge(document: YamlText, context: Context, known: Mapping[str, str] = NOTH
             hint = "the bridge skips the entry, so it is left out"
             findings.append(_finding(document, node, "MF502", WARNING, fault, hint))
             continue
-        entry = _entry(node, block, context, model, known)
-        entries.append(entry)
-        findings += _remarks(document, entry, context)
-    own = _without(document, [it for it in entries if not it.own], entries)
-    shared = _without(document, [it for it in entries if it.own], entries)
-    splices = [splice for it in entries if it.own for splice in _splices(document, it, context)]
-    template = (
-        cut(document.text, [*own, *splices]) if any(it.own for it in entries) else cut("", ())
-    )
-    text = cut_out(document, 0, len(document.text), shared)
-    return BridgeFile(
-        Companion(template, tuple(findings)), "" if all(it.own for it in entries) else text
-    )
+        found.append(_entry(node, block, context, model, known))
+        findings += _remarks(document, found[-1], context)
+    return found
 
 
 def filled(template: Template, graph: str, spelled: str, model: str) -> str:
@@ -268,12 +271,12 @@ def _frame(node: yaml.ScalarNode, context: Context) -> Iterator[Splice]:
         yield replaced(node, new)
 
 
-def _without(document: YamlText, gone: Sequence[_Entry], entries: Sequence[_Entry]) -> list[Splice]:
-    """The splices that take entries out of the file, and those that the bridge does not load."""
+def _only(document: YamlText, kept: Sequence[_Entry]) -> list[Splice]:
+    """The splices that take all other entries out of the file."""
     assert document.root is not None
-    kept = {it.block for it in entries} - {it.block for it in gone}
+    stay = {it.block for it in kept}
     found = blocks(document, document.root)
-    return [Splice(it.start, it.end, "") for it in found if it not in kept]
+    return [Splice(it.start, it.end, "") for it in found if it not in stay]
 
 
 def _remarks(document: YamlText, entry: _Entry, context: Context) -> Iterator[Finding]:
