@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 import yaml
 from hypothesis import given
@@ -403,7 +406,26 @@ def test_the_manager_that_moveit_asks_is_the_robots() -> None:
     assert text_of(MANAGED, context()) == f"ros_control_namespace: /amr\n{MANAGED}"
     set_ = f"{MANAGED}ros_control_namespace: /\n"
     assert text_of(set_, context()) == f"{MANAGED}ros_control_namespace: /amr\n"
-    assert run(set_, context("L4"))[0] == set_ and codes(set_, context("L4")) == [("MF308", 2)]
+    flow = "{moveit_controller_manager: moveit_ros_control_interface/Ros2ControlManager}"
+    assert text_of(flow, context()) == f"{{ros_control_namespace: /amr, {flow[1:]}"
+    for text, line in ((set_, 2), (MANAGED, 1), (flow, 1)):
+        assert text_of(text, context("L4")) == text
+        assert codes(text, context("L4")) == [("MF308", line)]
+
+
+def test_another_manager_asks_nobody() -> None:
+    text = "moveit_controller_manager: moveit_simple_controller_manager/Simple\n"
+    assert text_of(text, context()) == text and codes(text, context("L4")) == []
+
+
+def test_every_code_is_on_the_page() -> None:
+    home = Path(__file__).parents[1]
+    source = "".join(
+        (home / "multibot_rewrite" / "companions" / f"{name}.py").read_text()
+        for name in ("moveit", "behavior_tree", "lua")
+    )
+    page = (home / "docs" / "moveit.md").read_text()
+    assert set(re.findall(r'"(MF\d{3})"', source)) == set(re.findall(r"MF\d{3}", page))
 
 
 JOINT_LISTS = st.lists(st.sampled_from([*JOINTS[:2], "other", "a b", "0.5", "${x}j1", ""]))

@@ -17,11 +17,10 @@ from multibot_rewrite.companions.known_params import in_release
 from multibot_rewrite.companions.param_topics import FROM_NODE, topic
 from multibot_rewrite.companions.spelled import SPELLERS, is_plain
 from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
-from multibot_rewrite.companions.undeclared import lacks, renamed, said_of
+from multibot_rewrite.companions.undeclared import lacks, mentions, renamed, said_of
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.rewriting.document import Document, finding, read_document, value_slot
-from multibot_rewrite.rewriting.mentions import mentioned
 from multibot_rewrite.rosnames import check_topic_name
 
 if TYPE_CHECKING:
@@ -242,13 +241,8 @@ def _mention(port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
         words = [it.strip() for it in text.replace('"', "'").split("'")[1::2]]
     else:
         words = [text]
-    held = next((it for it in words if mentioned(it, names) or _is_absolute(it)), "")
+    held = next((it for it in words if mentions(it, names)), "")
     if not held:
         return None
     message = f"unclaimed mention: {port.attribute} holds {held!r}, and nothing says what it means"
     return "MF402", message, "it stays as it is: see whether it has to name one robot's"
-
-
-def _is_absolute(text: str) -> bool:
-    """What can only be a name of the graph, if it is no path of a file."""
-    return text[:1] == "/" and is_plain(text) and check_topic_name(text) is None

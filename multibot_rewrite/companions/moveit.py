@@ -27,13 +27,12 @@ from multibot_rewrite.companions.sections import PARAMETERS, finding
 from multibot_rewrite.companions.spelled import SPELLERS, expressible, is_plain
 from multibot_rewrite.companions.spelled import node as node_name
 from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
-from multibot_rewrite.companions.undeclared import lacks, renamed, said_of
+from multibot_rewrite.companions.undeclared import lacks, mentions, renamed, said_of
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import NAMESPACE, affix
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriting.mentions import mentioned
 from multibot_rewrite.rosnames import check_topic_name
 
 EMPTY = "empty"
@@ -206,15 +205,25 @@ def _controller_topic(desk: _Desk, value: str) -> str:
     return node_name(desk.context, head) + slash + rest
 
 
+def _asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
+    """The key that has MoveIt ask a controller manager, if the file does not say where that is."""
+    keys = {str(key.value): (key, value) for key, value in entries(document.root)}
+    if _MANAGER not in keys or _CONTROL_NAMESPACE in keys:
+        return None
+    key, value = keys[_MANAGER]
+    return key if str(value.value).startswith(_ROS_CONTROL) else None
+
+
 def _inserted(document: YamlText, context: Context) -> Iterator[Splice]:
     """The namespace of the controller manager, where the default is the root's."""
-    keys = {str(key.value): (key, value) for key, value in entries(document.root)}
+    key = _asks_below_root(document)
     default = SPELLERS["namespace"](context, "/")
-    if _MANAGER not in keys or _CONTROL_NAMESPACE in keys or default == "/":
-        return
-    key, value = keys[_MANAGER]
     flow = isinstance(document.root, yaml.MappingNode) and document.root.flow_style
-    if not str(value.value).startswith(_ROS_CONTROL) or flow:
+    if key is None or default == "/":
+        return
+    if flow:
+        at = key.start_mark.index
+        yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}, ")
         return
     end = "\r\n" if "\r\n" in document.text else "\n"
     at = key.start_mark.index
@@ -225,6 +234,7 @@ def _findings(document: YamlText, context: Context, sites: Sites) -> Iterator[Fi
     for key in sites.twice:
         message = f"{key.value!r} stands here twice, and PyYAML takes the last one"
         yield finding(document, key, "MF303", WARNING, message, "delete one of them")
+    yield from _unreachable(document, context, sites)
     told: set[tuple[str, str]] = set()
     for site in sites.names:
         for word, text in _named(site):
@@ -232,6 +242,19 @@ def _findings(document: YamlText, context: Context, sites: Sites) -> Iterator[Fi
                 told.add((word, text))
                 yield from _about(document, context, site, (word, text))
     yield from _mentions(document, context, sites.unclaimed)
+
+
+def _unreachable(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
+    """Without namespaces each robot's manager has a name of its own."""
+    asked = [
+        _asks_below_root(document),
+        *(it.scalar for it in sites.names if it.word == "namespace"),
+    ]
+    for key in asked if context.names.naming.topics != NAMESPACE else ():
+        if key is not None:
+            message = "MoveIt asks for /controller_manager, and each robot's has a name of its own"
+            hint = "use moveit_simple_controller_manager, or a layout with namespaces"
+            yield finding(document, key, "MF308", WARNING, message, hint)
 
 
 def _named(site: Site) -> Iterator[tuple[str, str]]:
@@ -263,10 +286,6 @@ def _about(
     elif word in _GRAPH_WORDS and is_plain(text) and (fault := check_topic_name(text)):
         message = f"{word} {text!r} is none: {fault.reason}"
         yield finding(document, site.scalar, "MF307", WARNING, message, "correct it")
-    elif word == "namespace" and naming.topics != NAMESPACE:
-        message = "MoveIt asks controller_manager in this namespace: each robot's has its own name"
-        hint = "use moveit_simple_controller_manager, or a layout with namespaces"
-        yield finding(document, site.scalar, "MF308", WARNING, message, hint)
 
 
 def _has_groups(context: Context) -> bool:
@@ -287,12 +306,7 @@ def _mentions(
     names = renamed(context)
     for scalar in unclaimed:
         text = str(scalar.value)
-        if is_text(scalar) and (mentioned(text, names) or _is_absolute(text)):
+        if is_text(scalar) and mentions(text, names):
             message = f"unclaimed mention: {text!r}, and nothing known says what it means"
             hint = "it stays as it is: see whether it has to name one robot's"
             yield finding(document, scalar, "MF302", WARNING, message, hint)
-
-
-def _is_absolute(text: str) -> bool:
-    """What can only be a name of the graph, if it is no path of a file."""
-    return text[:1] == "/" and is_plain(text) and check_topic_name(text) is None

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.respell import is_declared, respell
 from multibot_rewrite.companions.spelled import is_plain, is_shared_frame
+from multibot_rewrite.rewriting.mentions import mentioned
+from multibot_rewrite.rosnames import check_topic_name
 
 # Frames that nodes send and no description declares (REP 105, navsat_transform_node).
 SENT = frozenset({"map", "odom", "world", "earth", "utm", "local_enu"})
@@ -51,3 +53,11 @@ def renamed(context: Context) -> frozenset[str]:
         for name in context.names.declared.get(word, ())
         if respell(context.names, word, name) != name
     )
+
+
+def mentions(text: str, names: frozenset[str]) -> bool:
+    """Does a text that nothing is known of hold one of these names, or an absolute name of the
+    graph?"""
+    if mentioned(text, names):
+        return True
+    return text[:1] == "/" and is_plain(text) and check_topic_name(text) is None
