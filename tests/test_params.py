@@ -348,6 +348,20 @@ def test_the_binary_filter_does_not_join_its_names_on_kilted_either() -> None:
         assert f"filter_info_topic: {new}}}" in made(source, L2, "kilted")[0]
 
 
+@pytest.mark.parametrize(
+    ("policy", "distro", "told"),
+    [(L2, "jazzy", True), (L2, "kilted", False), (L4, "kilted", True)],
+)
+def test_a_source_without_a_topic_is_told(policy: tuple[str, str], distro: str, told: bool) -> None:
+    layer = "layer: {observation_sources: scan tof, scan: {topic: /scan}, tof: {clearing: true}}"
+    source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {layer}\n"
+    found = [it for it in made(source, policy, distro)[1] if it.code == "MF127"]
+    assert [it.message for it in found if "source tof of layer" in it.message] == [
+        it.message for it in found
+    ]
+    assert bool(found) is told
+
+
 def test_the_mask_topic_is_resolved_by_whoever_reads_it() -> None:
     line = "mask_topic: keepout_mask"
     assert value("costmap_filter_info_server", line) == "mask_topic: /robot1/keepout_mask"

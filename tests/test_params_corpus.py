@@ -247,6 +247,16 @@ def test_all_real_files(corpus_params: dict[str, Path]) -> None:
     assert refused == json.loads(REFUSALS.read_text())
 
 
+def test_the_reasons_are_true(corpus_params: dict[str, Path]) -> None:
+    for why, names in json.loads(REFUSALS.read_text()).items():
+        for name in names:
+            text = corpus_params[name].read_text(errors="replace")
+            bare = re.sub(r"#.*", "", text)
+            assert bare.count("ros__parameters") == 0 or not why.startswith("no ROS 2"), name
+            assert re.search(r"[&*]\w", bare) or "anchors" not in why, name
+            assert ROBOT in text or why != "MF126", name
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [

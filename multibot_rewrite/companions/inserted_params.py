@@ -15,8 +15,9 @@ from multibot_rewrite.companions.sections import Found, Section, finding, flatte
 from multibot_rewrite.companions.spelled import SPELLERS, expressible
 from multibot_rewrite.companions.template import GRAPH
 from multibot_rewrite.companions.uses import Uses
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, quoted
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted
 from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.naming import NAMESPACE
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"
@@ -119,6 +120,34 @@ def _texts(lines: Sequence[Line]) -> Iterator[str]:
     for comment in dict.fromkeys(line.comment for line in lines):
         yield comment
         yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
+
+
+def sources_without_topic(desk: Desk, section: Section) -> Iterator[Finding]:
+    """Sources of a costmap's layer that take their own id for the topic, below the costmap."""
+    top = "observation_sources"
+    param = section.node.params.get("<id>.<id>.topic") if section.node else None
+    namespaced = desk.context.topics.naming.topics == NAMESPACE
+    if param is None or (namespaced and not in_release(param.absolute, desk.context.distro)):
+        return
+    names = dict(flattened(section.body))
+    values = {id(key): value for key, value in _scalars(section.body)}
+    for name, key in names.items():
+        layer, _, last = name.rpartition(".")
+        if last != top or not layer:
+            continue
+        for source in values.get(id(key), "").split():
+            if f"{layer}.{source}.topic" not in names:
+                message = f"source {source} of {layer} has no topic, so that it is {source!r}"
+                hint = f"write {layer}.{source}.topic: /{source}, which is then each robot's own"
+                yield finding(desk.document, key, "MF127", WARNING, message, hint)
+
+
+def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
+    for key, value in pairs(node):
+        if isinstance(value, yaml.ScalarNode):
+            yield key, str(value.value)
+        else:
+            yield from _scalars(value)
 
 
 def without_section(

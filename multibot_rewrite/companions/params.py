@@ -10,7 +10,11 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.inserted_params import inserted, without_section
+from multibot_rewrite.companions.inserted_params import (
+    inserted,
+    sources_without_topic,
+    without_section,
+)
 from multibot_rewrite.companions.known_params import Known, built_in_params
 from multibot_rewrite.companions.param_topics import facts_by_name
 from multibot_rewrite.companions.respelled_params import (
@@ -89,6 +93,7 @@ def _made(
     for section, uses in pages:
         yield from respelled(desk, section, uses)
         yield from about_names(desk, section, uses)
+        yield from sources_without_topic(desk, section)
     yield from unclaimed(desk, [uses for _, uses in pages])
     yield from inserted(desk, pages, others)
 
