@@ -365,26 +365,32 @@ def test_the_postfix_layout_has_a_topic_for_each_description(fleet: Any) -> None
 
 
 def classic(*namespaces: str) -> str:
+    """Plugins that no vocabulary has, so that nothing is inserted in them."""
     plugins = (
-        f'<plugin name="p{at}" filename="libgazebo_ros_imu_sensor.so"><ros>{namespace}</ros></plugin>'
+        f'<plugin name="p{at}" filename="libgazebo_ros_acme.so">{namespace}</plugin>'
         for at, namespace in enumerate(namespaces)
     )
-    return (
-        f'<gazebo reference="base"><sensor name="s" type="imu">{"".join(plugins)}</sensor></gazebo>'
-    )
+    return f"<gazebo>{''.join(plugins)}</gazebo>"
 
 
-SPACE = "<namespace>/here</namespace>"
+SPACE = "<ros><namespace>/here</namespace></ros>"
 
 
-def test_a_namespace_of_the_description_is_not_overwritten(fleet: Any) -> None:
-    made, findings = spawn.spawns(fleet("L2", body=classic(SPACE)))
-    assert "-robot_namespace" not in spawn.classic_arguments(made[0]) and not findings
-    plan = fleet("L2", body=classic(SPACE, ""))
-    told = [spawn._namespaces(robot) for robot in plan.robots]
-    made, findings = spawn.spawns(plan)
-    assert [bool(untold) for _, untold in told] == [bool(findings)] * 2
-    assert "-robot_namespace" not in spawn.classic_arguments(made[0])
+@pytest.mark.parametrize(
+    ("namespaces", "layout", "given", "codes"),
+    [
+        (("", ""), "L2", ["-robot_namespace", "/r1"], []),
+        ((SPACE, SPACE), "L2", [], []),
+        ((SPACE, ""), "L2", [], ["MF706", "MF706"]),
+        (("", ""), "L4", [], []),
+    ],
+)
+def test_a_namespace_of_the_description_is_not_overwritten(
+    fleet: Any, namespaces: tuple[str, ...], layout: str, given: list[str], codes: list[str]
+) -> None:
+    made, findings = spawn.spawns(fleet(layout, body=classic(*namespaces)))
+    assert spawn.classic_arguments(made[0])[16:] == given
+    assert [it.code for it in findings] == codes
 
 
 def test_no_namespace_where_nothing_needs_one(fleet: Any) -> None:
@@ -415,3 +421,16 @@ def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
         False,
         "",
     )
+
+
+def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:
+    Path("own.yaml").write_text(
+        "nodes:\n"
+        "  base: {package: acme, subscribes: {cmd_vel: geometry_msgs/msg/Twist}}\n"
+        "  log: {package: acme, subscribes: {cmd_vel: geometry_msgs/msg/TwistStamped}}\n"
+        "stacks:\n  own: {about: both, nodes: [base, log]}\n  half: {about: one, nodes: [log]}\n"
+    )
+    both, half = (
+        teleop.teleops(fleet("L2", stack, more="nodes: own.yaml\n"))[0] for stack in ("own", "half")
+    )
+    assert (both.stamped, half.stamped) == (False, True)

@@ -517,6 +517,32 @@ def test_orientation_frames_are_no_frames() -> None:
     assert made["Covariance"]["Orientation"]["Frame"] == "Fixed"
 
 
+def test_a_group_is_indented_as_rviz_does() -> None:
+    text = config("Class: rviz_default_plugins/Path\nTopic: /plan")
+    made = rviz(read_yaml(text.encode(), "one.rviz"), robots_of(declared(), "L2", ["r"]))
+    assert made[0][0].text == (
+        "Visualization Manager:\n"
+        "  Displays:\n"
+        "    - Class: rviz_common/Group\n"
+        "      Displays:\n"
+        "        - Name: it\n"
+        "          Class: rviz_default_plugins/Path\n"
+        "          Topic: /r/plan\n"
+        "      Enabled: true\n"
+        "      Name: r\n"
+        "  Global Options:\n"
+        "    Fixed Frame: map\n"
+    )
+
+
+def test_a_block_of_text_ends_with_its_display() -> None:
+    block = "Class: rviz_default_plugins/Path\nTopic: /plan\nNote: |\n  one\n  two"
+    after = "    - Class: rviz_default_plugins/Grid\n      Name: Grid\n"
+    listed = manager(text=config(block, after))["Displays"]
+    assert [one["Name"] for one in listed] == ["Grid", *ROBOTS]
+    assert listed[1]["Displays"][0]["Note"] == "one\ntwo\n"
+
+
 TOKEN = st.from_regex(r"[a-z][a-z0-9]{0,5}", fullmatch=True)
 
 

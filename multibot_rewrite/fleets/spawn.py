@@ -103,7 +103,8 @@ def _namespaces(robot: Described) -> tuple[list[str], list[str]]:
 
 
 def _namespace(plugin: etree._Element) -> str:
-    return (plugin.findtext("ros/namespace") or "").strip()
+    # Without a <ros> the plugin itself is read (gazebo_ros node.cpp).
+    return (plugin.findtext("ros/namespace") or plugin.findtext("namespace") or "").strip()
 
 
 def _half(robot: Described, untold: list[str]) -> Finding:
