@@ -15,12 +15,13 @@ from robots import CORPUS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets import spawn, teleop, transforms
-from multibot_rewrite.fleets.bridge import BridgeFile, bridge, filled, merged
+from multibot_rewrite.fleets.bridge import BridgeFile, as_spawned, bridge, filled, merged
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.bridge import Bridged
+from multibot_rewrite.remap.bridge import bridge as generated_bridge
 from multibot_rewrite.rosnames import check_full_name, check_topic_name
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -193,6 +194,14 @@ def test_one_file_of_all_robots_and_of_what_descriptions_say() -> None:
     names = [it.get("topic_name") or it["gz_topic_name"] for it in yaml.safe_load(text)]
     assert names == ["/r1/scan", "/r2/scan", "/clock", "/r1/imu"] and not findings
     assert text.count("# lidar") == 2
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> None:
+    plan = fleet(layout, body=DRIVE)
+    carried, _ = generated_bridge(plan.fleet.inventories, plan.fleet.naming)
+    found = [it.gz for it in as_spawned(carried, plan.robots) if it.gz.startswith("/model/")]
+    assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
 def test_two_gz_topics_on_one_ros_topic_are_told() -> None:

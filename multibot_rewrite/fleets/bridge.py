@@ -30,6 +30,7 @@ from multibot_rewrite.companions.yaml_text import (
     read_yaml,
     replaced,
 )
+from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
 from multibot_rewrite.naming import POSTFIX
 from multibot_rewrite.remap.bridge import Bridged, as_yaml
@@ -329,6 +330,24 @@ def _finding(
 ) -> Finding:
     mark = node.start_mark
     return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
+
+
+def as_spawned(carried: Iterable[Bridged], robots: Iterable[Described]) -> list[Bridged]:
+    """What descriptions say has to be carried, below the names that the models are spawned by.
+
+    ``ros_gz_sim create -name`` gives a model another name than its description has.
+    """
+    names = {it.spec.namespace: it for it in robots}
+    return [_spawned(it, names[it.robot]) if it.robot in names else it for it in carried]
+
+
+def _spawned(it: Bridged, robot: Described) -> Bridged:
+    # Where frames stay bare the generated name is the robot's, not that of the description.
+    inner = robot.member.inventory.document.root.get("name", "")
+    found = _MODEL.fullmatch(it.gz)
+    if not found or found["model"] not in (inner, robot.spec.namespace):
+        return it
+    return it._replace(gz=f"{found['above']}{robot.spec.model}{found['rest'] or ''}")
 
 
 def merged(
