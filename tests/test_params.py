@@ -410,6 +410,8 @@ def test_a_default_that_is_every_robots_is_inserted() -> None:
     [
         section("/**", "base_frame_id: base_link", "odom_frame_id: odom") + section("amcl", "a: 1"),
         section("amcl", "base_frame_id: base_link") + section("amcl", "odom_frame_id: odom"),
+        section("amcl", "base_frame_id: base_link", "odom_frame_id: odom")
+        + section("/**/amcl", "a: 1"),
         section("amcl_rclcpp_node", "use_sim_time: true"),
     ],
 )
@@ -489,6 +491,41 @@ def test_what_a_person_should_know_is_told(node: str, line: str, code: str, word
     assert found
     assert words in found[0]
     assert found[0].startswith("p.yaml:3:")
+
+
+def test_one_key_cannot_be_two() -> None:
+    text = "stacks: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
+    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
+    inner = "    ros__parameters: {use_sim_time: true}\n"
+    source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
+    found = params(read_yaml(source.encode(), "p"), context).findings
+    assert ("MF101", "error") in [(it.code, it.level) for it in found]
+
+
+def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
+    """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
+    text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
+    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
+    document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
+    found = params(document, context, facts=nodes).findings
+    assert [it.message for it in found if it.code == "MF120"] == [
+        "scan_topic: scan leads to /<robot>/scan by the robot's rules"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("source", "code"),
+    [
+        (section("diff_drive_controller", "tf_frame_prefix_enable: $(var p)"), "MF116"),
+        ("smoother_server:\n  ros__parameters: !!map\n    x: 1\n", ""),
+        ("smoother_server:\n  ros__parameters:\n    ? x\n    : 1\n", "MF124"),
+    ],
+)
+def test_what_cannot_be_made_sure_of_is_told(source: str, code: str) -> None:
+    found = codes(made(source)[1])
+    assert code in found if code else not found
 
 
 def test_a_prefix_cannot_be_a_postfix() -> None:

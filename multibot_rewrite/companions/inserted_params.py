@@ -81,19 +81,26 @@ def _has(param: Param, context: Context) -> bool:
 
 def _everywhere(
     pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
-) -> list[tuple[str, str, set[str]]]:
-    """Other places that set parameters: the path and its name, the pattern, what it sets."""
-    wild = [(it.path, it.full, it.body) for it, _ in pages if it.wild]
-    wild += [(it.path, f"/{it.path}", it.body) for it in beside]
-    return [(path, full, {name for name, _ in flattened(body)}) for path, full, body in wild]
+) -> list[tuple[str, set[str]]]:
+    """What is set for which nodes, where patterns or other files make that more than the section."""
+    if not beside and not any(it.wild for it, _ in pages):
+        return []
+    bodies = [(it.full, it.body) for it, _ in pages]
+    bodies += [(f"/{it.path}", it.body) for it in beside]
+    return [(full, {name for name, _ in flattened(body)}) for full, body in bodies]
 
 
-def _set_for(section: Section, everywhere: Iterable[tuple[str, str, set[str]]]) -> set[str]:
+def _set_for(section: Section, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
+    """What any section sets that is for the same node, or may be."""
     found: set[str] = set()
-    for path, full, names in everywhere:
-        if path == section.path or ("*" in path and re.fullmatch(pattern_of(full), section.full)):
+    for full, names in everywhere:
+        if f"/{section.path}" == full or _meet(full, section.full) or _meet(section.full, full):
             found |= names
     return found
+
+
+def _meet(pattern: str, full: str) -> bool:
+    return "*" in pattern and re.fullmatch(pattern_of(pattern), full) is not None
 
 
 def _insert(document: YamlText, body: yaml.MappingNode, lines: Sequence[Line]) -> Splice | Finding:

@@ -103,7 +103,6 @@ def built_in_params() -> Known:
     return _known({}, {}, frozenset(), text, "params.yaml")
 
 
-@lru_cache
 def known_params(path: str = "") -> Known:
     """The built-in knowledge and what a file of the same shape adds to it or says anew.
 

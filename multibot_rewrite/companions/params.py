@@ -103,7 +103,16 @@ def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     first: dict[tuple[str, str], Finding] = {}
     for found in sorted(findings, key=lambda it: (it.line, it.column, it.code)):
         first.setdefault((found.code, found.message), found)
-    return tuple(first.values())
+    return tuple(_in_words(it) for it in first.values())
+
+
+def _in_words(found: Finding) -> Finding:
+    """A finding is about every robot: no name stands in its holes."""
+    message, hint = (
+        text.replace(GRAPH, "<robot>").replace(SPELLED, "<robot>")
+        for text in (found.message, found.hint)
+    )
+    return found._replace(message=message, hint=hint)
 
 
 def without_sections(
@@ -121,4 +130,4 @@ def without_sections(
         for name in context.nodes
         if (node := identified(name.rpartition("/")[2], None, known, {}))
     }
-    return tuple(without_section(documents[0], full, context, nodes))
+    return _once(without_section(documents[0], full, context, nodes))
