@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from typing import NoReturn
 
-from multibot_rewrite.lint.failures import crash, failure, too_long
+from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.lint.registry import active_rules
@@ -18,6 +19,8 @@ from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources import read_file
 
+AGAIN = 0.5
+
 
 class _TooLongError(BaseException):
     """The time of a file is over; no ``except Exception`` on the way may swallow it."""
@@ -25,27 +28,30 @@ class _TooLongError(BaseException):
 
 def lint_file(path: str, settings: Settings) -> list[LintFinding]:
     """All findings of a file, in order; a file that cannot be read is a finding."""
-    try:
-        data = read_file(path)
-    except InputError as error:
-        return [failure(path, str(error), settings)]
-    return lint_data(path, data, settings)
+    return _linted(path, partial(read_file, path), settings)
 
 
 def lint_data(path: str, data: bytes, settings: Settings) -> list[LintFinding]:
     """The same for text that is at hand; ``path`` is its name, and where its xacro is."""
+    return _linted(path, lambda: data, settings)
+
+
+def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[LintFinding]:
     found: list[LintFinding] = []
-    sources = {path: data}
+    sources: dict[str, bytes] = {}
     try:
         with _limited(settings.seconds):
+            sources[path] = data = read()
             for subject in read_subjects(path, data, settings):
                 found += lint_subject(subject)
-                sources = {**subject.sources, **sources}
+                sources = {**sources, **subject.sources, path: data}
     except InputError as error:
         found.append(failure(path, str(error), settings))
     except _TooLongError:
         found.append(too_long(path, settings.seconds))
-    return sorted(unsuppressed(_merged(found), sources, settings), key=_order)
+    except Exception as error:  # the other files are linted all the same
+        found.append(breakdown(path, error))
+    return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
 
 
 def lint_subject(subject: Subject) -> list[LintFinding]:
@@ -76,7 +82,8 @@ def _merged(found: Iterable[LintFinding]) -> list[LintFinding]:
     return list(first.values())
 
 
-def _order(finding: LintFinding) -> tuple[str, int, int, str, str, str]:
+def by_place(finding: LintFinding) -> tuple[str, int, int, str, str, str]:
+    """What findings are sorted by: file, line, column, and what is told there."""
     it = finding
     return it.file, it.line, it.column, it.code, it.message, it.arguments
 
@@ -88,7 +95,8 @@ def _limited(seconds: float) -> Iterator[None]:
         yield
         return
     before = signal.signal(signal.SIGALRM, _stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    # Again and again: where it is raised in a destructor or callback it is lost.
+    signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
     try:
         yield
     finally:

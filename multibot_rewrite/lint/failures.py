@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import signal
 
 from multibot_rewrite.lint.records import LintFinding, Rule, Subject
 from multibot_rewrite.lint.registry import RULES
@@ -35,12 +36,34 @@ def failure(path: str, message: str, settings: Settings) -> LintFinding:
 def crash(rule: Rule, subject: Subject, error: Exception) -> LintFinding:
     """The finding for a rule that fell over a document: the rule did not look at all of it."""
     file = subject.document.file.removesuffix(" (expanded)")
-    message = f"{rule.code} crashed: {type(error).__name__}: {error}"
     hint = "this is a fault of urdf-lint; --ignore it to go on"
-    return LintFinding("MB001", ERROR, " ".join(message.split()), hint, file, 1, 1)
+    return _crashed(file, f"{rule.code} crashed: {_words(error)}", hint)
+
+
+def breakdown(path: str, error: Exception) -> LintFinding:
+    """The finding for a file over which the lint itself fell: nobody looked at all of it."""
+    if isinstance(error, MemoryError):
+        return _crashed(path, "it needs more memory than there is", "do its macros grow?")
+    return _crashed(path, f"the lint crashed: {_words(error)}", "this is a fault of urdf-lint")
+
+
+def lost(path: str, died_of: int) -> LintFinding:
+    """The finding for a file whose process was ended by a signal, or by itself for 0."""
+    how = f"by {signal.Signals(died_of).name}" if died_of else "before it was done"
+    hint = "too little memory may be the reason: try fewer --jobs"
+    return _crashed(path, f"the process that linted it was ended {how}", hint)
+
+
+def _crashed(path: str, message: str, hint: str) -> LintFinding:
+    return LintFinding("MB001", ERROR, message, hint, path, 1, 1)
+
+
+def _words(error: Exception) -> str:
+    return " ".join(f"{type(error).__name__}: {error}".split())
 
 
 def too_long(path: str, seconds: float) -> LintFinding:
     """The finding for a file that was left before its end."""
     message = f"it took more than {seconds:g} s and was left"
-    return LintFinding("MB004", ERROR, message, "is there a loop in its macros?", path, 1, 1)
+    endless = "is there a loop in its macros?" if path.endswith(".xacro") else ""
+    return LintFinding("MB004", ERROR, message, endless, path, 1, 1)

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
+import signal
+from collections.abc import Callable, Iterable, Sequence
 
-from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.check import by_place, lint_file
+from multibot_rewrite.lint.failures import lost, too_long
 from multibot_rewrite.lint.included import included
 from multibot_rewrite.lint.pairing import named_urdfs
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.workers import crew, limit_time
 
 # A worker costs more to start than a few files to lint.
 FEW = 12
+EACH = 4
+# What a worker may compute beyond the time of a file before it is ended.
+GRACE = 2.0
 Watch = Callable[[Iterable[list[LintFinding]]], Iterable[list[LintFinding]]]
 
 
@@ -25,23 +30,46 @@ def lint_files(
     ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` sees the
     files' findings pass, for a progress bar.
     """
-    settings = _with_urdfs(paths, settings._replace(included=included(paths)))
-    found = watch(_linted(paths, settings, jobs or os.cpu_count() or 1))
-    # An included file may be reached from several.
-    return list(dict.fromkeys(finding for findings in found for finding in findings))
+    settings = settings._replace(included=included(paths))
+    settings = settings._replace(urdfs=named_urdfs(paths, settings.included))
+    found = [
+        it for its in _linted(paths, settings, jobs or os.cpu_count() or 1, watch) for it in its
+    ]
+    return _in_order(_once(found), paths)
 
 
-def _linted(paths: Sequence[str], settings: Settings, jobs: int) -> Iterator[list[LintFinding]]:
-    lint = partial(lint_file, settings=settings)
-    if jobs == 1 or len(paths) <= FEW:
-        yield from map(lint, paths)
-        return
-    from concurrent.futures import ProcessPoolExecutor
+def _linted(
+    paths: Sequence[str], settings: Settings, jobs: int, watch: Watch
+) -> Iterable[list[LintFinding]]:
+    # xacro runs what a file says, which only the end of a process stops for certain.
+    alone = not any(path.endswith(".xacro") for path in paths)
+    if alone and (jobs == 1 or len(paths) <= FEW):
+        return list(watch(lint_file(path, settings) for path in paths))
 
-    with ProcessPoolExecutor(jobs) as pool:
-        yield from pool.map(lint, paths, chunksize=4)
+    def lint(path: str) -> list[LintFinding]:
+        limit_time(settings.seconds + GRACE)
+        return lint_file(path, settings)
+
+    def unfinished(path: str, died_of: int) -> list[LintFinding]:
+        if died_of == signal.SIGXCPU:
+            return [too_long(path, settings.seconds)]
+        return [lost(path, died_of)]
+
+    with crew(lint, paths, unfinished, min(jobs, -(-len(paths) // EACH))) as workers:
+        return list(watch(workers.results()))
 
 
-def _with_urdfs(paths: Sequence[str], settings: Settings) -> Settings:
-    """SRDF files find their URDF among the files, whoever lints which."""
-    return settings._replace(urdfs=named_urdfs(paths, settings.included))
+def _once(found: Iterable[LintFinding]) -> list[LintFinding]:
+    """A macro may be reached from several files, by several calls: what is alike is told once."""
+    first: dict[LintFinding, LintFinding] = {}
+    for it in found:
+        first.setdefault(it._replace(calls=(), arguments=""), it)
+    return list(first.values())
+
+
+def _in_order(found: Iterable[LintFinding], paths: Sequence[str]) -> list[LintFinding]:
+    """By file, those that were asked for first; then by line."""
+    rank = {path: at for at, path in enumerate(paths)}
+    for it in found:
+        rank.setdefault(it.file, len(rank))
+    return sorted(found, key=lambda it: (rank[it.file], by_place(it)))
