@@ -130,7 +130,8 @@ def _shown(plan: FleetPlan, robot: Described) -> RvizRobot:
 
 def _bridges(plan: FleetPlan) -> Made:
     """One bridge a robot, and one for what is the same for all."""
-    generated, left = carried(plan.fleet.inventories, plan.fleet.naming)
+    found, left = carried(plan.fleet.inventories, plan.fleet.naming)
+    generated = bridge.as_spawned(found, plan.robots)
     shared: list[tuple[str, str]] = []
     for kin in kin_of(plan):
         paths = kin.robots[0].spec.companions.get("bridge", ())
@@ -157,7 +158,7 @@ def _bridges(plan: FleetPlan) -> Made:
         hint = "give it a topic, for a bridge to carry"
         message = f"{it.what} of {it.robot} has a gz topic that only the world knows"
         file = next(r.spec.description for r in plan.robots if r.spec.namespace == it.robot)
-        yield Finding("MF505", "warning", message, hint, file, it.line, 1)
+        yield Finding("MF509", "warning", message, hint, file, it.line, 1)
 
 
 def _tables(plan: FleetPlan) -> Made:
