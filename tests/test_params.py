@@ -460,7 +460,7 @@ def test_a_node_without_any_section_is_told() -> None:
     wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
     assert "collision_monitor" not in str(without_sections([document, wild], setting(L2)))
     assert without_sections([document], setting(L1)) == tuple(
-        it for it in without_sections([document], setting(L1)) if "tf_frame_prefix" in it.hint
+        it for it in without_sections([document], setting(L1)) if "tf_frame_prefix" in it.message
     )
 
 

@@ -171,7 +171,7 @@ def without_section(
             continue
         lines = list(missing(context, node, set()))
         if lines:
-            words = ", ".join(f"{it.path}: {it.value}" for it in lines)
-            message = f"{name} has no section, and defaults that are every robot's"
-            hint = f"write {name}: ros__parameters: with {words}"
+            words = ", ".join(it.path for it in lines)
+            message = f"{name} has no section, and what it takes then is every robot's: {words}"
+            hint = "write a section for it, if only with use_sim_time: the lines are put there"
             yield Finding("MF125", WARNING, message, hint, document.file, 1, 1)
