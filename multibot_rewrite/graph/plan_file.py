@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
@@ -25,6 +27,10 @@ MORE_ROBOT_KEYS = ("other_frames", "optional", "spelled")
 FIELDS = 5
 # Between the types an endpoint may have.
 OR = " | "
+Spell = Callable[[str], str]
+# Reads back as the same text between brackets and elsewhere, and as no number, boolean or null.
+_PLAIN = re.compile(r"[A-Za-z_/~](?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-9_/])| \| )*")
+_WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 
 
 def to_yaml(plan: Expectation) -> str:
@@ -33,18 +39,44 @@ def to_yaml(plan: Expectation) -> str:
     for wanted in plan.endpoints:
         types = OR.join((wanted.type, *wanted.also))
         rows[wanted.node].append([wanted.role, wanted.kind, wanted.name, types, wanted.asked])
-    data = {key: _plain(getattr(plan, key)) for key in (*KEYS[:-1], "ignored_nodes")}
-    data["robots"] = {robot.name: _robot(robot, rows) for robot in plan.robots}
-    text = _dumped(data, None)
+    spell = cache(_quoted)
+    parts = [HEAD]
+    for key in (*KEYS[:-1], "ignored_nodes"):
+        value = getattr(plan, key)
+        parts.append(f"{key}: {spell(value) if isinstance(value, str) else _flow(value, spell)}\n")
+    parts.append("robots:\n" if plan.robots else "robots: {}\n")
+    for robot in plan.robots:
+        parts += _robot(robot, rows, spell)
     # One a line: that is how people look them up.
-    return HEAD + text + (_dumped({"sources": dict(plan.sources)}, False) if plan.sources else "")
+    parts += ["sources:\n"] * bool(plan.sources)
+    parts += [f"  {spell(node)}: {spell(place)}\n" for node, place in plan.sources]
+    return "".join(parts)
 
 
-def _dumped(value: object, flow: bool | None) -> str:
+def _robot(robot: WantedRobot, rows: Mapping[str, list[list[str]]], spell: Spell) -> Iterator[str]:
+    yield f"  {spell(robot.name)}:\n    tf: {spell(robot.tf)}\n"
+    yield f"    frames: {_flow(robot.frames, spell)}\n"
+    for key in MORE_ROBOT_KEYS:
+        value = getattr(robot, key)
+        if value:
+            yield f"    {key}: {spell(value) if isinstance(value, str) else _flow(value, spell)}\n"
+    yield "    nodes:\n" if robot.nodes else "    nodes: {}\n"
+    for node in dict.fromkeys(robot.nodes):
+        own = rows.get(node, ())
+        yield f"      {spell(node)}:\n" if own else f"      {spell(node)}: []\n"
+        yield from (f"      - {_flow(row, spell)}\n" for row in own)
+
+
+def _flow(values: Iterable[str], spell: Spell) -> str:
+    return f"[{', '.join(map(spell, values))}]"
+
+
+def _quoted(value: str) -> str:
+    if _PLAIN.fullmatch(value) and value.lower() not in _WORDS:
+        return value
     import yaml
 
-    dumper = _fast("SafeDumper")
-    return str(yaml.dump(value, None, dumper, sort_keys=False, width=120, default_flow_style=flow))
+    return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
 
 
 def _fast(name: str) -> Any:
@@ -52,16 +84,6 @@ def _fast(name: str) -> Any:
     import yaml
 
     return getattr(yaml, f"C{name}", None) or getattr(yaml, name)
-
-
-def _plain(value: object) -> object:
-    return list(value) if isinstance(value, tuple) else value
-
-
-def _robot(robot: WantedRobot, rows: Mapping[str, list[list[str]]]) -> dict[str, object]:
-    given = {k: _plain(getattr(robot, k)) for k in MORE_ROBOT_KEYS if getattr(robot, k)}
-    nodes = {node: rows.get(node, []) for node in robot.nodes}
-    return {"tf": robot.tf, "frames": list(robot.frames), **given, "nodes": nodes}
 
 
 def from_yaml(data: bytes, file: str) -> Expectation:
