@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from math import isfinite
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lxml import etree
 
@@ -100,45 +100,70 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
     root = document.root
     if root.tag != ROBOT:
         return ()
-    faults = [*_texts(root), *_broken(document), *_attributes(root, schema()[ROBOT])]
-    # Elements and values without a fault: most come again and again.
-    fine: set[object] = set()
-    must_have_a_child = _parents()
-    todo = [(root, ROBOT)]
-    for parent, name in todo:
-        children = list(parent)
-        tags = tuple([child.tag for child in children])
-        below = _below(name, tags) if len(tags) < _FEW else _below.__wrapped__(name, tags)
-        if below is None:
-            faults += _children(parent, schema()[name])
-            below = _sections(name, tags)
-        for element, section in zip(children, below, strict=True):
-            if not section:
-                continue
-            known = (section, *element.items())
-            if known not in fine:
-                if _is_fine(known, fine):
-                    fine.add(known)
-                else:
-                    faults += _attributes(element, schema()[section])
-            if len(element) or section in must_have_a_child:
-                todo.append((element, section))
+    faults = [*_texts(root), *_broken(document)]
+    level = {ROBOT: [root]}
+    while level:
+        below: dict[str, list[etree._Element]] = defaultdict(list)
+        for name, elements in level.items():
+            for element in _doubtful(name, elements):
+                faults += _attributes(element, schema()[name])
+            faults += _sorted_children(name, elements, below)
+        level = below
     return tuple(faults)
 
 
-def _is_fine(known: tuple[Any, ...], fine: set[object]) -> bool:
-    """Is nothing wrong with a section's attributes, as far as one look tells?"""
-    name, *items = known
-    typed = _typed(name, tuple([key for key, _ in items]))
-    if typed is None:
-        return False
+def _sorted_children(
+    name: str, parents: Iterable[etree._Element], below: dict[str, list[etree._Element]]
+) -> Iterator[Fault]:
+    """Adds the children of a section's elements to theirs; what is wrong with which are there."""
+    families: dict[tuple[object, ...], list[list[etree._Element]]] = defaultdict(list)
+    for parent in parents if name in _parents() else filter(len, parents):
+        family = [parent, *parent]
+        families[tuple([it.tag for it in family])].append(family)
+    for (_, *tags), alike in families.items():
+        known = tuple(tags)
+        sections = _below(name, known) if len(known) < _FEW else _below.__wrapped__(name, known)
+        above, *columns = zip(*alike, strict=True)
+        if sections is None:
+            for parent in above:
+                yield from _children(parent, schema()[name])
+            sections = _sections(name, known)
+        for section, children in zip(sections, columns, strict=True):
+            if section:
+                below[section] += children
+
+
+def _doubtful(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._Element]:
+    """Those of a section's elements whose attributes are not fine at one look."""
+    kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
+    for element in elements:
+        kinds[tuple(element.keys())].append(element)
+    found: list[etree._Element] = []
+    for keys, alike in kinds.items():
+        typed = _typed(name, keys)
+        if typed is None:
+            found += alike
+        elif typed:
+            found += _with_odd_values(alike, typed)
+    return found
+
+
+def _with_odd_values(
+    alike: Sequence[etree._Element], typed: Iterable[tuple[int, str]]
+) -> Iterable[etree._Element]:
+    """Elements of the same attributes, looked at by columns: most values come again and again."""
+    columns = list(zip(*[it.values() for it in alike], strict=True))
+    found: dict[etree._Element, None] = {}
     for at, kind in typed:
-        value = items[at][1]
-        if (kind, value) not in fine:
-            if len(value) > _LONG or kind not in _FINE or not _FINE[kind].fullmatch(value):
-                return False
-            fine.add((kind, value))
-    return True
+        odd = {value for value in set(columns[at]) if not _is_fine(kind, value)}
+        if odd:
+            pairs = zip(alike, columns[at], strict=True)
+            found |= {element: None for element, value in pairs if value in odd}
+    return found
+
+
+def _is_fine(kind: str, value: str) -> bool:
+    return len(value) <= _LONG and kind in _FINE and bool(_FINE[kind].fullmatch(value))
 
 
 def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
