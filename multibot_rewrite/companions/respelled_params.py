@@ -103,7 +103,7 @@ def _topic(desk: Desk, section: Section, use: Use) -> Iterator[Splice | Finding]
         yield finding(desk.document, use.scalar, "MF120", WARNING, message, hint)
     if landing.moved and landing.text != use.value:
         message = "relative topics of a costmap fall below the costmap's own name: written in full"
-        hint = f"from {desk.context.distro} on only; newer releases take them below the robot"
+        hint = "a file for Kilted or later may have them relative: name that release as distro"
         yield finding(desk.document, use.scalar, "MF121", WARNING, message, hint)
 
 

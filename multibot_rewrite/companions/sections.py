@@ -94,6 +94,8 @@ def found_sections(document: YamlText) -> list[Found]:
 
 
 def _check_file(document: YamlText) -> None:
+    if document.root is not None and PARAMETERS not in document.text:
+        raise InputError(f"{document.file}:1: no ROS 2 parameter file: {_what_else(document)}")
     # Nearly no file has one, and this look is far quicker.
     for line, text in anchors(document) if _MARK.search(document.text) else ():
         raise InputError(f"{document.file}:{line}: {text}: rcl takes no anchors; write it out")
