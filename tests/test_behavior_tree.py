@@ -174,7 +174,7 @@ def test_a_subtree_of_itself_ends() -> None:
 
 def test_subtrees_of_version_3_map_bare_names() -> None:
     body = '<SubTree ID="Main" robot_base_frame="base_link"/>'
-    assert one(body, form="") == body
+    assert run(tree(body, ""), context()) == (tree(body, ""), ())
     plus = '<SubTreePlus ID="Main" robot_base_frame="base_link"/>'
     assert one(plus, form="") == plus.replace("base_link", "sp/base_link")
 

@@ -330,6 +330,7 @@ def test_groups_that_no_srdf_tells_of_are_told() -> None:
     new, found = run(text, context("L2", srdf=False, groups="rename"))
     assert new == text and [it.code for it in found] == ["MF305"]
     assert codes(text, context("L2", srdf=False)) == []
+    assert codes(text, context("L2", groups="rename")) == []
 
 
 def test_virtual_joints_of_an_srdf_are_joints() -> None:
@@ -354,6 +355,10 @@ def test_a_name_that_the_description_lacks_is_told_once_with_the_nearest() -> No
         ("arm:\n  kinematics_solver: a/B\n  favourite: j1\n", [("MF302", 3)]),
         ("arm:\n  kinematics_solver: a/B\n  spot: /eye/points\n", [("MF302", 3)]),
         ("arm:\n  kinematics_solver: a/B\n  weights: [1, 2]\n  mode: global\n", []),
+        ("arm: {kinematics_solver: a/B}\nsolver: fast\n", []),
+        ("arm: {kinematics_solver: a/B}\nhand: {}\n", [("MF301", 2)]),
+        ("arm: {kinematics_solver: a/B}\nhand:\n", [("MF301", 2)]),
+        ("octomap_frame: $(arg p)map\nsensors: []\n", [("MF304", 1)]),
         ("joint_limits:\n  j1: {}\n  j2: {}\n  j1: {}\n", [("MF303", 4)]),
         ("joint_limits:\n  $(arg p)j1: {}\n", [("MF304", 2)]),
         ("sensors: [a]\na: {sensor_plugin: b/C, image_topic: a b/}\n", [("MF304", 2)]),

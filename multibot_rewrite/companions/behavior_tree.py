@@ -80,15 +80,16 @@ def _known() -> Mapping[str, Any]:
 
 
 def _ports(document: Document) -> Iterator[_Port]:
-    """Every attribute with what it names, those of models for editors aside."""
+    """Every literal with what it names, those of models for editors aside."""
     trees = _trees(document.root)
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         if _is_model(element):
             yield from _model_default(element, start, trees)
             continue
         for attribute, value in element.items():
-            kind = _kind(element, str(attribute), str(value), trees)
-            yield _Port(element, start, str(attribute), str(value), kind)
+            if not _entry(element, str(value), trees):
+                kind = _kind(element, str(attribute), trees)
+                yield _Port(element, start, str(attribute), str(value), kind)
 
 
 def _trees(root: _Element) -> _Trees:
@@ -110,10 +111,8 @@ def _model_default(element: _Element, start: int, trees: _Trees) -> Iterator[_Po
     yield _Port(element, start, "default", value, kind or "")
 
 
-def _kind(element: _Element, attribute: str, value: str, trees: _Trees) -> str:
-    """What a literal names; empty for entries of the blackboard."""
-    if _entry(element, value, trees):
-        return ""
+def _kind(element: _Element, attribute: str, trees: _Trees) -> str:
+    """What a literal names; empty where that is not known."""
     if element.tag == "SetBlackboard" and attribute == "value":
         tree = next((it for it in element.iterancestors("BehaviorTree")), None)
         entries = _entries(trees, str(tree.get("ID", "")) if tree is not None else "", ())
@@ -235,7 +234,7 @@ def _said(context: Context, port: _Port, names: frozenset[str]) -> tuple[str, st
 def _mention(port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
     known = _known()
     text = port.value
-    if port.attribute in known["keep"] or (text[:1] == "{" and text[-1:] == "}"):
+    if port.attribute in known["keep"]:
         return None
     if port.attribute in known["scripts"]:
         words = [it.strip() for it in text.replace('"', "'").split("'")[1::2]]

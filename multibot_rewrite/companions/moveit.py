@@ -30,7 +30,7 @@ from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
 from multibot_rewrite.companions.undeclared import lacks, mentions, renamed, said_of
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
 from multibot_rewrite.model import WARNING, Finding, InputError
-from multibot_rewrite.naming import NAMESPACE, affix
+from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rosnames import check_topic_name
@@ -296,7 +296,7 @@ def _has_groups(context: Context) -> bool:
 def _matters(context: Context, word: str) -> bool:
     """Would a name of this kind be spelled for the robot?"""
     if word in _CLOSED:
-        return affix(context.names.naming, "link" if word == "frame" else word, "x") is not None
+        return word in context.names.naming.separators
     return word in _GRAPH_WORDS or word == "controller"
 
 
