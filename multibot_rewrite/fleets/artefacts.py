@@ -5,23 +5,25 @@ from __future__ import annotations
 import itertools
 import os
 from collections.abc import Callable, Iterator
+from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.graph_names import known_topics
 from multibot_rewrite.companions.rviz import RvizRobot, rviz
 from multibot_rewrite.companions.template import GRAPH, SPELLED, fill
-from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.companions.yaml_text import YamlText, quoted, read_yaml
 from multibot_rewrite.fleet import expected
 from multibot_rewrite.fleets import bridge, spawn, teleop, transforms
 from multibot_rewrite.fleets.companions import Kin, behavior_trees, kin_of, lua, moveit, params
 from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.plan import FleetPlan
-from multibot_rewrite.fleets.started import started
+from multibot_rewrite.fleets.started import alone, started
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.remap import forms
 from multibot_rewrite.remap.bridge import bridge as carried
+from multibot_rewrite.remap.records import Table
 from multibot_rewrite.sources import read_file
 
 PLAN, TABLE, COMMANDS = "plan.yaml", "remappings.yaml", "commands.md"
@@ -109,8 +111,9 @@ def _rviz(plan: FleetPlan) -> Made:
     for robot in plan.robots:
         for path in robot.spec.companions.get("rviz", ()):
             groups.setdefault(path, []).append(robot)
+    own = {it.robots[0].spec.name: it for it in alone(plan)} if groups else {}
     for path, robots in groups.items():
-        shown = [_shown(plan, robot) for robot in robots]
+        shown = [_shown(own[robot.spec.name]) for robot in robots]
         world = transforms.world_of(plan.file, plan.fleet.naming)
         made, findings = rviz(_yaml(path), shown, world=world)
         yield from findings
@@ -120,7 +123,9 @@ def _rviz(plan: FleetPlan) -> Made:
             yield Artefact(where, it.text.encode(), (path,))
 
 
-def _shown(plan: FleetPlan, robot: Described) -> RvizRobot:
+def _shown(plan: FleetPlan) -> RvizRobot:
+    """The one robot of a plan as RViz shows it."""
+    (robot,) = plan.robots
     spec = robot.spec
     names = robot.names._replace(robot=spec.spelled)
     topics = robot.topics._replace(robot=spec.namespace)
@@ -168,26 +173,42 @@ def _tables(plan: FleetPlan) -> Made:
     folder = os.path.dirname(os.path.abspath(plan.file.file))
     sources = {node: os.path.relpath(place, folder) for node, place in fleet.sources.items()}
     yield Artefact(PLAN, to_yaml(expected(fleet._replace(sources=sources))).encode())
-    yield Artefact(TABLE, forms.as_yaml(table).encode())
+    yield Artefact(TABLE, _remappings(table).encode())
     yield Artefact("remappings.py", forms.launch(table).encode())
+
+
+def _remappings(table: Table) -> str:
+    """The rules of every node, in the shape of ``multibot remap --format yaml``; where names lead
+    is in the plan. Written directly: PyYAML takes longer than all the rest."""
+    spell = cache(quoted)
+    robots: dict[str, list[str]] = {}
+    for node in table.nodes:
+        rules = ", ".join(f"[{spell(it.source)}, {spell(it.target)}]" for it in node.rules)
+        robots.setdefault(node.robot or forms.EVERY_ROBOT, []).append(
+            f"    {spell(node.node)}:\n      namespace: {spell(node.namespace)}\n"
+            f"      name: {spell(node.name)}\n      remappings: [{rules}]\n"
+        )
+    rows = [f"  {spell(robot)}:\n{''.join(nodes)}" for robot, nodes in robots.items()]
+    head = f"layout: {spell(table.layout)}\nrobots:{'' if rows else ' {}'}\n"
+    return head + "".join(rows)
 
 
 def _commands(plan: FleetPlan) -> Made:
     """The lines that start what no file does, robot by robot."""
-    placed = transforms.place(plan)
-    spawned, remarks = spawn.spawns(plan)
-    yield from (*placed.findings, *remarks)
     rows = ["# Commands of this fleet\n"]
-    for robot, how, drive in zip(plan.robots, spawned, teleop.teleops(plan), strict=True):
-        own = [it for it in placed.transforms if it.robot == robot.spec.namespace]
+    for one in alone(plan):
+        (robot,) = one.robots
+        placed = transforms.place(one)
+        spawned, remarks = spawn.spawns(one)
+        yield from (*placed.findings, *remarks)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
-        rows += [f"{transforms.command(it)}\n" for it in own]
-        rows += [f"{spawn.gz_command(how)}\n", f"# Gazebo Classic: {spawn.classic_command(how)}\n"]
-        rows += [f"{teleop.command(drive)}\n", "```\n"]
+        rows += [f"{transforms.command(it)}\n" for it in placed.transforms]
+        rows += [f"{spawn.gz_command(it)}\n" for it in spawned]
+        rows += [f"# Gazebo Classic: {spawn.classic_command(it)}\n" for it in spawned]
+        rows += [*(f"{teleop.command(it)}\n" for it in teleop.teleops(one)), "```\n"]
+        for pose in placed.initial:
+            yield Artefact(_own(robot, "start_pose.yaml"), _start_pose(one, pose))
     yield Artefact(COMMANDS, "".join(rows).encode())
-    for pose in placed.initial:
-        robot = next(it for it in plan.robots if it.spec.namespace == pose.robot)
-        yield Artefact(_own(robot, "start_pose.yaml"), _start_pose(plan, pose))
 
 
 def _start_pose(plan: FleetPlan, pose: transforms.InitialPose) -> bytes:

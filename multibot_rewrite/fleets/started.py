@@ -2,12 +2,23 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
 from multibot_rewrite.fleet import Fleet
 from multibot_rewrite.fleets.plan import FleetPlan
-from multibot_rewrite.fleets.transforms import NODE, StaticTransform, place
+from multibot_rewrite.fleets.transforms import NODE, place
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.records import PUBLISHES, TOPIC, Endpoint, NodeFacts, Table
+from multibot_rewrite.remap.records import (
+    PUBLISHES,
+    TOPIC,
+    Endpoint,
+    Name,
+    NodeFacts,
+    NodeTable,
+    Table,
+)
 from multibot_rewrite.remap.table import joined, names_of, node_table
 
 STATIC = "/tf_static"
@@ -17,14 +28,32 @@ HOLDER = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE)
 def started(plan: FleetPlan) -> Fleet:
     """The planned fleet, and a publisher of a static transform for each robot that needs one."""
     fleet = plan.fleet
-    for it in place(plan).transforms:
-        edge = Edge(it.parent, it.child, True)
-        table = joined(fleet.table, _table(fleet, it), fleet.naming)
-        edges = {**fleet.edges, (it.robot, NODE): [edge]}
-        fleet = fleet._replace(table=table, edges=edges)
-    return fleet
+    held = [it for one in alone(plan) for it in place(one).transforms]
+    if not held:
+        return fleet
+    tables = [node_table(it.robot, HOLDER, fleet.naming) for it in held]
+    names = tuple(names_of([(HOLDER, table) for table in tables]))
+    edges = {(it.robot, NODE): [Edge(it.parent, it.child, True)] for it in held}
+    more = Table(fleet.table.layout, tuple(tables), names, ())
+    return fleet._replace(
+        table=joined(fleet.table, more, fleet.naming), edges={**fleet.edges, **edges}
+    )
 
 
-def _table(fleet: Fleet, it: StaticTransform) -> Table:
-    node = node_table(it.robot, HOLDER, fleet.naming)
-    return Table(fleet.table.layout, (node,), tuple(names_of([(HOLDER, node)])), ())
+def alone(plan: FleetPlan) -> Iterator[FleetPlan]:
+    """Each robot as a fleet of its own: for steps that look through everything there is of a robot,
+    which would else look through all the others as well."""
+    fleet = plan.fleet
+    nodes: dict[str, list[NodeTable]] = defaultdict(list)
+    names: dict[str, list[Name]] = defaultdict(list)
+    for node in fleet.table.nodes:
+        nodes[node.robot].append(node)
+    for name in fleet.table.names:
+        names[name.robot].append(name)
+    edges: dict[str, dict[tuple[str, str], Sequence[Edge]]] = defaultdict(dict)
+    for key, sent in fleet.edges.items():
+        edges[key[0]][key] = sent
+    for robot in plan.robots:
+        own = robot.spec.namespace
+        table = fleet.table._replace(nodes=tuple(nodes[own]), names=tuple(names[own]), problems=())
+        yield plan._replace(robots=(robot,), fleet=fleet._replace(table=table, edges=edges[own]))
