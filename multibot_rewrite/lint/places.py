@@ -6,6 +6,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Mapping
 from functools import lru_cache
+from itertools import count
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -47,7 +48,7 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
 
 def numbered(subject: Subject) -> Numbers:
     """The elements of a document and their numbers in document order."""
-    return {element: at for at, element in enumerate(subject.document.root.iter("*"))}
+    return dict(zip(subject.document.elements, count()))
 
 
 def _place(subject: Subject, number: int, attribute: str | None) -> Place:

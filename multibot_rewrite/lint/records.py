@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.robot import Robot
 from multibot_rewrite.lint.schema import Fault
 from multibot_rewrite.lint.settings import Settings
@@ -36,6 +37,7 @@ class Subject(NamedTuple):
 
     format: str
     document: Document
+    elements: Elements
     inventory: Inventory
     tree: Tree
     robot: Robot

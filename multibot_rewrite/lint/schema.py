@@ -116,7 +116,7 @@ def _sorted_children(
     name: str, parents: Iterable[etree._Element], below: dict[str, list[etree._Element]]
 ) -> Iterator[Fault]:
     """Adds the children of a section's elements to theirs; what is wrong with which are there."""
-    families: dict[tuple[object, ...], list[list[etree._Element]]] = defaultdict(list)
+    families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
     for parent in parents if name in _parents() else filter(len, parents):
         family = [parent, *parent]
         families[tuple([it.tag for it in family])].append(family)
@@ -137,7 +137,7 @@ def _doubtful(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._
     """Those of a section's elements whose attributes are not fine at one look."""
     kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
     for element in elements:
-        kinds[tuple(element.keys())].append(element)
+        kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
     found: list[etree._Element] = []
     for keys, alike in kinds.items():
         typed = _typed(name, keys)
@@ -503,14 +503,12 @@ def section_of(element: etree._Element) -> Section | None:
 
 def _broken(document: Document) -> Iterator[Fault]:
     """Line ends and tabs behind a number: blanks to XML, and no blanks to urdfdom."""
-    source, starts = document.source, document.starts
+    source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
-    elements: list[etree._Element] = []
     for at in (it.start() for pattern in _BROKEN for it in pattern.finditer(source)):
         number = bisect_right(starts, at) - 1
         if number < 0 or number in seen or tag_end(source, starts[number]) <= at:
             continue
-        elements = elements or list(document.root.iter("*"))
         seen.add(number)
         section = section_of(elements[number])
         found = _ASSIGNED.search(source, starts[number], at)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.pairing import SRDF_MARK, find_pair
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import read_robot
@@ -86,10 +87,10 @@ def _subject(document: Document, settings: Settings) -> Subject:
     tree = builtin_tree(settings.vocabulary)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
-    robot = read_robot(document.root)
+    elements, robot = Elements(document), read_robot(document.root)
     # The source of a xacro file has names that are not made yet.
     if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
-        return Subject(URDF, document, inventory, tree, robot, settings)
+        return Subject(URDF, document, elements, inventory, tree, robot, settings)
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
     inventory = collect(document, tree, pair.declared or NO_URDF)
-    return Subject(SRDF, document, inventory, tree, robot, settings, pair.robot)
+    return Subject(SRDF, document, elements, inventory, tree, robot, settings, pair.robot)

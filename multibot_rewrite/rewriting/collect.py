@@ -40,7 +40,7 @@ def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inve
     """Walk the document in order beside the tree of rewriters; ``outside`` is declared elsewhere."""
     claims: list[Claim] = []
     hosts: list[Host] = []
-    walk = zip(document.root.iter("*"), document.starts, strict=True)
+    walk = zip(document.elements, document.starts, strict=True)
     root, _ = next(walk)
     format_ = _format(document, tree, SRDF if outside else "")
     node = tree.formats[format_]

@@ -38,12 +38,13 @@ _HINTS = (
 
 
 class Document(NamedTuple):
-    """One parsed file. ``starts`` are the byte offsets of the elements' start tags, in the order of
-    ``root.iter("*")``. ``file`` is the name used in messages."""
+    """One parsed file. ``elements`` are all of the tree in document order, ``starts`` the byte
+    offsets of their start tags. ``file`` is the name used in messages."""
 
     source: bytes
     file: str
     root: etree._Element
+    elements: list[etree._Element]
     starts: list[int]
 
 
@@ -54,7 +55,7 @@ def read_document(source: bytes, file: str) -> Document:
         root = etree.fromstring(source, _PARSER)
     except etree.XMLSyntaxError as error:
         raise InputError(_syntax_message(error, file)) from None
-    document = Document(source, file, root, start_offsets(source))
+    document = Document(source, file, root, list(root.iter("*")), start_offsets(source))
     _refuse_tree(document)
     return document
 
@@ -80,7 +81,7 @@ def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
 
 
 def _refuse_tree(document: Document) -> None:
-    source, file, root, _ = document
+    source, file, root, *_ = document
     info = root.getroottree().docinfo
     if info.internalDTD is not None:
         raise InputError(f"{file}: DOCTYPE and entities are not accepted; expand them first")

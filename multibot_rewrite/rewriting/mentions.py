@@ -89,7 +89,7 @@ def _unclaimed(
     """(element, start, attribute or "", value) of the suspect slots without a site, in order."""
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     document = inventory.document
-    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+    for element, start in zip(document.elements, document.starts, strict=True):
         slots = [(str(key), str(value)) for key, value in element.items()]
         slots.append(("", (element.text or "").strip()))
         slots = [slot for slot in slots if (start, slot[0]) not in claimed]

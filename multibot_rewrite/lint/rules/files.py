@@ -33,7 +33,7 @@ def _told(subject: Subject, kind: str) -> Iterator[Problem]:
 def _placed(subject: Subject, findings: Iterable[Finding]) -> Iterator[Problem]:
     """Findings that know a line and a column -> problems at the elements there."""
     source = subject.document.source
-    elements = list(subject.document.root.iter("*"))
+    elements = subject.document.elements
     lines = [0, *accumulate(len(line) for line in source.splitlines(keepends=True))]
     for it in findings:
         line = source[lines[it.line - 1] :].decode("utf-8", "replace")

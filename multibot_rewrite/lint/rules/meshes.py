@@ -11,6 +11,7 @@ from urllib.parse import unquote
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.packages import entries, find_in, package_folders
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.written import is_fixed, starts_of
@@ -42,9 +43,11 @@ class Used(NamedTuple):
 
 
 @lru_cache(maxsize=1)
-def _used(root: _Element) -> tuple[Used, ...]:
+def _used(elements: Elements) -> tuple[Used, ...]:
     """Every file that a link's shapes and materials name, in document order."""
-    found = ((it, it.get("filename")) for it in root.iter("mesh", "texture"))
+    tags = ("mesh", "texture")
+    files = elements.root.iter(*tags) if elements.every("texture") else elements.every("mesh")
+    found = ((it, it.get("filename")) for it in files)
     return tuple(_read(it, name.strip()) for it, name in found if name and name.strip())
 
 
@@ -56,7 +59,7 @@ def _read(element: _Element, name: str) -> Used:
 
 
 def _with(subject: Subject, *schemes: str) -> list[Used]:
-    return [it for it in _used(subject.document.root) if it.scheme in schemes]
+    return [it for it in _used(subject.elements) if it.scheme in schemes]
 
 
 def _problem(it: Used, message: str, hint: str) -> Problem:
@@ -78,9 +81,9 @@ class Lookup(NamedTuple):
 
 
 @lru_cache(maxsize=1)
-def _lookups(root: _Element, file: str, roots: tuple[str, ...]) -> tuple[Lookup, ...]:
+def _lookups(elements: Elements, file: str, roots: tuple[str, ...]) -> tuple[Lookup, ...]:
     """Each file once that somebody can look for, by the first element that names it."""
-    first = {it.name: it for it in reversed(_used(root)) if it.scheme in ("package", "")}
+    first = {it.name: it for it in reversed(_used(elements)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
     return tuple(_looked_up(it, *_bases(it, file, roots)) for it in asked)
 
@@ -112,7 +115,7 @@ def _looks_like_it(names: frozenset[str], first: str) -> bool:
 
 def _asked(subject: Subject) -> tuple[Lookup, ...]:
     file = subject.document.file.removesuffix(" (expanded)")
-    return _lookups(subject.document.root, file, subject.settings.roots)
+    return _lookups(subject.elements, file, subject.settings.roots)
 
 
 @rule(
@@ -232,7 +235,7 @@ def _is_literal(subject: Subject, start: int) -> bool:
 )
 def backslash_in_path(subject: Subject) -> Iterator[Problem]:
     """File names with a backslash."""
-    for it in _used(subject.document.root):
+    for it in _used(subject.elements):
         if "\\" in it.name:
             right = it.name.replace("\\", "/")
             yield _problem(it, f"{it.name!r} has backslashes", f"write {right!r}")
@@ -251,7 +254,7 @@ def backslash_in_path(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_without_file(subject: Subject) -> Iterator[Problem]:
     """Meshes of a link's shapes with an empty name or none; SDF's have a ``<uri>``."""
-    for mesh in subject.document.root.iter("mesh"):
+    for mesh in subject.elements.every("mesh"):
         name = mesh.get("filename")
         if (name is None or not name.strip()) and _is_shape(mesh):
             said = "no file" if name is None else "an empty file name"
@@ -284,7 +287,7 @@ def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
 
 
 def _meshes(subject: Subject) -> list[Used]:
-    used = _used(subject.document.root)
+    used = _used(subject.elements)
     return [it for it in used if it.element.tag == "mesh" and "$" not in it.name]
 
 
@@ -327,7 +330,7 @@ def mesh_format_partly(subject: Subject) -> Iterator[Problem]:
 )
 def mixed_schemes(subject: Subject) -> Iterator[Problem]:
     """The first file that is named in another way than the first."""
-    used = [it for it in _used(subject.document.root) if "$" not in it.name]
+    used = [it for it in _used(subject.elements) if "$" not in it.name]
     other = next((it for it in used if it.scheme != used[0].scheme), None)
     if other is not None:
         message = f"{other.name!r} beside {used[0].name!r}: two ways to name meshes"
@@ -386,7 +389,7 @@ def find_left_over(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many; a xacro file in disguise is for MB105 to tell."""
     if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
         return
-    found = [it for it in _used(subject.document.root) if "$(find" in it.name]
+    found = [it for it in _used(subject.elements) if "$(find" in it.name]
     if found:
         message = f"{found[0].name!r} holds a xacro substitution{_and_more(len(found))}"
         yield _problem(found[0], message, "write package://NAME/...")

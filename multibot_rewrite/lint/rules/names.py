@@ -131,7 +131,7 @@ def blank_in_name(subject: Subject) -> Iterator[Problem]:
 )
 def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     """Every component that has interfaces."""
-    for system in subject.document.root.iter("ros2_control"):
+    for system in subject.elements.every("ros2_control"):
         for part in system.iterchildren("joint", "sensor", "gpio"):
             name = part.get("name", "")
             if "/" in name and SUBSTITUTION not in name:
@@ -366,7 +366,7 @@ def _name_fault(name: str, section: str) -> str:
 )
 def odd_interface(subject: Subject) -> Iterator[Problem]:
     """Components and their interfaces; a joint's own name is told where it is declared."""
-    for system in subject.document.root.iter("ros2_control"):
+    for system in subject.elements.every("ros2_control"):
         for it in system.iter(
             "ros2_control", "sensor", "gpio", "command_interface", "state_interface"
         ):

@@ -8,6 +8,7 @@ from math import acos, cos, hypot, pi, sqrt
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.numbers import Vector, number, vector
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.robot import MOMENTS, WORLD, Inertial, Link, Robot, reached
@@ -329,7 +330,7 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     robot, root = subject.robot, subject.document.root
     if root.tag != "robot" or not robot.joints:
         return
-    touch, seen = _bodies_with(robot, root, "collision"), _bodies_with(robot, root, "visual")
+    touch, seen = _bodies_with(subject, "collision"), _bodies_with(subject, "visual")
     bare = [it for it in seen if it not in touch and _moves(robot, it) and it in robot.link]
     if not touch and bare[1:]:
         yield Problem(root, "no link has a <collision>: the robot touches nothing")
@@ -378,7 +379,7 @@ def mass_tiny(subject: Subject) -> Iterator[Problem]:
 )
 def shape_size(subject: Subject) -> Iterator[Problem]:
     """Shapes that are not there."""
-    for shape, sizes in _shapes(subject.document.root):
+    for shape, sizes in _shapes(subject.elements):
         if min(sizes) <= 0:
             words = " x ".join(f"{it:g}" for it in sizes)
             message = f"{shape.tag} of link {_owner(shape)!r} has the size {words}"
@@ -397,7 +398,7 @@ def shape_size(subject: Subject) -> Iterator[Problem]:
 )
 def shape_units(subject: Subject) -> Iterator[Problem]:
     """Shapes of more than fifty metres every way; a long and thin one may be a rail."""
-    for shape, sizes in _shapes(subject.document.root):
+    for shape, sizes in _shapes(subject.elements):
         if min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
             words = " x ".join(f"{it:g}" for it in sizes)
             message = f"{shape.tag} of link {_owner(shape)!r} has the size {words} m"
@@ -422,7 +423,7 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
         return
     later = () if root.get("version", "1.0") in OLD_VERSIONS else ("capsule",)
     known = {*SHAPES, "mesh", *later}
-    for element in root.iter("visual", "collision"):
+    for element in subject.elements.every("visual", "collision"):
         parent = element.getparent()
         if parent is None or parent.tag != "link":
             continue
@@ -450,7 +451,7 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_flat(subject: Subject) -> Iterator[Problem]:
     """Scales with a 0."""
-    for mesh, scale in _scales(subject.document.root):
+    for mesh, scale in _scales(subject.elements):
         if 0 in scale:
             words = mesh.get("scale")
             yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is scaled by {words}", "scale")
@@ -469,7 +470,7 @@ def mesh_flat(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
     """An odd number of negative scales; two of them are a turn."""
-    for mesh, scale in _scales(subject.document.root):
+    for mesh, scale in _scales(subject.elements):
         if scale[0] * scale[1] * scale[2] < 0:
             words = mesh.get("scale")
             yield Problem(mesh, f"mesh of link {_owner(mesh)!r} is mirrored: {words}", "scale")
@@ -488,7 +489,7 @@ def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_scale_units(subject: Subject) -> Iterator[Problem]:
     """Very large, very small, or of very different scales."""
-    for mesh, scale in _scales(subject.document.root):
+    for mesh, scale in _scales(subject.elements):
         low, high = min(map(abs, scale)), max(map(abs, scale))
         if low > 0 and (high >= LARGE_SCALE or low < SMALL_SCALE or high >= UNEVEN * low):
             words = mesh.get("scale")
@@ -595,26 +596,22 @@ def _eigenvalues(moments: tuple[float, ...]) -> Vector:
     return low * size, (3 * mean - high - low) * size, high * size
 
 
-def _bodies_with(robot: Robot, root: _Element, tag: str) -> dict[str, None]:
+def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     """The bodies whose links have such an element."""
-    found: dict[str, None] = {}
-    for element in root.iter(tag):
-        parent = element.getparent()
-        if parent is not None and parent.tag == "link":
-            name = parent.get("name", "")
-            found[robot.body.get(name, name)] = None
-    return found
+    parents = {it.getparent(): None for it in subject.elements.every(tag)}
+    names = [it.get("name", "") for it in parents if it is not None and it.tag == "link"]
+    return {subject.robot.body.get(name, name): None for name in names}
 
 
 @lru_cache(maxsize=1)  # several rules look at the same ones
-def _shapes(root: _Element) -> list[tuple[_Element, list[float]]]:
+def _shapes(elements: Elements) -> list[tuple[_Element, list[float]]]:
     """The boxes, cylinders and spheres of a URDF whose sizes are numbers, and those."""
-    read = ((it, _sizes(it)) for it in _geometries(root, *SHAPES))
+    read = ((it, _sizes(it)) for it in _geometries(elements, *SHAPES))
     return [(shape, sizes) for shape, sizes in read if sizes]
 
 
-def _geometries(root: _Element, *tags: str) -> Iterator[_Element]:
-    for shape in root.iter(*tags) if root.tag == "robot" else ():
+def _geometries(elements: Elements, *tags: str) -> Iterator[_Element]:
+    for shape in elements.every(*tags) if elements.root.tag == "robot" else ():
         parent = shape.getparent()
         if parent is not None and parent.tag == "geometry":
             yield shape
@@ -629,9 +626,9 @@ def _sizes(shape: _Element) -> list[float]:
 
 
 @lru_cache(maxsize=1)
-def _scales(root: _Element) -> list[tuple[_Element, Vector]]:
+def _scales(elements: Elements) -> list[tuple[_Element, Vector]]:
     """The meshes of a URDF that are scaled, and how."""
-    read = ((it, vector(it.get("scale"))) for it in _geometries(root, "mesh"))
+    read = ((it, vector(it.get("scale"))) for it in _geometries(elements, "mesh"))
     return [(mesh, scale) for mesh, scale in read if scale is not None]
 
 

@@ -234,7 +234,7 @@ def link_and_joint(subject: Subject) -> Iterator[Problem]:
 )
 def repeated_joint(subject: Subject) -> Iterator[Problem]:
     """Components of one kind and name in one system."""
-    for system in subject.document.root.iter("ros2_control"):
+    for system in subject.elements.every("ros2_control"):
         components = system.iterchildren("joint", "sensor", "gpio")
         keys = (((it.tag, _name(it)), it) for it in components if _name(it))
         for it in _repeated(keys):
@@ -255,7 +255,7 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
 )
 def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
     """Every name that was there before."""
-    systems = subject.document.root.iterchildren("ros2_control")
+    systems = subject.elements.tops("ros2_control")
     for it in _repeated((_name(system), system) for system in systems if _name(system)):
         yield Problem(it, f"there is another <ros2_control> {_name(it)!r}", "name", "rename one")
 
@@ -273,7 +273,7 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
 )
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     """Sensors in blocks for one link."""
-    blocks = subject.document.root.iterchildren("gazebo")
+    blocks = subject.elements.tops("gazebo")
     sensors = (
         ((block.get("reference"), _name(it)), it)
         for block in blocks
@@ -299,7 +299,7 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
 )
 def duplicate_material(subject: Subject) -> Iterator[Problem]:
     """Those right below the root; a link may repeat one."""
-    materials = subject.document.root.iterchildren("material")
+    materials = subject.elements.tops("material")
     for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
         message = f"material {it.get('name')!r} is defined twice"
         yield Problem(it, message, "name", "delete one: urdfdom refuses even the same colour")
@@ -344,7 +344,7 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
 )
 def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
     """Those of the robot; those of a <ros2_control> are its own."""
-    found = subject.document.root.iterchildren("transmission")
+    found = subject.elements.tops("transmission")
     for it in _repeated((_name(it), it) for it in found if _name(it)):
         yield Problem(it, f"there is another transmission {_name(it)!r}", "name", "rename one")
 
@@ -365,7 +365,7 @@ def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
 def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
     """The properties a link or joint has one of."""
     values: dict[tuple[str, str], str] = {}
-    for block in subject.document.root.iterchildren("gazebo"):
+    for block in subject.elements.tops("gazebo"):
         target = block.get("reference", "")
         for it in block if target else ():
             if it.tag not in SINGLE:
@@ -638,7 +638,7 @@ def padded_reference(subject: Subject) -> Iterator[Problem]:
 )
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     """Those of the robot; PR2's have joints by other tags."""
-    for it in subject.document.root.iterchildren("transmission"):
+    for it in subject.elements.tops("transmission"):
         if not any("joint" in str(child.tag).lower() for child in it.iterchildren("*")):
             message = f"transmission {it.get('name', '')!r} has no joint"
             yield Problem(it, message, None, "name its joint")
@@ -678,7 +678,7 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
 )
 def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     """Joints of transmissions that cannot move."""
-    for transmission in subject.document.root.iterchildren("transmission"):
+    for transmission in subject.elements.tops("transmission"):
         for it in transmission.iterchildren("joint"):
             joint = subject.robot.joint.get(it.get("name", ""))
             if joint is not None and joint.type == "fixed":
@@ -745,7 +745,7 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
 )
 def undriven_joint(subject: Subject) -> Iterator[Problem]:
     """One finding a robot: the joints that were forgotten, or are passive."""
-    if next(subject.document.root.iterchildren("ros2_control", "transmission"), None) is None:
+    if not subject.elements.tops("ros2_control", "transmission"):
         return
     claims = subject.inventory.claims
     named = {it.value for it in claims if it.site.plain == "joint" and _drives(it)}
