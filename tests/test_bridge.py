@@ -87,6 +87,21 @@ def test_two_robots_share_the_clock_and_nothing_else(layout: str) -> None:
     assert all(gz.values())
 
 
+def test_one_tf_for_all_is_carried_once() -> None:
+    source = ROBOT.replace("<odom_topic>", "<tf_topic>/tf</tf_topic><odom_topic>")
+    carried = [item for item in fleet("L2", source)[0] if item.ros == "/tf"]
+    assert [(item.robot, item.gz) for item in carried] == [("", "/tf")]
+    apart = [item for item in fleet("L3", source)[0] if item.ros.endswith("/tf")]
+    assert [(item.robot, item.gz) for item in apart] == [(it, f"/{it}/tf") for it in ROBOTS]
+
+
+def test_the_info_of_an_rgbd_camera_is_below_its_topic() -> None:
+    source = ROBOT.replace('type="camera"><topic>eye/image', 'type="rgbd_camera"><topic>eye')
+    carried = [item.gz for item in fleet("L2", source)[0] if item.robot == "robot1"]
+    assert "robot1/eye/camera_info" in carried
+    assert "robot1/eye/depth_image" in carried
+
+
 def test_what_hangs_on_the_world_is_said() -> None:
     _, left = fleet("L2")
     assert [(item.robot, item.line, item.what) for item in left if item.robot == "robot1"] == [

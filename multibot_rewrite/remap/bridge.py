@@ -14,6 +14,8 @@ from multibot_rewrite.rewriting.collect import Inventory
 
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
 TF_TYPE = "tf2_msgs/msg/TFMessage"
+# Sensors whose camera_info is below their topic, whatever <camera_info_topic> says; a camera's is beside it.
+INFO_BELOW = ("rgbd_camera", "segmentation_camera")
 
 
 class Bridged(NamedTuple):
@@ -93,6 +95,7 @@ def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[Brid
     if "camera" in sensor.get("type", ""):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
         name = sensor.findtext("camera/camera_info_topic", "").strip() or beside
+        name = f"{base}/camera_info" if sensor.get("type") in INFO_BELOW else name
         types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
         yield Bridged(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
 
@@ -110,7 +113,9 @@ def _plugin(
         ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
         if not given and ros_type != TF_TYPE:
             ros = _robot_name(default.rpartition("/")[2], robot, naming)
-        yield Bridged(robot, ros, name, ros_type, gz_type, DIRECTIONS[way])
+        # The one /tf of all is carried once, or each transform comes as often as there are robots.
+        whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
+        yield Bridged(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
 
 
 def _line(element: etree._Element) -> int:
