@@ -14,8 +14,6 @@ from multibot_rewrite.rewriting.collect import Inventory
 
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
 TF_TYPE = "tf2_msgs/msg/TFMessage"
-# Sensors whose camera_info is below their topic, whatever <camera_info_topic> says; a camera's is beside it.
-INFO_BELOW = ("rgbd_camera", "segmentation_camera")
 
 
 class Bridged(NamedTuple):
@@ -95,7 +93,8 @@ def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[Brid
     if "camera" in sensor.get("type", ""):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
         name = sensor.findtext("camera/camera_info_topic", "").strip() or beside
-        name = f"{base}/camera_info" if sensor.get("type") in INFO_BELOW else name
+        if sensor.get("type") == "rgbd_camera":  # whose code asks for nothing else
+            name = f"{base}/camera_info"
         types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
         yield Bridged(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
 
