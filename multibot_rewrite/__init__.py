@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
     from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.model import (
         Change,
@@ -24,6 +25,8 @@ __all__ = [
     "Change",
     "Finding",
     "InputError",
+    "LoadedFleet",
+    "LoadedRobot",
     "MultibotError",
     "ProofError",
     "Rewrite",
@@ -31,16 +34,20 @@ __all__ = [
     "UsageError",
     "VocabularyError",
     "explain",
+    "load_fleet",
     "rewrite",
     "rewrite_all",
     "strip",
 ]
-_LIBRARY = frozenset({"Rewrite", "explain", "rewrite", "rewrite_all", "strip"})
+_HOMES = {
+    **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
+    **dict.fromkeys(("LoadedFleet", "LoadedRobot", "load_fleet"), "fleets.scripts"),
+}
 
 
 def __getattr__(name: str) -> object:
     # A command loads what it needs: each of them starts by importing this package.
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module = "library" if name in _LIBRARY else "model"
-    return getattr(import_module(f"{__name__}.{module}"), name)
+    module = import_module(f"{__name__}.{_HOMES.get(name, 'model')}")
+    return getattr(module, name)

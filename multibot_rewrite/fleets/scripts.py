@@ -1,0 +1,316 @@
+"""A fleet file as a launch script uses it: plain values for each robot, and no file written.
+
+from multibot_rewrite import load_fleet
+
+for robot in load_fleet("fleet.yaml").robots:
+    Node(package="nav2_amcl", executable="amcl", **robot.node("amcl", "params.yaml"))
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from typing import Any, NamedTuple, NoReturn
+
+from multibot_rewrite.companions.graph_names import known_topics, robot_topic
+from multibot_rewrite.companions.respell import respell
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.fleets import spawn, teleop, transforms
+from multibot_rewrite.fleets.artefacts import Artefact, Artefacts, make_artefacts
+from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
+from multibot_rewrite.fleets.node_params import Value, exact_nodes, node_parameters
+from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
+from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
+from multibot_rewrite.remap.marked import unknown
+from multibot_rewrite.remap.records import TOPIC, NodeFacts, NodeTable, Problem, Table
+from multibot_rewrite.remap.table import placed, target_of
+
+Rules = list[tuple[str, str]]
+
+
+class NodeNames(NamedTuple):
+    """What the nodes of a robot are called and remapped to, by the names their stacks give them.
+
+    ``hosted`` maps a node to those that always run in its process, as costmaps do.
+    """
+
+    robot: str
+    nodes: Mapping[str, NodeTable]
+    hosted: Mapping[str, tuple[str, ...]]
+
+    def for_node(self, node: str) -> Rules:
+        """The node's remappings, as ``launch_ros.actions.Node`` takes them.
+
+        Rules for one node of those it hosts come first: rcl takes the first that matches.
+        """
+        own = self._found(node)
+        rules = [
+            (f"{self.nodes[it].name}:{rule.source}", rule.target)
+            for it in self.hosted.get(node, ())
+            for rule in self.nodes[it].rules
+        ]
+        return [*rules, *((rule.source, rule.target) for rule in own.rules)]
+
+    def name(self, node: str) -> str:
+        """The name the node runs under, without its namespace."""
+        return self._found(node).name
+
+    def namespace(self, node: str) -> str:
+        """The namespace the node runs in, from the root."""
+        return self._found(node).namespace
+
+    def full_name(self, node: str) -> str:
+        """The node's name with its namespace."""
+        return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
+
+    def _found(self, node: str) -> NodeTable:
+        if node in self.nodes:
+            return self.nodes[node]
+        where = f"robot {self.robot!r}" if self.robot else "what serves all robots"
+        hint = "its stack goes under stack: of the fleet file"
+        raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
+
+
+class LoadedRobot:
+    """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
+
+    ``namespace`` starts at the root; ``spelled`` is what stands in its frames and joints; ``pose`` is
+    None where the fleet file has none.
+    """
+
+    def __init__(self, fleet: LoadedFleet, described: Described) -> None:
+        self._fleet, self._described = fleet, described
+        spec = described.spec
+        self._graph = spec.namespace
+        self.name: str = spec.name
+        self.model: str = spec.model
+        self.spelled: str = spec.spelled
+        self.pose: Pose | None = spec.pose
+        namespaced = described.topics.naming.topics == NAMESPACE
+        self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
+
+    def __repr__(self) -> str:
+        return f"LoadedRobot({self.name!r})"
+
+    @property
+    def description(self) -> str:
+        """Its rewritten description, for ``robot_description``."""
+        return self._described.description.decode()
+
+    @property
+    def srdf(self) -> str:
+        """Its rewritten SRDF, for ``robot_description_semantic``; empty where it has none."""
+        return self._described.srdf.decode()
+
+    @cached_property
+    def table(self) -> NodeNames:
+        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``."""
+        plan = self._fleet.plan
+        return _names(plan.fleet.table, plan.fleet.facts, self._graph)
+
+    def node(self, node: str, *files: str) -> dict[str, Any]:
+        """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
+
+        ``files`` are parameter files of the fleet; where it starts is added for its localisation.
+        """
+        given = [self.params(file, node) for file in files]
+        return {
+            "name": self.table.name(node),
+            "namespace": self.table.namespace(node),
+            "remappings": self.table.for_node(node),
+            "parameters": [it for it in (*given, self.start_parameters(node)) if it],
+        }
+
+    def params(self, file: str, node: str) -> dict[str, Value]:
+        """What a parameter file of the fleet says for a node, once rewritten, by dotted names.
+
+        ``node`` is its name in the stack, or in the file. A node of a stack that the file does not
+        mention gets nothing; any other is a UsageError.
+        """
+        document = self._read(file)
+        known = node in self.table.nodes
+        full = self.table.full_name(node) if known else self._placed(node)
+        exact = exact_nodes(document)
+        if not known and full not in exact:
+            own = {it.removeprefix(f"/{self._graph}/").lstrip("/") for it in exact}
+            raise UsageError(f"{file}: {unknown('node', node, own, self.table.nodes)}")
+        return node_parameters(document, full)
+
+    def text(self, file: str) -> str:
+        """A file of the fleet as this robot has it: ``params.yaml``, ``bridge.yaml``, RViz's."""
+        name = os.path.basename(file)
+        own, shared = f"{self.name}/{name}", name
+        return self._fleet.text(own if own in self._fleet.files else shared)
+
+    def frame(self, name: str) -> str:
+        """A frame or link of the description, as this robot has it."""
+        return respell(self._described.names, "frame", name)
+
+    def joint(self, name: str) -> str:
+        """A joint of the description, as this robot has it."""
+        return respell(self._described.names, "joint", name)
+
+    def topic(self, name: str) -> str:
+        """The full name of a topic that one robot alone has under ``name``."""
+        plan = self._fleet.plan
+        known = known_topics(plan.fleet.table, plan.fleet.facts, self._graph)
+        full = robot_topic(self._described.topics, name, known)
+        return full if full.startswith("/") else f"/{full}"
+
+    @property
+    def tf_remappings(self) -> Rules:
+        """The rules that a node of no stack needs to hear this robot's tf."""
+        names = self._described.topics
+        targets = {
+            f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
+        }
+        return [(topic, target) for topic, target in targets.items() if target]
+
+    @cached_property
+    def _spawn(self) -> spawn.Spawn:
+        made, _ = spawn.spawns(self._fleet.plan)
+        return next(it for it in made if it.robot == self._graph)
+
+    @property
+    def spawn_arguments(self) -> list[str]:
+        """``arguments`` of ``ros_gz_sim create``."""
+        return spawn.gz_arguments(self._spawn)
+
+    @property
+    def classic_arguments(self) -> list[str]:
+        """``arguments`` of ``gazebo_ros spawn_entity.py``."""
+        return spawn.classic_arguments(self._spawn)
+
+    @property
+    def teleop_arguments(self) -> list[str]:
+        """``arguments`` of ``teleop_twist_keyboard``."""
+        return teleop.arguments(teleop.teleop(self._fleet.plan, self._described))
+
+    @property
+    def transform_arguments(self) -> list[str]:
+        """``arguments`` of the ``static_transform_publisher`` of its pose; none if none is needed."""
+        made = self._fleet.placed.transforms
+        return next((transforms.arguments(it) for it in made if it.robot == self._graph), [])
+
+    def start_parameters(self, node: str) -> dict[str, Any]:
+        """Parameters that tell ``node`` where the robot starts; empty where it does not take them."""
+        made = self._fleet.placed.initial
+        own = (it for it in made if it.robot == self._graph and it.node == node)
+        return next((dict(it.values) for it in own), {})
+
+    def _placed(self, node: str) -> str:
+        namespace, name = placed(self._graph, node, self._described.topics.naming)
+        return f"{namespace.rstrip('/')}/{name}"
+
+    def _read(self, file: str) -> YamlText:
+        return self._fleet.document(f"{self.name}/{os.path.basename(file)}")
+
+
+class LoadedFleet:
+    """A fleet file, ready for a launch script; ``robots`` are in its order.
+
+    ``findings`` are what a person should know about the descriptions and the table.
+    """
+
+    def __init__(self, plan: FleetPlan) -> None:
+        self.plan = plan
+        self.file: str = plan.file.file
+        self.robots: tuple[LoadedRobot, ...] = tuple(LoadedRobot(self, it) for it in plan.robots)
+        self.findings: tuple[Finding, ...] = _findings(plan)
+        self._documents: dict[str, YamlText] = {}
+
+    def __repr__(self) -> str:
+        return f"LoadedFleet({self.file!r})"
+
+    def robot(self, name: str) -> LoadedRobot:
+        """The robot of this name; UsageError for another."""
+        found = {it.name: it for it in self.robots}
+        if name not in found:
+            raise UsageError(f"{self.file}: {unknown('robot', name, found)}")
+        return found[name]
+
+    @cached_property
+    def table(self) -> NodeNames:
+        """Names and remappings of the nodes that serve all robots."""
+        return _names(self.plan.fleet.table, self.plan.fleet.facts, "")
+
+    @cached_property
+    def placed(self) -> transforms.Placed:
+        """Where its robots stand."""
+        return transforms.place(self.plan)
+
+    @cached_property
+    def made(self) -> Artefacts:
+        """Everything that ``multibot build`` would write, made when it is asked for.
+
+        Raises InputError for a companion that cannot be read, RewriteRefused for one that cannot be
+        rewritten.
+        """
+        made = make_artefacts(self.plan)
+        _refuse(made.findings)
+        return made
+
+    @cached_property
+    def files(self) -> Mapping[str, Artefact]:
+        """The same by path: ``robot1/params.yaml``."""
+        return {it.path: it for it in self.made.files}
+
+    def text(self, path: str) -> str:
+        """One of these files; UsageError for one that is not there."""
+        if path not in self.files:
+            _no_file(self, path)
+        return self.files[path].data.decode()
+
+    def document(self, path: str) -> YamlText:
+        """One of these files, parsed."""
+        if path not in self._documents:
+            self._documents[path] = read_yaml(self.text(path).encode(), path)
+        return self._documents[path]
+
+
+def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
+    """Read a fleet file, rewrite its robots' descriptions and make their tables.
+
+    Raises InputError and UsageError for what cannot be read or used, RewriteRefused where two
+    robots would meet.
+    """
+    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
+    _refuse(fleet.findings)
+    return fleet
+
+
+def _names(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:
+    nodes: dict[str, NodeTable] = {}
+    for it in table.nodes:
+        if it.robot == robot:
+            nodes.setdefault(it.node, it)
+    hosted: dict[str, tuple[str, ...]] = {}
+    for fact in facts:
+        if fact.host in nodes and fact.name in nodes:
+            hosted[fact.host] = (*hosted.get(fact.host, ()), fact.name)
+    return NodeNames(robot, nodes, hosted)
+
+
+def _findings(plan: FleetPlan) -> tuple[Finding, ...]:
+    told = (it for robot in plan.robots for it in robot.findings)
+    problems = (_as_finding(plan.file.file, it) for it in plan.fleet.table.problems)
+    return tuple(dict.fromkeys((*told, *problems)))
+
+
+def _as_finding(file: str, it: Problem) -> Finding:
+    of = ": ".join(filter(None, [it.robot, it.node]))
+    return Finding(it.code, it.level, f"{of}: {it.message}", it.hint, file, 1, 1)
+
+
+def _refuse(findings: Iterable[Finding]) -> None:
+    wrong = tuple(it for it in findings if it.level == ERROR)
+    if wrong:
+        raise RewriteRefused(wrong)
+
+
+def _no_file(fleet: LoadedFleet, path: str) -> NoReturn:
+    hint = "list it under companions of the fleet file"
+    raise UsageError(f"{fleet.file}: {unknown('file', path, fleet.files)}; {hint}")

@@ -1,0 +1,54 @@
+"""For colcon, which builds ament_python packages by setup.py; pip goes by pyproject.toml alone.
+
+What pyproject.toml says is read here instead of by setuptools: that of Ubuntu 24.04 refuses its
+license, colcon cannot read what becomes of requires-python, and a build with --symlink-install runs
+in a folder without the file.
+"""
+
+import sys
+from pathlib import Path
+
+from setuptools import Distribution, find_packages, setup
+
+try:
+    import tomllib
+except ModuleNotFoundError:
+    import tomli as tomllib
+
+
+class FromHere(Distribution):
+    """Takes what setup is told, and setup.cfg."""
+
+    def parse_config_files(self, filenames=None, ignore_option_errors=False):
+        super().parse_config_files(filenames or ["setup.cfg"], ignore_option_errors)
+
+
+def options():
+    """What colcon has to be told."""
+    text = Path(__file__).resolve().with_name("pyproject.toml").read_text("utf-8")
+    toml = tomllib.loads(text)
+    project, packaging = toml["project"], toml["tool"]["setuptools"]
+    name = project["name"]
+    groups = {"console_scripts": project["scripts"], **project["entry-points"]}
+    return {
+        "distclass": FromHere,
+        "name": name,
+        "version": project["version"],
+        "description": project["description"],
+        "license": project["license"],
+        "packages": find_packages(include=packaging["packages"]["find"]["include"]),
+        "package_data": packaging["package-data"],
+        "entry_points": {
+            group: [f"{key} = {value}" for key, value in points.items()]
+            for group, points in groups.items()
+        },
+        # What the ament index knows a package by.
+        "data_files": [
+            ("share/ament_index/resource_index/packages", [f"resource/{name}"]),
+            (f"share/{name}", ["package.xml"]),
+        ],
+    }
+
+
+by_pip = "setuptools.build_meta" in sys.modules
+setup(**({} if by_pip else options()))
