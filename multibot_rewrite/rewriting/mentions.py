@@ -16,7 +16,7 @@ from multibot_rewrite.rewriting.document import finding, value_slot
 from multibot_rewrite.rewriting.remarks import Remark
 
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
-_TEXTS = etree.XPath("//text()[normalize-space()]", smart_strings=False)
+_TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
 _BETWEEN = re.compile(r":=|::|[\s,;/]+")
 _NUMBERS = re.compile(r"[-+0-9.eE\s]*$")
 
@@ -60,8 +60,7 @@ def unclaimed_mentions(
     site are no mention."""
     if not names:
         return []
-    names = frozenset(names)
-    telling = {value: name for value in set(values) if (name := mentioned(value, names))}
+    telling = _telling(values, frozenset(names))
     count = Counter(filter(telling.__contains__, values))
     claimed = Counter([claim.value for claim in inventory.claims])
     suspects = {value for value in telling if count[value] > claimed[value]}
@@ -72,6 +71,17 @@ def unclaimed_mentions(
         for slot in _unclaimed(inventory, suspects)
         if not kept(slot[0], slot[2], tree)
     ]
+
+
+def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
+    """The values that are names or hold one, and the name."""
+    different = set(values)
+    telling = {value: value for value in names & different}
+    others = [value for value in different - names if not _NUMBERS.match(value)]
+    # One look at all of them: mostly none holds a name.
+    if not names.isdisjoint(_BETWEEN.split(" ".join(others))):
+        telling |= {value: name for value in others if (name := mentioned(value, names))}
+    return telling
 
 
 def mentioned(value: str, names: frozenset[str]) -> str:
