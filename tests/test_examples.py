@@ -1,0 +1,160 @@
+"""The worked examples: what their pages show is printed, and each fleet's rehearsal is as planned."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import planned
+import pytest
+import shown
+import yaml
+from shown import ROOT, Shown
+
+OURS = ("two_robots_postfix", "namespace_and_prefix")
+FOLDERS = [ROOT / "examples" / name for name in OURS]
+FLEETS = [
+    path
+    for folder in FOLDERS
+    for path in sorted(folder.glob("*.yaml"))
+    if re.search(r"^(robots|include):", path.read_text(), re.MULTILINE)
+]
+PAGES = {
+    f"{folder.name}: {heading}": commands
+    for folder in FOLDERS
+    for heading, commands in shown.sections((folder / "README.md").read_text()).items()
+}
+DOMAINS = {name: 20 + at for at, name in enumerate(PAGES)}
+
+
+def run(name: str, folder: Path, **more: str) -> None:
+    there = shown.reader(folder, planned.domain(DOMAINS[name]), **more)
+    for it in PAGES[name]:
+        shown.assert_as_shown(it, there)
+
+
+@pytest.mark.parametrize("name", [it for it in PAGES if not shown.is_live(PAGES[it])])
+def test_a_page_shows_what_is_printed(name: str, tmp_path: Path) -> None:
+    run(name, tmp_path)
+
+
+@pytest.mark.parametrize("name", [it for it in PAGES if shown.is_live(PAGES[it])])
+def test_a_page_shows_what_a_rehearsal_tells(
+    name: str, tmp_path: Path, tf2: dict[str, str]
+) -> None:
+    pytest.importorskip(
+        "rclpy",
+        reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)",
+        exc_type=ImportError,
+    )
+    run(name, tmp_path, **tf2)
+
+
+def rehearsed(commands: Iterable[Shown]) -> dict[str, tuple[str, ...]]:
+    return {
+        it.command.split()[-1]: it.lines for it in commands if it.command.startswith(shown.LIVE)
+    }
+
+
+def test_every_fleet_is_shown_and_rehearsed() -> None:
+    found = {
+        file: lines for commands in PAGES.values() for file, lines in rehearsed(commands).items()
+    }
+    assert len(FLEETS) == 4
+    assert {str(it.relative_to(ROOT)) for it in FLEETS} <= found.keys()
+    assert all("0 findings: as planned" in lines[-1] for lines in found.values())
+    assert any(line.startswith("multibot: 5 robots") for it in found.values() for line in it)
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Every fleet of the examples, built; by the names of its file."""
+    folder = tmp_path_factory.mktemp("built")
+    there = shown.reader(folder)
+    for fleet in FLEETS:
+        done = there.run(
+            f"multibot build {fleet.relative_to(ROOT)} -o {fleet.stem}-{fleet.parent.name}"
+        )
+        assert done.returncode == 0, done.stdout
+    return {f"{it.stem}-{it.parent.name}": folder / f"{it.stem}-{it.parent.name}" for it in FLEETS}
+
+
+def words(robot: str) -> re.Pattern[str]:
+    return re.compile(rf"(?<![a-z0-9]){robot}(?![0-9])", re.IGNORECASE)
+
+
+def test_no_file_of_a_robot_has_another_robot_in_it(built: dict[str, Path]) -> None:
+    for folder in built.values():
+        for robot, other in (("robot1", "robot2"), ("robot2", "robot1")):
+            files = [it for it in (folder / robot).iterdir() if it.is_file()]
+            assert files
+            for file in files:
+                assert not words(other).search(file.read_text()), file
+                assert words(robot).search(file.read_text()), file
+
+
+def test_two_robots_differ_by_their_names_alone(built: dict[str, Path]) -> None:
+    """What is not a name, a pose or a colour is the same text."""
+    for name, folder in built.items():
+        for file in (folder / "robot1").glob("*params.yaml"):
+            other = folder / "robot2" / file.name
+            assert other.read_text() == file.read_text().replace("robot1", "robot2"), name
+    urdf = built["nav2-namespace_and_prefix"] / "robot1" / "hexbase.urdf"
+    other = urdf.parent.parent / "robot2" / urdf.name
+    assert other.read_text() == urdf.read_text().replace("robot1", "robot2")
+
+
+def test_the_frames_of_parameters_are_links_or_sent(built: dict[str, Path]) -> None:
+    """A frame in a built parameter file is one that the plan has."""
+    folder = built["nav2-namespace_and_prefix"]
+    plan = yaml.safe_load((folder / "plan.yaml").read_text())
+    for robot, wanted in plan["robots"].items():
+        known = {*wanted["frames"], *plan["shared_frames"], *wanted.get("other_frames", ())}
+        text = (folder / robot / "nav2_params.yaml").read_text()
+        frames = re.findall(r"^ *\w*(?:frame|frame_id): *(\S+)", text, re.MULTILINE)
+        assert len(frames) > 15
+        assert set(frames) <= known
+
+
+def test_three_names_go_to_three_places(built: dict[str, Path]) -> None:
+    folder = built["fleet-namespace_and_prefix"]
+    commands = (folder / "commands.md").read_text()
+    assert "-name Robot1 " in commands and "-name Robot2 " in commands
+    plan = yaml.safe_load((folder / "plan.yaml").read_text())
+    for robot in ("robot1", "robot2"):
+        own = plan["robots"][robot]
+        assert {it.split("/")[0] for it in own["frames"]} == {f"{robot}_tf"}
+        assert {it.split("/")[1] for it in own["nodes"]} == {robot}
+        assert f"{robot}_tf_wheel_left_joint" in (folder / robot / "hexbase.urdf").read_text()
+
+
+def test_everything_has_the_postfix(built: dict[str, Path]) -> None:
+    folder = built["fleet-two_robots_postfix"]
+    plan = yaml.safe_load((folder / "plan.yaml").read_text())
+    for robot, own in plan["robots"].items():
+        assert own["tf"] == f"/tf/{robot}"
+        assert all(it.endswith(f"/{robot}") for it in own["frames"])
+        assert all(it.endswith(f"_{robot}") and it.count("/") == 1 for it in own["nodes"])
+        names = [end[2] for ends in own["nodes"].values() for end in ends]
+        assert f"/cmd_vel/{robot}" in names
+        assert all(it.endswith(f"/{robot}") for it in names if it not in plan["shared_topics"])
+
+
+def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:
+    lines = (built["fleet-two_robots_postfix"] / "commands.md").read_text()
+    for robot, x in (("robot1", "1.0"), ("robot2", "-1.0")):
+        sent = rf"--x {x} .*--frame-id world --child-frame-id odom/{robot} .*/tf_static/{robot}$"
+        assert re.search(sent, lines, re.MULTILINE)
+
+
+def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:
+    there = shown.reader(tmp_path)
+    copied = "cp -r examples/two_robots_postfix own && multibot build own/fleet.yaml -o out"
+    assert there.run(copied).returncode == 0
+    again = there.run("multibot build own/fleet.yaml -o out --check")
+    assert (again.returncode, again.stdout.count("up to date")) == (0, 1), again.stdout
+    there.run("sed -i 's/lidar_link/laser_link/' own/scout.urdf.xacro; echo >> own/params.yaml")
+    stale = there.run("multibot build own/fleet.yaml -o out --check")
+    assert stale.returncode == 1
+    assert "robot2/params.yaml: stale" in stale.stdout
