@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
 from types import FrameType
 from typing import Any
 from xml.dom import DOMException
@@ -13,11 +13,13 @@ from xml.parsers.expat import ExpatError, errors
 
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriting.document import MAX_BYTES, locate, tag_end
-from multibot_rewrite.xacro_trace import ORIGIN, Origin, Trace, tracing
+from multibot_rewrite.xacro_trace import ORIGIN, Origin, Trace, alike, tracing
 
 # What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
 _UNWORDED = (OSError, ValueError, RuntimeError, TypeError)
+# The folder of a package for $(find PACKAGE), empty where it is not known.
+Find = Callable[[str], str]
 # What xacro's functions call the element that they work on.
 _NODES = ("node", "elt", "tag")
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
@@ -27,6 +29,7 @@ _HINTS = (
     ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),
     ("No such file", "check the path"),
     ("Is a directory", "check the path"),
+    ("is not found", "source the workspace it is in, or name a folder above it in roots"),
     ("package", "source the workspace that holds it"),
     ("Undefined block", "give it to the macro, or call it what the macro's params call it: *NAME"),
     ("Invalid parameter", "the macro has no such parameter: see its params"),
@@ -46,34 +49,60 @@ _HINTS = (
 )
 
 
-def expand(path: str, arguments: Mapping[str, str]) -> bytes:
-    """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason."""
-    return _expanded(path, arguments, None)[0]
+def expand(path: str, arguments: Mapping[str, str], find: Find | None = None) -> bytes:
+    """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason.
+
+    ``find`` is asked for packages before a sourced ROS is.
+    """
+    return _expanded(path, arguments, None, find)[0]
 
 
 def expand_traced(
-    path: str, arguments: Mapping[str, str], trace: Trace
+    path: str, arguments: Mapping[str, str], trace: Trace, find: Find | None = None
 ) -> tuple[bytes, tuple[Origin | None, ...]]:
     """The same, and the origin of each element in document order; ``trace`` gets the sources."""
-    data, document = _expanded(path, arguments, trace)
+    data, document = _expanded(path, arguments, trace, find)
     return data, trace.origins(document)
 
 
-def _expanded(path: str, arguments: Mapping[str, str], trace: Trace | None) -> tuple[bytes, Any]:
+def _expanded(
+    path: str, arguments: Mapping[str, str], trace: Trace | None, find: Find | None
+) -> tuple[bytes, Any]:
     _check_file(path)
     import xacro
-    from xacro.substitution_args import SubstitutionException
+    from xacro import substitution_args
 
     # What a file can be at fault for; anything else is no fault of the file and must be seen whole.
-    said = (xacro.XacroException, SubstitutionException, ExpatError, DOMException)
+    said = (xacro.XacroException, substitution_args.SubstitutionException, ExpatError, DOMException)
     try:
-        with tracing(xacro, trace) if trace else nullcontext():
+        with tracing(xacro, trace) if trace else nullcontext(), _finding(substitution_args, find):
             document = xacro.process_file(path, mappings=dict(arguments))
         text: str = document.toprettyxml(indent="  ")
     except (*said, *_UNWORDED) as error:
-        inner = (xacro.filestack or [path])[-1]
+        inner = alike((xacro.filestack or [path])[-1], path)
+        inner = path if inner == os.path.normpath(path) else inner
         raise InputError(_message(path, inner, error, trace or Trace())) from error
     return text.encode(), document
+
+
+@contextmanager
+def _finding(module: Any, find: Find | None) -> Iterator[None]:
+    """While it lasts, xacro's $(find ...) asks ``find`` first."""
+    ask = module._eval_find
+
+    def found(package: str) -> str:
+        try:
+            return str((find and find(package)) or ask(package))
+        except (LookupError, OSError, ImportError):
+            if find is None:
+                raise
+            raise LookupError(f"package {package!r} is not found") from None
+
+    module._eval_find = module._eval_dict["find"] = found
+    try:
+        yield
+    finally:
+        module._eval_find = module._eval_dict["find"] = ask
 
 
 def _check_file(path: str) -> None:
@@ -150,7 +179,10 @@ def _reason(error: Exception) -> str:
     text = str(error).partition(" [Errno")[0]
     text = re.sub(r"^\[Errno \d+\] ", "", text)
     # xacro may say it twice: in its own words and in those of the cause.
-    cause = str(getattr(error, "exc", None) or "")
+    inner = getattr(error, "exc", None)
+    cause = str(inner or "")
+    if isinstance(inner, Exception) and not cause:
+        text = f"{type(inner).__name__} {text}"
     if cause and text.endswith(f"{cause} {cause}"):
         text = cause
     return text or type(error).__name__

@@ -38,11 +38,13 @@ class Trace:
     """What one expansion knows of its origins.
 
     ``sources`` are the files that were read, or whose text was at hand, ``calls`` the macro calls
-    under way, ``failed`` those that were when an error passed.
+    under way, ``failed`` those that were when an error passed. ``given`` is the path that was asked
+    for: others are spelled as it is.
     """
 
-    def __init__(self, sources: Mapping[str, bytes] = {}) -> None:
+    def __init__(self, sources: Mapping[str, bytes] = {}, given: str = os.sep) -> None:
         self.sources = dict(sources)
+        self.given = given
         self.calls: list[Call] = []
         self.failed: tuple[Call, ...] = ()
 
@@ -67,6 +69,19 @@ class Trace:
         return tuple(element.getUserData(ORIGIN) for element in document.getElementsByTagName("*"))
 
 
+def alike(path: str, given: str) -> str:
+    """A path, relative where ``given`` is and it leads no further up; $(find ...) makes whole ones."""
+    path = os.path.normpath(path)
+    if os.path.isabs(given) or not os.path.isabs(path):
+        return path
+    relative = os.path.relpath(path)
+    return relative if _climbs(relative) <= _climbs(os.path.normpath(given)) else path
+
+
+def _climbs(path: str) -> int:
+    return path.split(os.sep).count(os.pardir)
+
+
 @contextmanager
 def tracing(xacro: Any, trace: Trace) -> Iterator[None]:
     """While it lasts, what ``xacro`` reads and calls is noted in ``trace``."""
@@ -84,7 +99,7 @@ def _reader(parse: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
             return parse(given, filename)
         at_hand = trace.sources.get(filename)
         document = parse(None if at_hand is None else at_hand.decode(), filename)
-        trace.mark(document, filename if at_hand is not None else os.path.normpath(filename))
+        trace.mark(document, filename if at_hand is not None else alike(filename, trace.given))
         return document
 
     return read

@@ -14,7 +14,7 @@ from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.lint.settings import Settings, level_of
-from multibot_rewrite.lint.subjects import read_subjects
+from multibot_rewrite.lint.subjects import Failed, read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources import read_file
@@ -43,6 +43,10 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Li
         with _limited(settings.seconds):
             sources[path] = data = read()
             for subject in read_subjects(path, data, settings):
+                if isinstance(subject, Failed):
+                    it = failure(path, subject.message, settings)
+                    found.append(it._replace(arguments=subject.arguments))
+                    continue
                 found += lint_subject(subject)
                 sources = {**sources, **subject.sources, path: data}
     except InputError as error:

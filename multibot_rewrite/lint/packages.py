@@ -26,6 +26,19 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
     return _candidates(name, here, (*roots, *_split(sources)), _split(installed))
 
 
+def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
+    """The folder that $(find NAME) stands for in ``file``; empty if there is none.
+
+    Packages of one repository stand side by side: those beside the file's own one are known.
+    """
+    known = package_folders(name, file, roots)
+    own = _own_package(os.path.dirname(os.path.abspath(file)))
+    if known or own is None or ".git" in entries(own[1]):
+        return known[0] if known else ""
+    beside = _below((os.path.dirname(own[1]),)).get(name, ())
+    return next((it for it in beside if _MANIFEST in entries(it)), "")
+
+
 @lru_cache(maxsize=4096)
 def _candidates(
     name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]

@@ -5,9 +5,11 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from glob import escape, glob
 from typing import NamedTuple
 
+from multibot_rewrite.lint.packages import package_folder
 from multibot_rewrite.lint.robot import Robot, read_robot
 from multibot_rewrite.lint.settings import Settings, matches
 from multibot_rewrite.model import InputError
@@ -15,7 +17,8 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.sources import read_source
+from multibot_rewrite.sources import read_file
+from multibot_rewrite.xacro_source import expand
 
 _NAME = re.compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
 # A root element stands in the first bytes; looking for it must not cost a read of the whole.
@@ -125,13 +128,17 @@ def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
 
 def _described(path: str, settings: Settings) -> tuple[bytes, str]:
     """With the default arguments, else with the first that the settings have for the file."""
+    if not path.endswith(".xacro"):
+        return read_file(path), path
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
+    find = partial(package_folder, file=path, roots=settings.roots)
+    name = f"{path} (expanded)"
     try:
-        return read_source(path, {})
+        return expand(path, {}, find), name
     except InputError:
-        if not sets or not path.endswith(".xacro"):
+        if not sets:
             raise
-        return read_source(path, sets[0])
+        return expand(path, sets[0], find), name
 
 
 def _names(srdf: Inventory) -> set[str]:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.elements import Elements
+from multibot_rewrite.lint.packages import package_folder
 from multibot_rewrite.lint.pairing import SRDF_MARK, find_pair
 from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
 from multibot_rewrite.lint.robot import read_robot
@@ -30,8 +33,15 @@ MISSING = "Undefined substitution argument"
 DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
 
 
-def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject]:
-    """Every subject of a file; raises InputError where it cannot be read or expanded.
+class Failed(NamedTuple):
+    """An expansion that failed: what xacro says, and the arguments that it was made with."""
+
+    message: str
+    arguments: str
+
+
+def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
+    """Every subject of a file; raises InputError where it cannot be read.
 
     A xacro file that others include, or that only defines what others use, is not expanded alone.
     """
@@ -44,21 +54,21 @@ def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subjec
         yield from _expansions(path, data, settings)
 
 
-def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject]:
+def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
     sets = [given for given in settings.arguments if matches(path, given.pattern)]
-    try:
-        yield _expanded(path, data, DEFAULT, settings)
-    except InputError as error:
-        # With arguments that have no default there is no default expansion.
-        if not sets or MISSING not in str(error):
-            raise
-    for given in sets:
-        yield _expanded(path, data, given, settings)
+    for given in (DEFAULT, *sets):
+        try:
+            yield _expanded(path, data, given, settings)
+        except InputError as error:
+            # With arguments that have no default there is no default expansion.
+            if given is not DEFAULT or not sets or MISSING not in str(error):
+                yield Failed(str(error), str(given))
 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
-    trace = Trace({path: data})
-    expanded, origins = expand_traced(path, dict(given.arguments), trace)
+    trace = Trace({path: data}, path)
+    find = partial(package_folder, file=path, roots=settings.roots)
+    expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
     subject = _subject(read_document(expanded, path + EXPANDED), settings)
     return _shaped(subject)._replace(origins=origins, sources=trace.sources, arguments=str(given))
 
