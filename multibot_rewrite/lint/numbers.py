@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import isfinite
 
 from lxml.etree import _Element
@@ -26,10 +27,22 @@ def value_of(element: _Element, name: str, default: float | None = None) -> floa
     return default if text is None else number(text)
 
 
+@lru_cache(maxsize=4096)  # values come again, and several rules read the same ones
+def numbers(text: str) -> tuple[float, ...] | None:
+    """The finite numbers of a text; None if a part of it is none."""
+    if "_" in text:
+        return None
+    try:
+        values = tuple(map(float, text.split()))
+    except ValueError:
+        return None
+    return values if all(map(isfinite, values)) else None
+
+
 def vector(text: str | None) -> Vector | None:
     """The three numbers of a text."""
-    parts = (text or "").split()
-    if len(parts) != 3:
+    values = numbers(text or "")
+    if values is None or len(values) != 3:
         return None
-    x, y, z = (number(it) for it in parts)
-    return None if x is None or y is None or z is None else (x, y, z)
+    x, y, z = values
+    return x, y, z

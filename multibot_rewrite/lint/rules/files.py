@@ -5,10 +5,13 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from itertools import accumulate
 
 from lxml import etree
 
+from multibot_rewrite.lint.elements import Elements
+from multibot_rewrite.lint.numbers import numbers
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.model import ERROR, WARNING, Edit, Finding
 from multibot_rewrite.rewriting.audit import leftover_xacro, nearest, worlds
@@ -18,8 +21,7 @@ _DECLARED = re.compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
 _ENCODED = re.compile(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
 _NAMESPACE = re.compile(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 _ROOT = re.compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
-_MATERIALS = etree.XPath("/robot/material")
-_LOOKS = etree.XPath("/robot/link/visual/material[@name]")
+_LOOKS = ["visual", "link", "robot"]
 Look = tuple[tuple[float, ...] | str, str]
 
 
@@ -403,8 +405,7 @@ def bad_colour(subject: Subject) -> Iterator[Problem]:
 )
 def undefined_material(subject: Subject) -> Iterator[Problem]:
     """In the order of urdfdom: the robot's own materials first, then those of visuals."""
-    root = subject.document.root
-    tops = _found(_MATERIALS, root)
+    tops = _materials(subject.elements)
     bare = [it for it in tops if not _defines(it)]
     misspelled = _misspelled(subject) if bare else set()
     for material in bare:
@@ -412,7 +413,7 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
             name = material.get("name", "")
             yield Problem(material, f"material {name!r} has neither colour nor texture", "name")
     defined = {it.get("name") for it in tops}
-    for look in _found(_LOOKS, root):
+    for look in _looks(subject.elements):
         name = look.get("name", "")
         if name in defined or not name:
             continue
@@ -424,8 +425,15 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
         yield Problem(look, f"material {name!r} is not defined", "name", hint)
 
 
-def _found(path: etree.XPath, root: etree._Element) -> list[etree._Element]:
-    return path(root)  # type: ignore[return-value]
+def _materials(elements: Elements) -> list[etree._Element]:
+    return elements.tops("material") if elements.root.tag == "robot" else []
+
+
+@lru_cache(maxsize=1)
+def _looks(elements: Elements) -> list[etree._Element]:
+    """The named materials of visuals."""
+    named = (it for it in elements.every("material") if it.get("name") is not None)
+    return [it for it in named if [above.tag for above in it.iterancestors()] == _LOOKS]
 
 
 def _misspelled(subject: Subject) -> set[etree._Element | None]:
@@ -455,13 +463,12 @@ def _defines(material: etree._Element) -> bool:
 )
 def material_differs(subject: Subject) -> Iterator[Problem]:
     """Each visual whose own definition does not count."""
-    root = subject.document.root
-    looks = [it for it in _found(_LOOKS, root) if len(it) and it.get("name") and _defines(it)]
-    tops = _found(_MATERIALS, root) if looks else []
+    looks = [it for it in _looks(subject.elements) if len(it) and it.get("name") and _defines(it)]
+    tops = _materials(subject.elements) if looks else []
     first = {it.get("name", ""): _look(it) for it in reversed(tops)}
     for material in looks:
-        name = material.get("name", "")
-        if first.setdefault(name, _look(material)) != _look(material):
+        name, look = material.get("name", ""), _look(material)
+        if first.setdefault(name, look) != look:
             hint = "the first definition of the name counts"
             message = f"material {name!r} has another colour or texture than its first definition"
             yield Problem(material, message, "name", hint)
@@ -469,13 +476,13 @@ def material_differs(subject: Subject) -> Iterator[Problem]:
 
 def _look(material: etree._Element) -> Look:
     """The colour and the texture of a material."""
-    color, texture = material.find("color"), material.find("texture")
+    parts = {it.tag: it for it in reversed(material)}
+    color, texture = parts.get("color"), parts.get("texture")
     rgba = "" if color is None else color.get("rgba", "")
-    image = "" if texture is None else texture.get("filename", "")
-    try:
-        return tuple(float(word) for word in rgba.split()), image
-    except ValueError:
-        return rgba, image
+    colour = numbers(rgba)
+    return rgba if colour is None else colour, "" if texture is None else texture.get(
+        "filename", ""
+    )
 
 
 @rule(

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Callable, Iterator
+from functools import cache, lru_cache
 from typing import NamedTuple
 from urllib.parse import unquote
 
@@ -85,7 +85,8 @@ def _lookups(elements: Elements, file: str, roots: tuple[str, ...]) -> tuple[Loo
     """Each file once that somebody can look for, by the first element that names it."""
     first = {it.name: it for it in reversed(_used(elements)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
-    return tuple(_looked_up(it, *_bases(it, file, roots)) for it in asked)
+    folders_of = cache(lambda name: package_folders(name, file, roots))
+    return tuple(_looked_up(it, *_bases(it, file, folders_of)) for it in asked)
 
 
 def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
@@ -94,7 +95,9 @@ def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
     return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
 
 
-def _bases(it: Used, file: str, roots: tuple[str, ...]) -> tuple[tuple[str, ...], str]:
+def _bases(
+    it: Used, file: str, folders_of: Callable[[str], tuple[str, ...]]
+) -> tuple[tuple[str, ...], str]:
     """The folders in which a file may be, and its path below them."""
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
@@ -105,8 +108,7 @@ def _bases(it: Used, file: str, roots: tuple[str, ...]) -> tuple[tuple[str, ...]
     path = path.lstrip("/")
     first = path.partition("/")[0].lower()
     # A folder that is only called like the package must look like it.
-    folders = package_folders(package, file, roots)
-    return tuple(it for it in folders if _looks_like_it(entries(it), first)), path
+    return tuple(it for it in folders_of(package) if _looks_like_it(entries(it), first)), path
 
 
 def _looks_like_it(names: frozenset[str], first: str) -> bool:

@@ -9,7 +9,7 @@ from math import acos, cos, hypot, pi, sqrt
 from lxml.etree import _Element
 
 from multibot_rewrite.lint.elements import Elements
-from multibot_rewrite.lint.numbers import Vector, number, vector
+from multibot_rewrite.lint.numbers import Vector, numbers, vector
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.robot import MOMENTS, WORLD, Inertial, Link, Robot, reached
 from multibot_rewrite.model import ERROR, WARNING
@@ -604,7 +604,7 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
 
 
 @lru_cache(maxsize=1)  # several rules look at the same ones
-def _shapes(elements: Elements) -> list[tuple[_Element, list[float]]]:
+def _shapes(elements: Elements) -> list[tuple[_Element, tuple[float, ...]]]:
     """The boxes, cylinders and spheres of a URDF whose sizes are numbers, and those."""
     read = ((it, _sizes(it)) for it in _geometries(elements, *SHAPES))
     return [(shape, sizes) for shape, sizes in read if sizes]
@@ -617,12 +617,9 @@ def _geometries(elements: Elements, *tags: str) -> Iterator[_Element]:
             yield shape
 
 
-def _sizes(shape: _Element) -> list[float]:
+def _sizes(shape: _Element) -> tuple[float, ...]:
     """The sizes of a shape; none where one is missing or no number."""
-    texts = [text for name in SHAPES[str(shape.tag)] for text in shape.get(name, "?").split()]
-    read = [number(it) for it in texts]
-    sizes = [it for it in read if it is not None]
-    return sizes if len(sizes) == len(read) else []
+    return numbers(" ".join([shape.get(name, "?") for name in SHAPES[str(shape.tag)]])) or ()
 
 
 @lru_cache(maxsize=1)
@@ -648,7 +645,7 @@ def _size(link: _Element) -> float:
             return 0.0
         origin = holder.find("origin")
         xyz = vector(None if origin is None else origin.get("xyz")) or (0.0, 0.0, 0.0)
-        sizes = _sizes(shape) or [0.0]
+        sizes = _sizes(shape) or (0.0,)
         reach = hypot(*sizes) / 2 if shape.tag == "box" else max(sizes)
         far = max(far, hypot(*xyz) + reach)
     return far
