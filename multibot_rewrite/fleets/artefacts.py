@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
+from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.graph_names import known_topics
 from multibot_rewrite.companions.rviz import RvizRobot, rviz
@@ -16,9 +17,11 @@ from multibot_rewrite.companions.yaml_text import YamlText, quoted, read_yaml
 from multibot_rewrite.fleet import expected
 from multibot_rewrite.fleets import bridge, spawn, teleop, transforms
 from multibot_rewrite.fleets.companions import Kin, behavior_trees, kin_of, lua, moveit, params
+from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.plan import FleetPlan
 from multibot_rewrite.fleets.started import alone, started
+from multibot_rewrite.fleets.written import Written
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.remap import forms
@@ -49,15 +52,40 @@ class Artefacts(NamedTuple):
 
 def make_artefacts(plan: FleetPlan) -> Artefacts:
     """Every file of a fleet; raises InputError for a companion that cannot be read or rewritten."""
-    made = [it for make in _MAKERS for it in make(plan)]
-    files = sorted(it for it in made if isinstance(it, Artefact))
+    with uncollected():
+        made = [it for make in _MAKERS for it in make(plan)]
+        files = sorted(it for it in made if isinstance(it, Artefact))
+        _check_apart(files)
+        told = [it for it in made if isinstance(it, Finding)]
+        told += [it for robot in plan.robots for it in robot.findings]
+        written = [Written(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files]
+        told += consistency(plan, started(plan), written, told)
+        return Artefacts(tuple(files), tuple(_once(plan, told)))
+
+
+def _check_apart(files: Sequence[Artefact]) -> None:
     for one, other in itertools.pairwise(files):
         if one.path == other.path:
-            both = f"{', '.join(one.sources)} and {', '.join(other.sources)}"
+            both = " and ".join(", ".join(it.sources) or "the fleet" for it in (one, other))
             raise UsageError(f"{one.path}: two results would go to this one file, of {both}")
-    told = dict.fromkeys(it for it in made if isinstance(it, Finding))
-    told.update(dict.fromkeys(it for robot in plan.robots for it in robot.findings))
-    return Artefacts(tuple(files), tuple(told))
+
+
+def _once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
+    """Sorted by place; what is the same for several robots of the fleet file is said of the first."""
+    robots = {(it.spec.file, it.spec.line): it.spec.name for it in plan.robots}
+    alike: dict[tuple[str, ...], list[Finding]] = {}
+    for it in sorted(set(findings), key=lambda it: (*it[4:], it.code, it.message)):
+        name = robots.get((it.file, it.line))
+        place = (it.file,) if name else (it.file, str(it.line), str(it.column))
+        message = it.message.replace(name, "\0") if name else it.message
+        alike.setdefault((it.code, message, it.hint, *place), []).append(it)
+    return [_of_many(first, len(more)) for first, *more in alike.values()]
+
+
+def _of_many(first: Finding, more: int) -> Finding:
+    if not more:
+        return first
+    return first._replace(message=f"{first.message}; so for {more} robots more")
 
 
 def _descriptions(plan: FleetPlan) -> Made:
@@ -218,7 +246,8 @@ def _start_pose(plan: FleetPlan, pose: transforms.InitialPose) -> bytes:
     node = next(it for it in tables if (it.robot, it.node) == (pose.robot, pose.node))
     full = f"{node.namespace.rstrip('/')}/{node.name}"
     data = {full: {"ros__parameters": dict(pose.values)}}
-    return yaml.safe_dump(data, sort_keys=False).encode()
+    dumper = getattr(yaml, "CSafeDumper", yaml.SafeDumper)
+    return str(yaml.dump(data, None, dumper, sort_keys=False)).encode()
 
 
 def _yaml(path: str) -> YamlText:
