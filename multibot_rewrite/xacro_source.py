@@ -177,12 +177,12 @@ def _reason(error: Exception) -> str:
     if isinstance(error, UnicodeDecodeError):
         return "the text is not UTF-8"
     text = str(error).partition(" [Errno")[0]
-    text = re.sub(r"^\[Errno \d+\] ", "", text)
+    text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", text)
     # xacro may say it twice: in its own words and in those of the cause.
     inner = getattr(error, "exc", None)
     cause = str(inner or "")
     if isinstance(inner, Exception) and not cause:
         text = f"{type(inner).__name__} {text}"
-    if cause and text.endswith(f"{cause} {cause}"):
-        text = cause
+    if cause:
+        text = text.replace(f"{cause} {cause}", cause)
     return text or type(error).__name__

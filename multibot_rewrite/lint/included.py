@@ -1,4 +1,4 @@
-"""Which xacro files others include: their content is linted where it is used."""
+"""Which files xacro files include: their content is linted where it is used."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ _KNOWN = re.compile(r".*[)}]")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
-    """Those of the xacro files that another one of them includes, by the known end of its path."""
-    files = {os.path.realpath(path): path for path in paths if path.endswith(".xacro")}
+    """Those of the files that a xacro file among them includes, by the known end of its path."""
+    files = {os.path.realpath(path): path for path in paths}
     ends: dict[str, set[str]] = {}
-    for path in files.values():
+    for path in filter(_is_read, files.values()):
         for asked in _asked_for(path):
             ends.setdefault(os.path.basename(asked), set()).add(asked)
     return frozenset(
@@ -26,6 +26,11 @@ def included(paths: Sequence[str]) -> frozenset[str]:
         for real, path in files.items()
         if any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
     )
+
+
+def _is_read(path: str) -> bool:
+    # A pipe would never end.
+    return path.endswith(".xacro") and os.path.isfile(path)
 
 
 def _asked_for(path: str) -> Iterator[str]:

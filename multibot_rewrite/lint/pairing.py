@@ -47,10 +47,11 @@ NOBODY = Pair(None, NOTHING)
 
 def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
     """The robot names of the files that are no SRDF, where an SRDF is among them."""
-    others = [it for it in paths if SRDF_MARK not in os.path.basename(it) and it not in included]
+    others = [it for it in paths if SRDF_MARK not in os.path.basename(it)]
     if len(others) == len(paths):
         return ()
-    named = ((robot_name(path), path) for path in others)
+    whole = (it for it in others if it not in included or not it.endswith(".xacro"))
+    named = ((robot_name(path), path) for path in whole if os.path.isfile(path))
     return tuple((name, path) for name, path in named if name)
 
 

@@ -30,6 +30,7 @@ NO_URDF: Declared = {"link": {}}
 EXPANDED = " (expanded)"
 DEFAULT = ArgumentSet("*", ())
 MISSING = "Undefined substitution argument"
+ROOTS = ("robot", "sdf")
 DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
 
 
@@ -43,14 +44,17 @@ class Failed(NamedTuple):
 def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
     """Every subject of a file; raises InputError where it cannot be read.
 
-    A xacro file that others include, or that only defines what others use, is not expanded alone.
+    What others include is linted where it is used; a xacro file of that kind, or one that only
+    defines what others use, is not expanded alone, and its root may be called anything.
     """
-    written = _subject(read_document(data, path), settings)
-    if not path.endswith(".xacro"):
-        yield _shaped(written)
+    document = read_document(data, path)
+    xacro, included = path.endswith(".xacro"), path in settings.included
+    part = included or (xacro and _only_defines(document.root))
+    if part and (not xacro or document.root.tag not in ROOTS):
         return
-    yield written._replace(format=XACRO)
-    if path not in settings.included and not _only_defines(written.document.root):
+    written = _subject(document, settings)
+    yield written._replace(format=XACRO) if xacro else _shaped(written)
+    if xacro and not part:
         yield from _expansions(path, data, settings)
 
 

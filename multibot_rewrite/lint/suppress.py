@@ -127,10 +127,11 @@ def _broken(comments: Iterable[Comment]) -> Iterator[LintFinding]:
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
     """Is all that the comment reaches in every expansion of its file, and is the file expanded?"""
+    if comment.file in settings.included:
+        return False
     if not comment.file.endswith(".xacro"):
         return True
-    whole = comment.file not in settings.included and _NAMED.search(comment.source) is not None
-    return whole and not comment.it.sometimes
+    return _NAMED.search(comment.source) is not None and not comment.it.sometimes
 
 
 def _unused(

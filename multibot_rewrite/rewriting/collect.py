@@ -72,9 +72,12 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
     if not found:
         known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
         line, column = locate(document.source, document.starts[0])
+        tag = etree.QName(document.root)
+        where = f" in the namespace {tag.namespace!r}" if tag.namespace else ""
+        hint = "take out its xmlns" if where else "give a robot description"
         raise InputError(
-            f"{document.file}:{line}:{column}: the root element is <{document.root.tag}>, expected "
-            f"{known}; give a robot description"
+            f"{document.file}:{line}:{column}: the root element is <{tag.localname}>{where}, "
+            f"expected {known}; {hint}"
         )
     return found
 

@@ -123,6 +123,8 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
         link = robot.link.get(name)
         if link is None or sum_ > 0 or name in lost or name == WORLD or _negative(link):
             continue
+        if name not in robot.above and name not in robot.below:
+            continue  # it hangs on nothing: that is MB501
         below = len(reached(robot, [name], lost)) - 1
         tail = f", with {below} links below it" if below else ""
         message = f"link {name!r} has no mass, nor anything fixed to it: Gazebo leaves it out{tail}"

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import lru_cache
+from itertools import zip_longest
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -30,6 +32,7 @@ from multibot_rewrite.rewriting.references import (
     where,
 )
 from multibot_rewrite.rewriting.remarks import Remark
+from multibot_rewrite.xacro_trace import Origin
 
 # What may stand in a frame parameter though nothing in the file has it: it is made at run time.
 MADE = ("odom", "map", "world")
@@ -178,11 +181,32 @@ def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:
     good='<link name="a"/>',
 )
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
-    """Every declaration but the first."""
+    """Every declaration but the first; all that one macro call repeats is told once."""
+    calls: dict[object, list[tuple[Claim, Claim]]] = {}
     for claim, first in repeated(subject.inventory):
+        cause = _repeating(subject, claim, first) or claim
+        calls.setdefault(cause, []).append((claim, first))
+    for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
-        message = text + _first_at(subject, first.start)
-        yield Problem(claim.element, message, claim.attribute, "rename one")
+        also = f", and so are {len(more)} more that the same call makes" if more else ""
+        hint = "give each call a prefix of its own" if more else "rename one"
+        message = text + _first_at(subject, first.start) + also
+        yield Problem(claim.element, message, claim.attribute, hint)
+
+
+def _repeating(subject: Subject, claim: Claim, first: Claim) -> object:
+    """What made xacro write one element twice: the macro call, or the file that is included again."""
+    one, other = (_origin(subject, it.start) for it in (first, claim))
+    if one is None or other is None or (one.file, one.start) != (other.file, other.start):
+        return None
+    outer = zip_longest(reversed(other.calls), reversed(one.calls))
+    return next((new for new, old in outer if new != old), (other.file, other.calls))
+
+
+def _origin(subject: Subject, start: int) -> Origin | None:
+    if not subject.origins:
+        return None
+    return subject.origins[bisect_left(subject.document.starts, start)]
 
 
 @rule(

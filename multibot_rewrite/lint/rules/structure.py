@@ -28,6 +28,8 @@ UNIT = 1e-3
 TOLD = 8
 # Above this many a search for the nearest name is not worth its time.
 MANY = 50
+# Files of these alone are read by others than urdfdom, or by xacro.
+WITHOUT_LINKS = frozenset(("material", "webots"))
 
 A_B = '<link name="a"/><link name="b"/>'
 ENDS = '<parent link="a"/><child link="b"/>'
@@ -72,7 +74,7 @@ def _few(names: Iterable[str]) -> str:
     good=_pair("fixed"),
 )
 def several_roots(subject: Subject) -> Iterator[Problem]:
-    """Every root but the one that most links hang on."""
+    """Every root but the one that most links hang on; a joint with a misspelled child is MB202."""
     robot = subject.robot
     found = roots(robot)
     if len(found) < 2:
@@ -83,20 +85,17 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     lost = [it for it in robot.above if it not in robot.link]
     search = lost if len(found) * len(lost) <= MANY else ()
     for link in found:
-        near = nearest(link.name, search) if link is not main else ""
-        if link is not main:
-            said = (
-                f"link {link.name!r} is a second root beside {main.name!r}: it is no joint's child"
-            )
-            mend = f"joint {robot.above[near][0].name!r} has the child {near!r}" if near else ""
-            yield Problem(link.element, said, "name", mend or "add the joint that it hangs on")
+        if link is main or nearest(link.name, search):
+            continue
+        said = f"link {link.name!r} is a second root beside {main.name!r}: it is no joint's child"
+        yield Problem(link.element, said, "name", "add the joint that it hangs on")
 
 
 @rule(
     "MB502",
     "no-link",
-    ERROR,
-    what="The robot has no link.",
+    WARNING,
+    what="The robot has no link. Files of materials alone or for Webots need none.",
     why="urdfdom refuses the file ('No link elements found in urdf file').",
     fix="Add the links, directly below <robot>.",
     bad='<robot name="r"/>',
@@ -107,7 +106,8 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     root = subject.document.root
     if root.tag != "robot" or subject.robot.links or subject.origins:
         return
-    if not any("xacro}" in str(it.tag) for it in root):
+    tags = [str(it.tag) for it in root.iterchildren("*")]
+    if not any("xacro}" in it for it in tags) and (not tags or not WITHOUT_LINKS.issuperset(tags)):
         yield Problem(root, "the robot has no link")
 
 
