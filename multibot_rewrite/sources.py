@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.rewriting.document import MAX_BYTES
 
 Source = str | bytes | os.PathLike[str]
 
@@ -46,7 +47,8 @@ def read_file(path: str) -> bytes:
     """The bytes of a file; raises InputError with the reason."""
     try:
         with open(path, "rb") as file:
-            return file.read()
+            # A device may have no end; one byte too many tells that it is too large.
+            return file.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
         raise InputError(f"{path}: cannot be read: {reason}") from None

@@ -214,12 +214,13 @@ def test_the_message_names_the_loop_and_the_way(tmp_path: Path) -> None:
     assert finding.message.startswith("joint 'l' closes a loop of 3 joints")
 
 
-def test_a_misspelt_child_is_proposed_to_the_root_it_makes(tmp_path: Path) -> None:
+def test_a_root_that_a_misspelt_child_makes_is_left_to_mb202(tmp_path: Path) -> None:
     body = '<link name="base"/><link name="wheel_link"/>' + (
         '<joint name="j" type="fixed"><parent link="base"/><child link="wheel_lnik"/></joint>'
     )
-    (finding,) = found(body, tmp_path)
-    assert (finding.code, finding.hint) == ("MB501", "joint 'j' has the child 'wheel_lnik'")
+    assert found(body, tmp_path) == []
+    (other,) = found(body.replace("lnik", "x"), tmp_path)
+    assert (other.code, other.hint) == ("MB501", "add the joint that it hangs on")
 
 
 def test_a_type_is_proposed(tmp_path: Path) -> None:

@@ -80,6 +80,8 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
         refused.append(LintFinding("MB102", level, message, "", error.filename, 1, 1))
 
     found = find_files(paths, SUFFIXES, refuse)
+    # What is found below "." is named as git names it.
+    found = [path.removeprefix("./") if path not in paths else path for path in found]
     kept = [path for path in found if path in paths or not is_excluded(path, config)]
     if not kept:
         raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")

@@ -6,7 +6,7 @@ import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
-from itertools import accumulate
+from itertools import accumulate, islice
 
 from lxml import etree
 
@@ -15,6 +15,7 @@ from multibot_rewrite.lint.numbers import numbers
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.model import ERROR, WARNING, Edit, Finding
 from multibot_rewrite.rewriting.audit import leftover_xacro, nearest, worlds
+from multibot_rewrite.rewriting.robots import already_rewritten
 
 BOM = b"\xef\xbb\xbf"
 _DECLARED = re.compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
@@ -111,6 +112,28 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     """The first one tells it all."""
     found = list(leftover_xacro(subject.inventory))
     return _placed(subject, found) if found else iter(())
+
+
+@rule(
+    "MB106",
+    "already-rewritten",
+    WARNING,
+    what="The description is spelled for one of the robots already: every name that a rewrite "
+    "spells has that robot's affix, or there is text that a rewrite inserted.",
+    why="urdf-postfix refuses it: a second rewrite would make base_link/robot1/robot1. Given to "
+    "several robots, all of them have the frames and topics of the one.",
+    fix="Lint and rewrite the source; take the affix back with urdf-postfix --strip, or let "
+    "exclude leave out what is generated.",
+    bad='<link name="base/robot1"/>',
+    good='<link name="base"/>',
+    options={"robots": ("robot1", "robot2")},
+)
+def already(subject: Subject) -> Iterator[Problem]:
+    """The first of the robots it is spelled for."""
+    settings = subject.settings
+    found = already_rewritten(subject.inventory, settings.naming, settings.robots, False)
+    for it in islice(found, 1):
+        yield Problem(subject.document.root, it.message, None, "lint the source it was made from")
 
 
 @rule(
