@@ -219,7 +219,7 @@ def test_a_root_that_a_misspelt_child_makes_is_left_to_mb202(tmp_path: Path) -> 
         '<joint name="j" type="fixed"><parent link="base"/><child link="wheel_lnik"/></joint>'
     )
     assert found(body, tmp_path) == []
-    (other,) = found(body.replace("lnik", "x"), tmp_path)
+    (other,) = found(body.replace("wheel_lnik", "castor"), tmp_path)
     assert (other.code, other.hint) == ("MB501", "add the joint that it hangs on")
 
 

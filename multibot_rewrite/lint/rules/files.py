@@ -124,8 +124,8 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     "several robots, all of them have the frames and topics of the one.",
     fix="Lint and rewrite the source; take the affix back with urdf-postfix --strip, or let "
     "exclude leave out what is generated.",
-    bad='<link name="base/robot1"/>',
-    good='<link name="base"/>',
+    bad='<robot name="r_robot1"><link name="base/robot1"/></robot>',
+    good='<robot name="r"><link name="base"/></robot>',
     options={"robots": ("robot1", "robot2")},
 )
 def already(subject: Subject) -> Iterator[Problem]:
