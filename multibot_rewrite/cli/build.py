@@ -5,22 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 
-from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.folders import change_folder, check_inside, locked
 from multibot_rewrite.cli.output import print_findings, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.fleets.artefacts import Artefact, make_artefacts
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
+    NOTE,
     Changes,
     changes,
     hash_of,
     manifest,
     read_manifest,
 )
-from multibot_rewrite.fleets.plan import plan_fleet
+from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import ERROR, Finding, UsageError
 from multibot_rewrite.remap.records import Problem
 from multibot_rewrite.sources import read_file
@@ -55,12 +55,18 @@ def run(options: argparse.Namespace) -> int:
     if any(it.level == ERROR or options.strict for it in findings):
         say("nothing was written", PROGRAM)
         return STOPPED
-    inputs = {path for it in made.files for path in it.sources} | {options.fleet}
-    read = {path: read_file(path) for path in inputs}
-    files = [*made.files, manifest(made.files, read, options.output)]
-    known = _known(options.output)
-    found = changes(files, known, _there(options.output, {*known, *(it.path for it in files)}))
-    return _told(options, found) if options.check else _written(options, files, found)
+    files = [*made.files, manifest(made.files, _read(plan, made.files), options.output)]
+    with locked(options.output):
+        known = _known(options.output)
+        there = _there(options.output, {*known, *(it.path for it in files)})
+        found = changes(files, known, there)
+        return _told(options, found) if options.check else _written(options, files, found)
+
+
+def _read(plan: FleetPlan, files: Iterable[Artefact]) -> dict[str, bytes]:
+    """The files that a build was made from."""
+    paths = {path for it in files for path in it.sources} | set(plan.file.files)
+    return {path: read_file(path) for path in paths}
 
 
 def _check_folder(folder: str) -> None:
@@ -76,12 +82,20 @@ def _as_finding(problem: Problem) -> Finding:
     return Finding(problem.code, problem.level, problem.message, problem.hint, where, 1, 1)
 
 
-def _known(folder: str) -> Mapping[str, str]:
-    path = os.path.join(folder, MANIFEST)
+def _known(folder: str) -> dict[str, str]:
+    """What is a build's: what the last one made, and what one that was killed has made of it."""
+    found = _of_manifest(folder, MANIFEST)
+    begun = _of_manifest(folder, NOTE)
+    there = _there(folder, begun)
+    return {**found, **{path: it for path, it in begun.items() if there.get(path) == it}}
+
+
+def _of_manifest(folder: str, name: str) -> dict[str, str]:
+    path = os.path.join(folder, name)
     if not os.path.exists(path):
         return {}
     data = read_file(path)
-    return {**read_manifest(data, path), MANIFEST: hash_of(data)}
+    return {**read_manifest(data, path), name: hash_of(data)}
 
 
 def _there(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
@@ -105,11 +119,11 @@ def _written(options: argparse.Namespace, files: Sequence[Artefact], found: Chan
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")
+    check_inside(options.output, (*found.write, *found.remove))
     data = {it.path: it.data for it in files}
-    items = ((os.path.join(options.output, path), data[path]) for path in found.write)
-    write_all(items, folders=True)
-    for path in found.remove:
-        _remove(options.output, path)
+    if found.write or found.remove:
+        note = NOTE, data[MANIFEST]
+        change_folder(options.output, {it: data[it] for it in found.write}, found.remove, note)
     if not options.quiet:
         robots = len({it.path.partition("/")[0] for it in files if "/" in it.path})
         say(f"{robots} robots, {len(files)} files, {len(found.write)} written", PROGRAM)
@@ -121,11 +135,3 @@ def _refuse(folder: str, paths: Sequence[str], why: str) -> None:
         more = f" (and {len(paths) - 1} more)" if len(paths) > 1 else ""
         where = os.path.join(folder, paths[0])
         raise UsageError(f"{where}: {why}{more}; move it away, or --force overwrites it")
-
-
-def _remove(folder: str, path: str) -> None:
-    full = os.path.join(folder, path)
-    with suppress(FileNotFoundError):
-        os.unlink(full)
-    with suppress(OSError):
-        os.rmdir(os.path.dirname(full))

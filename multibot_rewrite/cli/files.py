@@ -20,9 +20,9 @@ def write_all(items: Iterable[tuple[str, bytes]], folders: bool = False) -> None
     made: list[str] = []
     try:
         for path, data in items:
-            with _explained(path):
+            with explained(path):
                 if folders:
-                    _make_folders(os.path.dirname(path), made)
+                    make_folders(os.path.dirname(path), made)
                 _stage(path, data, staged)
         _commit(staged)
         made.clear()
@@ -35,7 +35,8 @@ def write_all(items: Iterable[tuple[str, bytes]], folders: bool = False) -> None
                 os.rmdir(folder)
 
 
-def _make_folders(folder: str, made: list[str]) -> None:
+def make_folders(folder: str, made: list[str]) -> None:
+    """Make a folder and those above it; what was not there is noted in ``made``."""
     missing = []
     while folder and not os.path.isdir(folder):
         missing.append(folder)
@@ -50,7 +51,7 @@ def _commit(staged: dict[str, str]) -> None:
     done: list[tuple[str, str]] = []
     try:
         for target, temporary in list(staged.items()):
-            with _explained(target):
+            with explained(target):
                 backup = f"{temporary}.old" if os.path.lexists(target) else ""
                 if backup:
                     os.link(target, backup)
@@ -81,7 +82,7 @@ def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
     name = f".urdf-postfix.{os.getpid()}.{len(staged)}.tmp"
     # Noted before it exists: an interrupt in between leaves nothing.
     staged[target] = temporary = os.path.join(os.path.dirname(target), name)
-    _write(temporary, data, stat.S_IMODE(mode))
+    write_new(temporary, data, stat.S_IMODE(mode))
 
 
 def _target(path: str) -> tuple[str, int]:
@@ -98,8 +99,9 @@ def _target(path: str) -> tuple[str, int]:
         return os.path.realpath(path), 0
 
 
-def _write(temporary: str, data: bytes, mode: int) -> None:
-    handle = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
+def write_new(path: str, data: bytes, mode: int) -> None:
+    """Write a file that is not there yet, and see it onto the disk; ``mode`` 0 is the usual one."""
+    handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     try:
         if mode:
             os.fchmod(handle, mode)
@@ -112,7 +114,8 @@ def _write(temporary: str, data: bytes, mode: int) -> None:
 
 
 @contextmanager
-def _explained(path: str) -> Iterator[None]:
+def explained(path: str) -> Iterator[None]:
+    """What the system refuses in the block is a UsageError about ``path``, in one line."""
     try:
         yield
     except OSError as error:

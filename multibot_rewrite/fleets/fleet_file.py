@@ -61,7 +61,9 @@ class RobotSpec(NamedTuple):
 
 
 class FleetFile(NamedTuple):
-    """A fleet file as it is meant; ``policy`` are the options of ``make_naming`` that it gives."""
+    """A fleet file as it is meant; ``policy`` are the options of ``make_naming`` that it gives,
+    ``files`` all that was read or will be beside the robots' own: it, what it includes, nodes,
+    vocabulary."""
 
     file: str
     policy: Mapping[str, Any]
@@ -70,14 +72,16 @@ class FleetFile(NamedTuple):
     nodes: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
+    files: tuple[str, ...] = ()
 
 
 class _Read(NamedTuple):
-    """One file's data and the line of each of its values by path."""
+    """One file's data, the line of each of its values by path, and the files it is made of."""
 
     file: str
     data: dict[str, Any]
     lines: Mapping[Path, int]
+    files: tuple[str, ...]
 
 
 def read_fleet(path: str) -> FleetFile:
@@ -87,14 +91,16 @@ def read_fleet(path: str) -> FleetFile:
     policy = {key: _policy(key, data[key]) for key in POLICY if key in data}
     robots = tuple(_robot(read, policy, at) for at in range(len(data["robots"])))
     _check_apart(read, robots)
+    nodes, vocabulary = data.get("nodes", ""), tuple(_listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
         policy,
         data.get("world", ""),
         data.get("distro", "jazzy"),
-        data.get("nodes", ""),
-        tuple(_listed(data.get("vocabulary", []))),
+        nodes,
+        vocabulary,
         robots,
+        tuple(filter(None, (*read.files, nodes, *vocabulary))),
     )
 
 
@@ -113,7 +119,8 @@ def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
     read = _read(path)
     for other in _listed(read.data.pop("include", [])):
         under = _with_includes(other, (*above, real))
-        read = _Read(path, {**under.data, **read.data}, {**under.lines, **read.lines})
+        both = {**under.data, **read.data}, {**under.lines, **read.lines}
+        read = _Read(path, *both, (*read.files, *under.files))
     if not above and "robots" not in read.data:
         raise InputError(f"{path}: there is no list of robots; write robots: with a name each")
     return read
@@ -126,7 +133,7 @@ def _read(path: str) -> _Read:
     lines = dict(_lines(document.root, path, ()))
     data = yaml.load(document.text, Loader=_LOADER)
     _validate(data, path, lines)
-    return _Read(path, _from(os.path.dirname(path), data), lines)
+    return _Read(path, _from(os.path.dirname(path), data), lines, (path,))
 
 
 def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:

@@ -12,6 +12,8 @@ from multibot_rewrite.fleets.artefacts import Artefact
 from multibot_rewrite.model import InputError
 
 MANIFEST = "manifest.json"
+# The manifest of a build that replaces files one by one, until it is done.
+NOTE = ".manifest.next.json"
 FORMAT = "multibot build 1"
 NOTHING: Mapping[str, str] = {}
 
@@ -48,7 +50,11 @@ def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
         found = json.loads(data)
         if found["format"] != FORMAT:
             raise ValueError(found["format"])
-        return {str(path): str(hash_) for path, hash_ in found["outputs"].items()}
+        outputs = {str(path): str(hash_) for path, hash_ in found["outputs"].items()}
+        # What is named here may be deleted: nothing outside of the folder is.
+        if any(os.path.isabs(path) or ".." in path.split("/") for path in outputs):
+            raise ValueError(outputs)
+        return outputs
     except (ValueError, KeyError, TypeError, AttributeError):
         hint = "delete it to build anew, or name another folder"
         raise InputError(f"{file}: this is no manifest of multibot build; {hint}") from None

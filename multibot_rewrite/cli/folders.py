@@ -1,0 +1,245 @@
+"""A folder of results that changes as a whole: whoever looks sees the old files or the new ones.
+
+The new folder is made beside the old one, of links to what stays, and one call of the kernel swaps
+the two. Where that cannot be (a mount point, the working directory, no right to write beside it),
+files are replaced one by one, all or none, and a note of what they are to be tells the next build
+what a killed one has left.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import re
+import shutil
+import stat
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager, suppress
+
+from multibot_rewrite.cli.files import explained, make_folders, write_all, write_new
+from multibot_rewrite.model import UsageError
+
+STAGE = ".multibot-build"
+# What a killed process may have left between files (see ``files``).
+_LEFT = re.compile(r"\.urdf-postfix\.\d+\.\d+\.tmp(\.old)?")
+# <linux/fcntl.h>, <linux/fs.h>
+_HERE, _EXCHANGE = -100, 2
+WRITERS = 8
+
+
+class _CannotSwapError(Exception):
+    """The folder cannot be swapped here; ``reason`` is the cause."""
+
+
+@contextmanager
+def locked(folder: str) -> Iterator[None]:
+    """Alone with a folder: another build into it, or beside it, waits until this one is done."""
+    import fcntl
+
+    above = _above(_real(folder))
+    try:
+        handle = os.open(above, os.O_RDONLY)
+    except OSError:
+        yield
+        return
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _real(folder: str) -> str:
+    return os.path.realpath(folder)
+
+
+def _above(folder: str) -> str:
+    """The nearest folder above that is there."""
+    above = os.path.dirname(folder)
+    while not os.path.isdir(above):
+        above = os.path.dirname(above)
+    return above
+
+
+def check_inside(folder: str, paths: Iterable[str]) -> None:
+    """Raise UsageError where a link or a file in a folder's place leads a path out of ``folder``."""
+    for part in sorted({part for path in paths for part in _parts(path)}):
+        full = os.path.join(folder, part)
+        if os.path.islink(full):
+            raise UsageError(
+                f"{full}: it is a link, and a build writes nothing elsewhere; remove it"
+            )
+
+
+def _parts(path: str) -> Iterator[str]:
+    words = path.split("/")
+    yield from ("/".join(words[:end]) for end in range(1, len(words) + 1))
+
+
+def change_folder(
+    folder: str, write: Mapping[str, bytes], remove: Collection[str], note: tuple[str, bytes]
+) -> None:
+    """Make ``folder`` hold the files ``write``, without the files ``remove``, and what else it held.
+
+    ``note`` is a file with what a build wants, for the time in which files are replaced one by one.
+    Raises UsageError with path and cause; everything is as it was then.
+    """
+    real = _real(folder)
+    made: list[str] = []
+    with _removed_unless_done(made):
+        with explained(folder):
+            make_folders(os.path.dirname(real), made)
+        _clear(real)
+        try:
+            _swap(real, write, remove, note[0])
+        except _CannotSwapError:
+            _one_by_one(real, write, remove, note)
+        made.clear()
+
+
+@contextmanager
+def _removed_unless_done(made: list[str]) -> Iterator[None]:
+    try:
+        yield
+    finally:
+        for folder in reversed(made):
+            with suppress(OSError):
+                os.rmdir(folder)
+
+
+def _clear(folder: str) -> None:
+    """What builds that were killed have left beside the folder."""
+    above, name = os.path.split(folder)
+    with suppress(OSError):
+        for entry in os.listdir(above):
+            if entry.startswith(f".{name}.") and entry.endswith(STAGE):
+                shutil.rmtree(os.path.join(above, entry), ignore_errors=True)
+
+
+def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note: str) -> None:
+    above, name = os.path.split(folder)
+    if os.path.ismount(folder) or _is_inside(os.getcwd(), folder):
+        raise _CannotSwapError
+    stage = os.path.join(above, f".{name}.{os.getpid()}{STAGE}")
+    try:
+        try:
+            os.mkdir(stage)
+        except OSError:
+            raise _CannotSwapError from None
+        if os.path.isdir(folder):
+            _link_all(folder, stage, {*write, *remove, note})
+            _prune(stage, remove)
+        _write_all(folder, stage, write)
+        _exchange(stage, folder)
+        _bring_late(stage, folder, {*write, *remove, note})
+    finally:
+        shutil.rmtree(stage, ignore_errors=True)
+
+
+def _is_inside(place: str, folder: str) -> bool:
+    return os.path.commonpath([os.path.realpath(place), folder]) == folder
+
+
+def _link_all(folder: str, stage: str, but: Collection[str]) -> None:
+    """All of a folder, folders anew and files as links, but for the given paths."""
+    _be_like(stage, folder)
+    for path, entry in _walk(folder):
+        target = os.path.join(stage, path)
+        try:
+            if entry.is_dir(follow_symlinks=False):
+                os.mkdir(target)
+                _be_like(target, entry.path)
+            elif path not in but and not _LEFT.fullmatch(entry.name):
+                os.link(entry.path, target, follow_symlinks=False)
+        except OSError:
+            raise _CannotSwapError from None
+
+
+def _be_like(folder: str, other: str) -> None:
+    """Mode, times and, where we may, owner."""
+    shutil.copystat(other, folder)
+    there = os.stat(other)
+    with suppress(OSError):
+        os.chown(folder, there.st_uid, there.st_gid)
+
+
+def _walk(folder: str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]]:
+    """Everything in a folder, by its path below it; a folder before what it holds."""
+    for entry in os.scandir(os.path.join(folder, below)):
+        path = os.path.join(below, entry.name)
+        yield path, entry
+        if entry.is_dir(follow_symlinks=False):
+            yield from _walk(folder, path)
+
+
+def _write_all(folder: str, stage: str, write: Mapping[str, bytes]) -> None:
+    def one(item: tuple[str, bytes]) -> None:
+        path, data = item
+        with explained(os.path.join(folder, path)):
+            write_new(os.path.join(stage, path), data, _mode(os.path.join(folder, path)))
+
+    for path in write:
+        with explained(os.path.join(folder, path)):
+            os.makedirs(os.path.dirname(os.path.join(stage, path)), exist_ok=True)
+    with ThreadPoolExecutor(WRITERS) as pool:
+        list(pool.map(one, write.items()))
+
+
+def _mode(path: str) -> int:
+    """The mode bits of a file that is there; 0 for none."""
+    try:
+        return stat.S_IMODE(os.lstat(path).st_mode)
+    except OSError:
+        return 0
+
+
+def _exchange(stage: str, folder: str) -> None:
+    """The new folder takes the old one's place, in one step."""
+    if not os.path.lexists(folder):
+        with explained(folder):
+            os.rename(stage, folder)
+        return
+    try:
+        call = ctypes.CDLL(None, use_errno=True).renameat2
+    except (OSError, AttributeError):
+        raise _CannotSwapError from None
+    if call(_HERE, os.fsencode(stage), _HERE, os.fsencode(folder), ctypes.c_uint(_EXCHANGE)):
+        raise _CannotSwapError
+
+
+def _bring_late(stage: str, folder: str, but: Collection[str]) -> None:
+    """What somebody put into the old folder while the new one was made."""
+    if not os.path.isdir(stage):
+        return
+    for path, entry in list(_walk(stage)):
+        target = os.path.join(folder, path)
+        ours = path in but or _LEFT.fullmatch(entry.name) or entry.is_dir(follow_symlinks=False)
+        if not ours and not os.path.lexists(target):
+            with suppress(OSError):
+                os.makedirs(os.path.dirname(target), exist_ok=True)
+                os.rename(entry.path, target)
+
+
+def _one_by_one(
+    folder: str, write: Mapping[str, bytes], remove: Collection[str], note: tuple[str, bytes]
+) -> None:
+    path, data = note
+    full = os.path.join(folder, path)
+    write_all([(full, data)], folders=True)
+    write_all(((os.path.join(folder, it), data) for it, data in write.items()), folders=True)
+    for it in (*remove, path):
+        with suppress(FileNotFoundError), explained(os.path.join(folder, it)):
+            os.unlink(os.path.join(folder, it))
+    _prune(folder, remove)
+
+
+def _prune(folder: str, removed: Iterable[str]) -> None:
+    """Take away the folders below ``folder`` in which nothing is left of what was removed."""
+    for path in removed:
+        above = os.path.dirname(path)
+        with suppress(OSError):
+            while above:
+                os.rmdir(os.path.join(folder, above))
+                above = os.path.dirname(above)
