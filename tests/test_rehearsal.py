@@ -5,8 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from robots import FIXTURES
 
+from multibot_rewrite.cli import rehearse
 from multibot_rewrite.graph.expectation import expect
+from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.rehearsal import (
     PROCESSES,
     Actor,
@@ -19,6 +22,7 @@ from multibot_rewrite.graph.rehearsal import (
     stand_in,
     to_order,
 )
+from multibot_rewrite.graph.snapshot import from_json
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
@@ -192,3 +196,14 @@ def test_odometry_that_nobody_is_known_to_send_is_sent_and_told() -> None:
     assert with_odometry(edges, "r2", naming) == (edges, "")
     standing = {**edges, ("r1", "robot_state_publisher"): [Edge("world", "base", True)]}
     assert with_odometry(standing, "r1", naming) == (standing, "")
+
+
+@pytest.mark.parametrize("seen", [0, 1])
+def test_a_look_that_sees_nothing_is_taken_again(
+    seen: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    graphs = FIXTURES / "graphs"
+    full = from_json((graphs / "healthy.json").read_bytes(), "healthy")
+    looks = [full] if seen else [full, full._replace(nodes=())]
+    monkeypatch.setattr(rehearse, "observe", lambda *_: looks.pop())
+    assert rehearse._look(Request(1.0), {}).nodes == full.nodes

@@ -25,7 +25,7 @@ from multibot_rewrite.graph.rehearsal import (
     dealt,
     to_order,
 )
-from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.graph.snapshot import Snapshot, to_json
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, with_odometry
 
 MORE = """\
@@ -65,8 +65,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         with _playing(dealt(actors), environ) as replaced:
             say(f"{len(actors)} nodes in domain {environ['ROS_DOMAIN_ID']}", PROGRAM)
-            limit = options.timeout or live.LOOK_SECONDS
-            graph = observe(Request(limit, stand_ins=True), environ)
+            graph = _look(Request(options.timeout or live.LOOK_SECONDS, stand_ins=True), environ)
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -75,6 +74,12 @@ def run(options: argparse.Namespace) -> int:
     _tell(replaced)
     code = conclude(options, as_played(expected(made), replaced), graph)
     return code if code != DONE else fleet.verdict(made)
+
+
+def _look(request: Request, environ: dict[str, str]) -> Snapshot:
+    """What is on the graph; nodes were started, so a look that sees none was blind: once more."""
+    graph = observe(request, environ)
+    return graph if graph.nodes else observe(request, environ)
 
 
 def _edges(made: Fleet) -> Edges:
