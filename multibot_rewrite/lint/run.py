@@ -60,11 +60,20 @@ def _linted(
 
 
 def _once(found: Iterable[LintFinding]) -> list[LintFinding]:
-    """A macro may be reached from several files, by several calls: what is alike is told once."""
-    first: dict[LintFinding, LintFinding] = {}
+    """One place in a macro is one finding, however many calls, of however many files, reach it."""
+    alike: dict[tuple[object, ...], dict[str, LintFinding]] = {}
     for it in found:
-        first.setdefault(it._replace(calls=(), arguments=""), it)
-    return list(first.values())
+        place = (it.code, it.level, it.file, it.line, it.column)
+        key = place if it.calls else (*place, it.message, it.hint)
+        alike.setdefault(key, {}).setdefault(it.message, it)
+    return [_with_others(*its.values()) for its in alike.values()]
+
+
+def _with_others(first: LintFinding, *others: LintFinding) -> LintFinding:
+    if not others:
+        return first
+    also = f"and {len(others)} more like it, by other calls of the macro"
+    return first._replace(hint=f"{first.hint}; {also}" if first.hint else also)
 
 
 def _in_order(found: Iterable[LintFinding], paths: Sequence[str]) -> list[LintFinding]:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from contextlib import redirect_stderr
 from functools import partial
+from io import StringIO
 from typing import NamedTuple
 
 from lxml.etree import _Element
@@ -72,7 +74,9 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
     trace = Trace({path: data}, path)
     find = partial(package_folder, file=path, roots=settings.roots)
-    expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
+    # What xacro warns about is no finding, and would stand between those of others.
+    with redirect_stderr(StringIO()):
+        expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
     subject = _subject(read_document(expanded, path + EXPANDED), settings)
     return _shaped(subject)._replace(origins=origins, sources=trace.sources, arguments=str(given))
 
