@@ -45,6 +45,13 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
     return {name: value for section in sections.values() for name, value in section.items()}
 
 
+def check_values(document: YamlText) -> None:
+    """Read every value of a parameter file; InputError for one that rcl refuses."""
+    for found in found_sections(document):
+        for _ in _flat(document, found.body, ""):
+            pass
+
+
 def exact_nodes(document: YamlText) -> list[str]:
     """Full names of the nodes that have a section of their own."""
     paths = dict.fromkeys(found.path for found in found_sections(document))

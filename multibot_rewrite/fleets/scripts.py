@@ -16,17 +16,25 @@ from typing import Any, NamedTuple, NoReturn
 from multibot_rewrite.companions.graph_names import known_topics, robot_topic
 from multibot_rewrite.companions.respell import respell
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.fleet import Fleet
 from multibot_rewrite.fleets import spawn, teleop, transforms
 from multibot_rewrite.fleets.artefacts import Artefact, Artefacts, make_artefacts
 from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
-from multibot_rewrite.fleets.node_params import Value, exact_nodes, node_parameters
+from multibot_rewrite.fleets.node_params import (
+    Value,
+    check_values,
+    exact_nodes,
+    node_parameters,
+)
 from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.started import started
 from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
 from multibot_rewrite.remap.marked import unknown
 from multibot_rewrite.remap.records import TOPIC, NodeFacts, NodeTable, Problem, Table
 from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.sources import read_file
 
 Rules = list[tuple[str, str]]
 
@@ -108,8 +116,8 @@ class LoadedRobot:
     @cached_property
     def table(self) -> NodeNames:
         """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``."""
-        plan = self._fleet.plan
-        return _names(plan.fleet.table, plan.fleet.facts, self._graph)
+        fleet = self._fleet.planned
+        return _names(fleet.table, fleet.facts, self._graph)
 
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
@@ -206,7 +214,7 @@ class LoadedRobot:
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
-        return self._fleet.document(f"{self.name}/{os.path.basename(file)}")
+        return self._fleet.parameters(f"{self.name}/{os.path.basename(file)}")
 
 
 class LoadedFleet:
@@ -220,7 +228,7 @@ class LoadedFleet:
         self.file: str = plan.file.file
         self.robots: tuple[LoadedRobot, ...] = tuple(LoadedRobot(self, it) for it in plan.robots)
         self.findings: tuple[Finding, ...] = _findings(plan)
-        self._documents: dict[str, YamlText] = {}
+        self._parameters: dict[str, YamlText] = {}
 
     def __repr__(self) -> str:
         return f"LoadedFleet({self.file!r})"
@@ -235,7 +243,12 @@ class LoadedFleet:
     @cached_property
     def table(self) -> NodeNames:
         """Names and remappings of the nodes that serve all robots."""
-        return _names(self.plan.fleet.table, self.plan.fleet.facts, "")
+        return _names(self.planned.table, self.planned.facts, "")
+
+    @cached_property
+    def planned(self) -> Fleet:
+        """The fleet with the nodes that hold its robots where they start."""
+        return started(self.plan)
 
     @cached_property
     def placed(self) -> transforms.Placed:
@@ -264,11 +277,15 @@ class LoadedFleet:
             _no_file(self, path)
         return self.files[path].data.decode()
 
-    def document(self, path: str) -> YamlText:
-        """One of these files, parsed."""
-        if path not in self._documents:
-            self._documents[path] = read_yaml(self.text(path).encode(), path)
-        return self._documents[path]
+    def parameters(self, path: str) -> YamlText:
+        """One of these files as a parameter file; InputError, with the line of the source, for values
+        that rcl refuses."""
+        if path not in self._parameters:
+            text = self.text(path)
+            for source in self.files[path].sources:
+                check_values(read_yaml(read_file(source), source))
+            self._parameters[path] = read_yaml(text.encode(), path)
+        return self._parameters[path]
 
 
 def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:

@@ -18,6 +18,7 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from multibot_rewrite.fleets import spawn as spawning
 from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
 from multibot_rewrite.model import Finding, UsageError
@@ -34,6 +35,10 @@ FLEET, ROBOT = "multibot_fleet", "multibot_robot"
 # What a launch keeps: its fleets by path, its folder, the warnings that it has given.
 _FLEETS, _FOLDER, _TOLD = "multibot_fleets", "multibot_folder", "multibot_told"
 FILE = "file"
+SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})
+PLACER = ("tf2_ros", "static_transform_publisher")
+# Characters that JSON may hold as they are, and YAML may not.
+_ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF)}
 # Parameters that no file of the fleet holds.
 _OWN = "multibot.yaml"
 
@@ -110,6 +115,11 @@ def rviz_config(file: Text, robot: Text = None, fleet: Text = None) -> Substitut
     return value(FILE, file, robot, fleet)
 
 
+def bridge_config(robot: Text = None, fleet: Text = None) -> Substitution:
+    """The path of a robot's file for ros_gz_bridge, or of what one bridge carries for all."""
+    return value(FILE, "bridge.yaml", robot, fleet)
+
+
 def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -> Substitution:
     """What ``$(multibot WORD NAME)`` is: one of ``WORDS`` about a robot, or the path of a file."""
     return substitution()([word, name], Of(robot, fleet))
@@ -159,6 +169,30 @@ def node(
         return [_node(its, called, [*paths, *own], options)]
 
     return _later(started, {"condition": condition})
+
+
+def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **action: Any) -> Action:
+    """A robot's spawner: ``gz`` for ros_gz_sim, ``classic`` for gazebo_ros."""
+
+    def started(context: Context) -> list[Action]:
+        called = perform(context, simulator)
+        if called not in SPAWNERS:
+            raise UsageError(unknown("simulator", called, SPAWNERS))
+        its = robot_of(context, Of(robot, fleet))
+        arguments = its.spawn_arguments if called == "gz" else its.classic_arguments
+        return [_program(SPAWNERS[called], arguments)]
+
+    return _later(started, action)
+
+
+def place(robot: Text = None, fleet: Text = None, **action: Any) -> Action:
+    """The static transform of a robot's pose, where one is needed."""
+
+    def started(context: Context) -> list[Action]:
+        arguments = robot_of(context, Of(robot, fleet)).transform_arguments
+        return [_program(PLACER, arguments)] if arguments else []
+
+    return _later(started, action)
 
 
 @cache
@@ -216,6 +250,11 @@ def _node(robot: LoadedRobot, name: str, files: list[str], options: Mapping[str,
     return node_class()(**{**options, **given})
 
 
+def _program(found: tuple[str, str], arguments: list[str]) -> Action:
+    package, executable = found
+    return node_class()(package=package, executable=executable, arguments=arguments)
+
+
 def _own_file(context: Context, robot: LoadedRobot, node: str, describe: bool) -> list[str]:
     """The path of a file with the node's description and start, where it has one."""
     values = robot.start_parameters(node)
@@ -225,7 +264,7 @@ def _own_file(context: Context, robot: LoadedRobot, node: str, describe: bool) -
         return []
     # JSON is YAML to rcl, and its strings are never taken for something else.
     data = {robot.table.full_name(node): {"ros__parameters": values}}
-    text = json.dumps(data, ensure_ascii=False)
+    text = json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
     return [_written(context, robot, f"{node.replace('/', '_')}.{_OWN}", text)]
 
 

@@ -1,4 +1,4 @@
-"""What XML and YAML launch files can say: ``$(multibot ...)``, ``multibot_robots``, ``multibot_node``.
+"""What XML and YAML launch files can say: ``$(multibot ...)``, and actions called ``multibot_...``.
 
 launch imports this by the entry point ``launch.frontend.launch_extension``; without launch it is of
 no use and does nothing.
@@ -49,6 +49,23 @@ def node(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
     return launch.node, {**given, **texts, "name": name, "describe": bool(describe)}
 
 
+def spawn(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
+    """``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
+    simulator = parser.parse_substitution(entity.get_attr("simulator"))
+    texts = _texts(entity, parser, "robot", "fleet")
+    return launch.spawn, {
+        "simulator": simulator,
+        **texts,
+        **launch.action_options(entity, parser),
+    }
+
+
+def place(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
+    """``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
+    texts = _texts(entity, parser, "robot", "fleet")
+    return launch.place, {**texts, **launch.action_options(entity, parser)}
+
+
 def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
     """The attributes that are there, with their substitutions."""
     found = {name: entity.get_attr(name, optional=True) for name in names}
@@ -58,5 +75,10 @@ def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
 if not launch.missing():
     launch.expose(
         substitutions={"multibot": words},
-        actions={"multibot_robots": robots, "multibot_node": node},
+        actions={
+            "multibot_robots": robots,
+            "multibot_node": node,
+            "multibot_spawn": spawn,
+            "multibot_place": place,
+        },
     )
