@@ -119,6 +119,8 @@ def _check_file(path: str) -> None:
 def _message(path: str, inner: str, error: Exception, trace: Trace) -> str:
     """``inner`` is the file that failed: ``path`` or one it includes."""
     reason = " ".join(_reason(error).split())
+    if not os.path.isabs(path):
+        reason = reason.replace(os.path.join(os.getcwd(), ""), "")
     hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
     argument = reason.partition(" argument ")[2].partition(" ")[0]
     where = f"{inner}:{error.lineno}:{error.offset + 1}" if isinstance(error, ExpatError) else ""
