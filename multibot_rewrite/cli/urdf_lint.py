@@ -14,7 +14,7 @@ from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.lint_usage import PROGRAM, check_use, given, parser
 from multibot_rewrite.cli.output import diff, print_bytes, say, watched
 from multibot_rewrite.cli.process import DONE, STOPPED, UNUSABLE, guarded
-from multibot_rewrite.cli.walk import find_files
+from multibot_rewrite.cli.walk import check_folder, check_target, find_files
 from multibot_rewrite.lint.configured import (
     Configured,
     check_codes,
@@ -48,6 +48,7 @@ def _start(arguments: Sequence[str] | None) -> int:
     check_use(options)
     config = with_options(configured(".", options.config), **given(options))
     paths, unreadable = _files(options, config)
+    _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]
     if options.write_baseline:
         return _write_baseline(options, findings)
@@ -90,6 +91,15 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
     from multibot_rewrite.lint.changed import changed_since  # a plain run needs no git
 
     return changed_since(options.changed_since, kept), refused
+
+
+def _check_targets(options: argparse.Namespace, paths: Sequence[str]) -> None:
+    """Before the work: nothing that is linted is written over."""
+    for option in ("--output", "--write-baseline"):
+        target = getattr(options, option[2:].replace("-", "_"))
+        if target:
+            check_target(target, paths, option)
+            check_folder(target)
 
 
 def _lint(
