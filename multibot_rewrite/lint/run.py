@@ -12,13 +12,12 @@ from multibot_rewrite.lint.included import included
 from multibot_rewrite.lint.pairing import named_urdfs
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
-from multibot_rewrite.lint.workers import crew, limit_time
 
 # A worker costs more to start than a few files to lint.
 FEW = 12
 EACH = 4
 # What a worker may compute beyond the time of a file before it is ended.
-GRACE = 2.0
+GRACE = 1.0
 Watch = Callable[[Iterable[list[LintFinding]]], Iterable[list[LintFinding]]]
 
 
@@ -45,6 +44,7 @@ def _linted(
     alone = not any(path.endswith(".xacro") for path in paths)
     if alone and (jobs == 1 or len(paths) <= FEW):
         return list(watch(lint_file(path, settings) for path in paths))
+    from multibot_rewrite.lint.workers import crew, limit_time
 
     def lint(path: str) -> list[LintFinding]:
         limit_time(settings.seconds + GRACE)
