@@ -7,17 +7,17 @@ vocabulary = ["vocabulary/acme.vocab"]
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Iterator
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import UsageError
 
 TABLE = "multibot-rewrite"
 KEYS = ("vocabulary",)
 # Parsing costs more than the rest of a start: most projects hold neither spelling of the table.
 MARKS = (b"multibot-rewrite", b"tool.multibot_rewrite")
-_PLACE = re.compile(r" \(at line (\d+), column (\d+)\)$")
+_PLACE = regex(r" \(at line (\d+), column (\d+)\)$")
 
 
 def configured_vocabulary(near: str) -> tuple[str, ...]:

@@ -9,13 +9,15 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.usage import input_name, target_path
-from multibot_rewrite.library import Rewrite
 from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.naming import SEPARATORS
+
+if TYPE_CHECKING:
+    from multibot_rewrite.library import Rewrite
 
 MANY = 20
 _T = TypeVar("_T")

@@ -5,12 +5,13 @@ from __future__ import annotations
 import re
 import signal
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import LintFinding, Rule, Subject
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.settings import Settings, level_of
 from multibot_rewrite.model import ERROR
 
-_PLACE = re.compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
+_PLACE = regex(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
 # What a reader says -> the rule that this is.
 _CODES = (
     ("No such file", "MB102"),

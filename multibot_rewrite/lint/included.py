@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator, Sequence
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources import read_file
 
-_INCLUDE = re.compile(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
+_INCLUDE = regex(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
 # What stands before the last substitution of a path is not known.
-_KNOWN = re.compile(r".*[)}]")
+_KNOWN = regex(r".*[)}]")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:

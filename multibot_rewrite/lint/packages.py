@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import os
-import re
 from collections import deque
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
+
+from multibot_rewrite.lazy import regex
 
 DEEPEST = 4
 MOST_FOLDERS = 20_000
 # Ancestors of a description in which its own package is looked for.
 HIGHEST = 6
 _MANIFEST = "package.xml"
-_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
+_NAME = regex(rb"<name>\s*([^<\s]+)\s*</name>")
 # Build results, libraries and the like: no sources of meshes below them.
 _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
 

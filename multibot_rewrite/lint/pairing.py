@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from glob import escape, glob
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.packages import package_folder
 from multibot_rewrite.lint.robot import Robot, read_robot
 from multibot_rewrite.lint.settings import Settings, matches
@@ -18,9 +18,8 @@ from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
 from multibot_rewrite.rewriting.document import read_document
 from multibot_rewrite.sources import read_file
-from multibot_rewrite.xacro_source import expand
 
-_NAME = re.compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+_NAME = regex(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
 # A root element stands in the first bytes; looking for it must not cost a read of the whole.
 HEAD = 4096
 # Where a package of MoveIt has its URDF, from the folder of its SRDF.
@@ -131,6 +130,8 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
     """With the default arguments, else with the first that the settings have for the file."""
     if not path.endswith(".xacro"):
         return read_file(path), path
+    from multibot_rewrite.xacro_source import expand
+
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
     find = partial(package_folder, file=path, roots=settings.roots)
     name = f"{path} (expanded)"

@@ -7,16 +7,19 @@ from bisect import bisect_right
 from collections.abc import Mapping
 from functools import lru_cache
 from itertools import count
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.rewriting.document import tag_end
-from multibot_rewrite.xacro_trace import Call
+
+if TYPE_CHECKING:
+    from multibot_rewrite.xacro_trace import Call
 
 Numbers = Mapping[_Element, int]
-_BLANK = re.compile(rb"\s*")
+_BLANK = regex(rb"\s*")
 
 
 class Place(NamedTuple):

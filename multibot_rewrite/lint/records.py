@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
@@ -17,7 +17,9 @@ from multibot_rewrite.model import ERROR, WARNING, Edit
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriting.collect import Inventory
 from multibot_rewrite.rewriting.document import Document
-from multibot_rewrite.xacro_trace import Origin
+
+if TYPE_CHECKING:
+    from multibot_rewrite.xacro_trace import Origin
 
 NOTE = "note"
 # From the worst on; a note never makes a lint fail.

@@ -24,8 +24,6 @@ from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting.collect import NOTHING, collect
 from multibot_rewrite.rewriting.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.rewriting.document import Document, read_document
-from multibot_rewrite.xacro_source import expand_traced
-from multibot_rewrite.xacro_trace import Trace
 
 # Tells that the root is that of an SRDF, whatever stands in it.
 NO_URDF: Declared = {"link": {}}
@@ -72,6 +70,9 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
+    from multibot_rewrite.xacro_source import expand_traced  # a URDF needs none of it
+    from multibot_rewrite.xacro_trace import Trace
+
     trace = Trace({path: data}, path)
     find = partial(package_folder, file=path, roots=settings.roots)
     # What xacro warns about is no finding, and would stand between those of others.

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.directives import (
     ALWAYS_TOLD,
     IGNORE_FILE,
@@ -23,9 +23,9 @@ from multibot_rewrite.rewriting.document import locate
 UNUSED, BROKEN = "MB002", "MB003"
 # With one of them the file was not looked at to its end.
 _UNFINISHED = ALWAYS_TOLD - {UNUSED, BROKEN}
-_CALL = re.compile(r"(.*):(\d+): ")
+_CALL = regex(r"(.*):(\d+): ")
 # A xacro file whose root has no name is a part of another one.
-_NAMED = re.compile(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
+_NAMED = regex(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
 Position = tuple[int, int]
 
 

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_left
 from collections.abc import Collection, Mapping
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim
 from multibot_rewrite.rewriting.document import tag_end
 
 Starts = Mapping[_Element, int]
-_ATTRIBUTE = re.compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_ATTRIBUTE = regex(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 # What stands for the same text whoever calls.
-_CONSTANT = re.compile(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
-_EXPRESSION = re.compile(rb"\$\{([^}]*)\}")
-_LITERAL = re.compile(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
-_NAME = re.compile(rb"[A-Za-z_]\w*")
+_CONSTANT = regex(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
+_EXPRESSION = regex(rb"\$\{([^}]*)\}")
+_LITERAL = regex(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
+_NAME = regex(rb"[A-Za-z_]\w*")
 
 
 def claim_is_fixed(subject: Subject, claim: Claim) -> bool:

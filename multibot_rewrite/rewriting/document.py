@@ -12,16 +12,17 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import Edit, Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
 # stays on: without it lxml makes libxml2 load external DTDs.)
 _PARSER = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
-_OPENING = re.compile(rb"<[A-Za-z_:\x80-\xff]")
-_SILENT = re.compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
-_TAG = re.compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
-_ATTRIBUTE = re.compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+_OPENING = regex(rb"<[A-Za-z_:\x80-\xff]")
+_SILENT = regex(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
+_TAG = regex(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_ATTRIBUTE = regex(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _HINTS = (
     ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),

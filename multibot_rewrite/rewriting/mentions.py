@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import WARNING, Finding, Site
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.rewriting.collect import Inventory
@@ -17,8 +17,8 @@ from multibot_rewrite.rewriting.remarks import Remark
 
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
-_BETWEEN = re.compile(r":=|::|[\s,;/]+")
-_NUMBERS = re.compile(r"[-+0-9.eE\s]*$")
+_BETWEEN = regex(r":=|::|[\s,;/]+")
+_NUMBERS = regex(r"[-+0-9.eE\s]*$")
 
 
 def slot_values(root: etree._Element) -> list[str]:

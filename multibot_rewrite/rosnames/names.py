@@ -7,10 +7,10 @@ rcl ``validate_topic_name.c`` and ``expand_topic_name.c``; rmw ``validate_full_t
 
 from __future__ import annotations
 
-import re
 from itertools import pairwise
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import UsageError
 
 # rmw: 255 less 8 for the rt/, rq/ and rr/ ... Reply of the wire; a namespace leaves room for "/x".
@@ -21,9 +21,9 @@ _DIGITS = frozenset("0123456789")
 _LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_")
 _TOKEN = _LETTERS | _DIGITS
 # Nearly every name there is; what does not match is looked at letter by letter.
-_PLAIN = re.compile(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
-_FULL = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
-_SUBSTITUTION = re.compile(r"\{(node|ns|namespace)\}")
+_PLAIN = regex(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+_FULL = regex(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
+_SUBSTITUTION = regex(r"\{(node|ns|namespace)\}")
 
 
 class Fault(NamedTuple):

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.rosnames.names import (
     Fault,
@@ -24,10 +25,10 @@ from multibot_rewrite.rosnames.names import (
 TOPIC_SCHEME, SERVICE_SCHEME = SCHEMES = ("rostopic://", "rosservice://")
 NAMESPACE_KEY, NODE_KEYS = "__ns", ("__node", "__name")
 # lexer.c S3, S9, S10: two underscores in a row end a token, so no rule can hold such a name.
-_TOKEN = re.compile(r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*")
+_TOKEN = regex(r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*")
 # Braces are not in the lexer's alphabet: a rule cannot hold {node} or {ns}.
-_PATH = re.compile(rf"(?:~?/)?{_TOKEN.pattern}(?:/{_TOKEN.pattern})*")
-_NAMESPACE = re.compile(rf"/(?:{_TOKEN.pattern}(?:/{_TOKEN.pattern})*/?)?")
+_PATH = regex(rf"(?:~?/)?{_TOKEN.pattern}(?:/{_TOKEN.pattern})*")
+_NAMESPACE = regex(rf"/(?:{_TOKEN.pattern}(?:/{_TOKEN.pattern})*/?)?")
 _FORMS = {_PATH: "a name", _TOKEN: "a node's name", _NAMESPACE: "a namespace that starts with '/'"}
 _HINTS = {
     "*": "a wildcard, which rcl does not have",

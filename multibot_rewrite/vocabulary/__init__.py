@@ -73,6 +73,7 @@ import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.vocabulary.grammar import (
     FORMS,
@@ -90,7 +91,7 @@ from multibot_rewrite.vocabulary.installed import advice, installed
 
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
-_AT = re.compile(r"^at:(.*)", re.MULTILINE)
+_AT = regex(r"^at:(.*)", re.MULTILINE)
 
 __all__ = [
     "FORMS",

@@ -5,10 +5,10 @@ The grammar is in the docstring of the package.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
 
@@ -54,7 +54,7 @@ FORMS = (
 )
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
-_PATH = re.compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
+_PATH = regex(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
 
 class Rewriter(NamedTuple):

@@ -8,13 +8,14 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import LEVELS, LintFinding
 
 # What ends a line, steers a terminal, or stands in no XML or UTF-8: lone surrogates are bytes of a
 # file's name that are no UTF-8.
-_ODD = re.compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
-_SURROGATE = re.compile("[\ud800-\udfff]")
-_CALL = re.compile(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)
+_ODD = regex("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
+_SURROGATE = regex("[\ud800-\udfff]")
+_CALL = regex(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)
 
 
 class MacroCall(NamedTuple):

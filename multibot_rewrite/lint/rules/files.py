@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
@@ -10,6 +9,7 @@ from itertools import accumulate, islice
 
 from lxml import etree
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.numbers import numbers
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
@@ -18,10 +18,10 @@ from multibot_rewrite.rewriting.audit import leftover_xacro, nearest, worlds
 from multibot_rewrite.rewriting.robots import already_rewritten
 
 BOM = b"\xef\xbb\xbf"
-_DECLARED = re.compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
-_ENCODED = re.compile(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
-_NAMESPACE = re.compile(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
-_ROOT = re.compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_DECLARED = regex(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
+_ENCODED = regex(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
+_NAMESPACE = regex(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ROOT = regex(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
 _LOOKS = ["visual", "link", "robot"]
 Look = tuple[tuple[float, ...] | str, str]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Callable, Iterator
 from functools import cache, lru_cache
 from typing import NamedTuple
@@ -11,15 +10,16 @@ from urllib.parse import unquote
 
 from lxml.etree import _Element
 
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.packages import entries, find_in, package_folders
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.written import is_fixed, starts_of
 from multibot_rewrite.model import ERROR, WARNING
 
-_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
+_SCHEME = regex(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 # A letter and a colon is a drive of Windows.
-_MACHINE = re.compile(r"/|[A-Za-z]:[/\\]")
+_MACHINE = regex(r"/|[A-Za-z]:[/\\]")
 READABLE = frozenset(("stl", "dae", "obj"))
 # Who cannot read the rest of what RViz reads through assimp.
 PARTLY = {

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.prefixes import forgotten, unused
+from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import NOTE, SRDF, XACRO, Problem, Subject, rule
 from multibot_rewrite.lint.written import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.model import ERROR, WARNING, Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, TF_TOPICS, make_naming, overlap
-from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.insert import insertions
 from multibot_rewrite.rewriters.spelling import HOLE
 from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rewriting import hazards, robots
-from multibot_rewrite.rewriting.plan import LAST, respeller
 from multibot_rewrite.rewriting.remarks import Remark
 from multibot_rewrite.rosnames import split_remap
 
@@ -50,7 +47,7 @@ TF_SWITCHES = {
     "gazebo_ros_planar_move": (("publish_odom_tf",), True),
 }
 DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
-DEVICE = re.compile(
+DEVICE = regex(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
 )
 
@@ -559,6 +556,8 @@ def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
 )
 def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     """Literal names where others have the prefix, and literal uses of names that have it."""
+    from multibot_rewrite.lint.prefixes import forgotten  # what only xacro files need
+
     yield from forgotten(subject)
 
 
@@ -578,6 +577,8 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
 )
 def prefix_unused(subject: Subject) -> Iterator[Problem]:
     """Parameters and arguments that nothing in sight reads and nothing out of sight can."""
+    from multibot_rewrite.lint.prefixes import unused
+
     yield from unused(subject)
 
 
@@ -688,6 +689,9 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     """Contacts that a rewrite would refuse as MB424."""
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
+    from multibot_rewrite.rewriters.contact import respell_collisions
+    from multibot_rewrite.rewriting.plan import LAST, respeller
+
     document, claims, _, declared, _ = subject.inventory
     first, last = (
         respell_collisions(

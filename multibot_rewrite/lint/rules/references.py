@@ -7,7 +7,7 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from functools import lru_cache
 from itertools import zip_longest
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
@@ -32,7 +32,9 @@ from multibot_rewrite.rewriting.references import (
     where,
 )
 from multibot_rewrite.rewriting.remarks import Remark
-from multibot_rewrite.xacro_trace import Origin
+
+if TYPE_CHECKING:
+    from multibot_rewrite.xacro_trace import Origin
 
 # What may stand in a frame parameter though nothing in the file has it: it is made at run time.
 MADE = ("odom", "map", "world")
