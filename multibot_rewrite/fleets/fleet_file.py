@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-import yaml
-
-from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
-from multibot_rewrite.model import InputError
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.companions.colours import read_colour
+from multibot_rewrite.fleet import facts_of
+from multibot_rewrite.fleets.by_schema import Path, read_fitting
+from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.naming import Naming, make_naming
 
 SCHEMA = "fleet.schema.json"
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
 POLICY = ("layout", "affix", "topics", "groups", "separators", "shared_frames", "shared_topics")
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-Path = tuple[Any, ...]
+PATHS = ("include", "description", "srdf", "nodes", "vocabulary")
+Places = Mapping[Path, tuple[str, int]]
 # What stands behind ``robots:``, empty lines and comments aside.
 _ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
 
@@ -76,11 +77,11 @@ class FleetFile(NamedTuple):
 
 
 class _Read(NamedTuple):
-    """One file's data, the line of each of its values by path, and the files it is made of."""
+    """One file's data, file and line of each of its values by path, and the files it is made of."""
 
     file: str
     data: dict[str, Any]
-    lines: Mapping[Path, int]
+    places: Places
     files: tuple[str, ...]
 
 
@@ -89,8 +90,10 @@ def read_fleet(path: str) -> FleetFile:
     read = _with_includes(path, ())
     data = read.data
     policy = {key: _policy(key, data[key]) for key in POLICY if key in data}
-    robots = tuple(_robot(read, policy, at) for at in range(len(data["robots"])))
-    _check_apart(read, robots)
+    naming = _naming(read, policy)
+    robots = tuple(_robot(read, naming, at) for at in range(len(data["robots"])))
+    _check_apart(robots)
+    _check_world(read, naming)
     nodes, vocabulary = data.get("nodes", ""), tuple(_listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
@@ -113,13 +116,12 @@ def is_fleet(data: bytes) -> bool:
 def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
     real = os.path.realpath(path)
     if real in above:
-        raise InputError(
-            f"{path}: it includes itself ({' -> '.join([*above, real])}); leave one out"
-        )
+        ring = " -> ".join(os.path.basename(it) for it in (*above, real))
+        raise InputError(f"{path}: it includes itself ({ring}); leave one out")
     read = _read(path)
     for other in _listed(read.data.pop("include", [])):
         under = _with_includes(other, (*above, real))
-        both = {**under.data, **read.data}, {**under.lines, **read.lines}
+        both = {**under.data, **read.data}, {**under.places, **read.places}
         read = _Read(path, *both, (*read.files, *under.files))
     if not above and "robots" not in read.data:
         raise InputError(f"{path}: there is no list of robots; write robots: with a name each")
@@ -127,29 +129,30 @@ def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
 
 
 def _read(path: str) -> _Read:
-    document = read_yaml(read_file(path), path)
-    if document.root is None:
-        raise InputError(f"{path}: the fleet file is empty; write robots: with a name each")
-    lines = dict(_lines(document.root, path, ()))
-    data = yaml.load(document.text, Loader=_LOADER)
-    _validate(data, path, lines)
-    return _Read(path, _from(os.path.dirname(path), data), lines, (path,))
+    # A file that is included may leave the robots to the one that includes it.
+    wanted = {key: value for key, value in schema().items() if key != "required"}
+    data, lines = read_fitting(path, wanted, "write robots: with a name each")
+    places = {at: (path, line) for at, line in lines.items()}
+    seen = _from(os.path.dirname(path), data)
+    _check_files(seen, (), places)
+    return _Read(path, seen, places, (path,))
 
 
-def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:
-    """The line of every value and key; a key that is there twice is an error."""
-    yield path, line_of(node)
-    if isinstance(node, yaml.SequenceNode):
-        for at, item in enumerate(node.value):
-            yield from _lines(item, file, (*path, at))
-    seen: dict[str, int] = {}
-    for key, value in pairs(node):
-        first = seen.setdefault(key.value, line_of(key))
-        if key.value in seen and first != line_of(key):
-            place = f"{file}:{line_of(key)}"
-            raise InputError(f"{place}: {key.value!r} is there twice, first at line {first}")
-        for below, line in _lines(value, file, (*path, key.value)):
-            yield below, line_of(key) if below == (*path, key.value) else line
+def _check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
+    """Every file that is named is there; what it holds is looked at later."""
+    for key in (*PATHS, "companions", "robots"):
+        value = data.get(key, ())
+        if key == "robots":
+            for number, robot in enumerate(value):
+                _check_files(robot, ("robots", number), places)
+            continue
+        kinds = value.items() if key == "companions" and value else [("", value)]
+        for kind, paths in kinds:
+            here = (*at, key, kind) if kind else (*at, key)
+            for path in (it for it in _listed(paths) if not os.path.isfile(it)):
+                file, line = places[here]
+                what = "a folder" if os.path.isdir(path) else "not there"
+                raise InputError(f"{file}:{line}: {path} is {what}; name a file")
 
 
 @cache
@@ -159,58 +162,6 @@ def schema() -> dict[str, Any]:
     return dict(json.loads(text))
 
 
-def _validate(data: object, file: str, lines: Mapping[Path, int]) -> None:
-    from jsonschema import Draft202012Validator
-    from jsonschema.exceptions import best_match
-
-    wanted = schema()
-    # A file that is included may leave the robots to the one that includes it.
-    checked = {key: value for key, value in wanted.items() if key != "required"}
-    error = best_match(Draft202012Validator(checked).iter_errors(data))
-    if error is None:
-        return
-    path = tuple(error.absolute_path)
-    line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
-    if error.validator == "additionalProperties" and isinstance(error.instance, dict):
-        unknown = next(key for key in error.instance if key not in error.schema["properties"])
-        line = lines.get((*path, unknown), line)
-    raise InputError(f"{file}:{line}: {_said(error, path)}")
-
-
-def _said(error: Any, path: Path) -> str:
-    """A validation error in words, with what is allowed."""
-    where = _where(path)
-    if error.validator == "additionalProperties":
-        known = error.schema["properties"]
-        unknown = next(key for key in error.instance if key not in known)
-        return f"{where}unknown key {unknown!r}{_nearest(str(unknown), known)}"
-    if error.validator == "required":
-        missing = next(key for key in error.validator_value if key not in error.instance)
-        return f"{where}the key {missing!r} is missing"
-    if error.validator == "enum":
-        allowed = ", ".join(map(str, error.validator_value))
-        near = _nearest(str(error.instance), error.validator_value)
-        return f"{where}{error.instance!r} is not known{near}; use one of {allowed}"
-    if error.validator == "pattern":
-        return f"{where}{error.instance!r} is no name: {error.schema.get('description', '')}"
-    if error.validator == "type" and isinstance(error.instance, int | float | bool):
-        return f"{where}{error.instance!r} is no {error.validator_value}; write it in quotes"
-    about = error.schema.get("description") or error.message
-    return f"{where}{error.instance!r} does not fit: {about}"
-
-
-def _where(path: Path) -> str:
-    text = "".join(f"[{it}]" if isinstance(it, int) else f".{it}" for it in path).lstrip(".")
-    return f"{text}: " if text else ""
-
-
-def _nearest(word: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches
-
-    near = get_close_matches(word, list(map(str, known)), 1, 0.5)
-    return f", did you mean {near[0]!r}?" if near else f"; known are {', '.join(known)}"
-
-
 def _from(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     """The data with every path seen from the working directory."""
 
@@ -218,7 +169,7 @@ def _from(folder: str, data: dict[str, Any]) -> dict[str, Any]:
         return os.path.join(folder, value) if isinstance(value, str) else [seen(it) for it in value]
 
     result = dict(data)
-    for key in ("include", "description", "srdf", "nodes", "vocabulary"):
+    for key in PATHS:
         if key in result:
             result[key] = seen(result[key])
     if "companions" in result:
@@ -236,36 +187,92 @@ def _listed(value: Any) -> Sequence[Any]:
     return [value] if isinstance(value, str) else value
 
 
-def _robot(read: _Read, policy: Mapping[str, Any], at: int) -> RobotSpec:
+def _naming(read: _Read, policy: Mapping[str, Any]) -> Naming:
+    try:
+        return make_naming(**policy)
+    except UsageError as error:
+        # What the schema cannot say is about separators.
+        file, line = read.places.get(("separators",), (read.file, 1))
+        raise InputError(f"{file}:{line}: {error}") from None
+
+
+def _check_world(read: _Read, naming: Naming) -> None:
+    world = read.data.get("world", "")
+    if world and world not in naming.shared_frames:
+        file, line = read.places["world",]
+        shared = ", ".join(sorted(naming.shared_frames)) or "none"
+        hint = "put it into shared_frames"
+        raise InputError(f"{file}:{line}: world {world!r} is no shared frame ({shared}); {hint}")
+
+
+def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
     data, own = read.data, read.data["robots"][at]
-    line = read.lines.get(("robots", at), 1)
-    place, name = f"{read.file}:{line}", own["name"]
+    file, line = read.places["robots", at]
+    place, name = f"{file}:{line}", own["name"]
     description = own.get("description", data.get("description", ""))
     if not description:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
-    arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
     companions = {**data.get("companions", {}), **own.get("companions", {})}
+    stacks = tuple(_listed(own.get("stack", data.get("stack", []))))
+    _check_stacks(read, at, stacks)
     return RobotSpec(
         name,
         description,
         own.get("srdf", data.get("srdf", "")),
-        {key: _argument(value) for key, value in arguments.items()},
+        _arguments(data, own, description, place),
         own.get("namespace", name).strip("/"),
-        _spelled(own, policy.get("affix", "postfix"), place),
+        _spelled(own, naming.affix, place),
         own.get("model", name),
-        Pose(**{key: float(value) for key, value in own["pose"].items()})
-        if "pose" in own
-        else None,
-        _colour(own.get("colour", "")),
-        tuple(_listed(own.get("stack", data.get("stack", [])))),
+        _pose(own, place),
+        _colour(own, place),
+        stacks,
         {kind: tuple(_listed(it)) for kind, it in companions.items()},
-        read.file,
+        file,
         line,
     )
 
 
-def _colour(value: str | list[int]) -> str | tuple[int, ...]:
-    return value if isinstance(value, str) else tuple(value)
+def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...]) -> None:
+    try:
+        facts_of(stacks, read.data.get("nodes") or None)
+    except UsageError as error:
+        own = ("robots", at, "stack")
+        file, line = read.places[own if own in read.places else ("stack",)]
+        raise InputError(f"{file}:{line}: {error}") from None
+
+
+def _arguments(
+    data: Mapping[str, Any], own: Mapping[str, Any], description: str, place: str
+) -> dict[str, str]:
+    """A robot's own xacro arguments over those of the fleet, which are for those that are xacro."""
+    files = (description, own.get("srdf", data.get("srdf", "")))
+    if not any(it.endswith(".xacro") for it in files):
+        if own.get("arguments"):
+            hint = "take them out, or name a file ….xacro"
+            raise InputError(f"{place}: {own['name']!r} has arguments and no xacro; {hint}")
+        return {}
+    arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
+    return {key: _argument(value) for key, value in arguments.items()}
+
+
+def _pose(own: Mapping[str, Any], place: str) -> Pose | None:
+    if "pose" not in own:
+        return None
+    values = {key: float(value) for key, value in own["pose"].items()}
+    for key, value in values.items():
+        if not math.isfinite(value):
+            raise InputError(f"{place}: {own['name']!r}: pose {key} is {value}; write a number")
+    return Pose(**values)
+
+
+def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
+    value = own.get("colour", "")
+    colour = value if isinstance(value, str) else tuple(value)
+    try:
+        read_colour(colour) if colour else None
+    except InputError as error:
+        raise InputError(f"{place}: {own['name']!r}: {error}") from None
+    return colour
 
 
 def _argument(value: object) -> str:
@@ -276,18 +283,26 @@ def _argument(value: object) -> str:
 def _spelled(own: Mapping[str, Any], side: str, place: str) -> str:
     other = "postfix" if side == "prefix" else "prefix"
     if other in own:
-        raise InputError(f"{place}: {own['name']!r} has a {other}, and the fleet's affix is {side}")
+        what = f"{own['name']!r} has a {other}, and the fleet's affix is {side}"
+        raise InputError(f"{place}: {what}; write {side}:")
     return str(own.get(side, own["name"]))
 
 
-def _check_apart(read: _Read, robots: Sequence[RobotSpec]) -> None:
+def _check_apart(robots: Sequence[RobotSpec]) -> None:
     """No two robots of one name, namespace, spelling or model, nor at one place."""
     for what in ("name", "namespace", "spelled", "model", "pose"):
         seen: dict[object, RobotSpec] = {}
         for robot in robots:
             value = getattr(robot, what)
             first = seen.setdefault(value, robot) if value is not None else robot
-            if first is not robot:
-                shown = "the same pose" if what == "pose" else f"the {what} {value!r}"
-                both = f"{first.name!r} (line {first.line}) and {robot.name!r} have {shown}"
-                raise InputError(f"{robot.file}:{robot.line}: {both}; every robot needs its own")
+            if first is robot:
+                continue
+            word = {"spelled": "prefix or postfix"}.get(what, what)
+            shown = "the pose" if what == "pose" else f"the {word} {value!r}"
+            both = f"{robot.name!r} has {shown} of {first.name!r} (line {first.line})"
+            both = (
+                f"{robot.name!r} is there twice, first at line {first.line}"
+                if what == "name"
+                else both
+            )
+            raise InputError(f"{robot.file}:{robot.line}: {both}; every robot needs its own")
