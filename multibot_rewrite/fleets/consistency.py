@@ -32,6 +32,8 @@ _BETWEEN = "/_-."
 # What is no name of the graph, whatever stands in it.
 _OTHER = re.compile(r"://|\$\(|\$\{|\.(?:yaml|rviz|urdf|xml|stl|dae|obj|world|sdf|pgm|png|so)\b")
 NO_PLACE = ("", 0)
+# Of the fleet, not of a line in a file.
+PLANNED = frozenset({"MF601", "MF607"})
 
 
 class Owned(NamedTuple):
@@ -70,11 +72,19 @@ def consistency(
         *_in_files(plan, own, files),
         *_in_common(own, files),
     ]
-    once: dict[tuple[str, str, int], Finding] = {}
-    for it in found:
-        if (it.file, it.line) not in known or it.code in ("MF601", "MF607"):
-            once.setdefault((it.code, it.file, it.line), it)
-    return tuple(once.values())
+    fresh = [it for it in found if it.code in PLANNED or (it.file, it.line) not in known]
+    return (*(it for it in fresh if it.code in PLANNED), *_counted(fresh))
+
+
+def _counted(findings: Iterable[Finding]) -> Iterator[Finding]:
+    """What is wrong with the names of a file is told at its first place, with the count."""
+    groups: dict[tuple[str, str], dict[int, Finding]] = {}
+    for it in sorted(findings, key=lambda it: (it.file, it.line, it.message)):
+        if it.code not in PLANNED:
+            groups.setdefault((it.code, it.file), {}).setdefault(it.line, it)
+    for first, *more in (list(group.values()) for group in groups.values()):
+        lines = f"; {len(more)} lines more are like it" if more else ""
+        yield first._replace(message=f"{first.message}{lines}")
 
 
 def _owned(plan: FleetPlan, fleet: Fleet) -> list[Owned]:
@@ -128,9 +138,11 @@ def _declared(plan: FleetPlan) -> Iterator[tuple[Described, str, str]]:
 
 
 def _nodes(fleet: Fleet, robots: Mapping[str, Described]) -> Iterator[tuple[Described, str, str]]:
+    # Whose topics meet is told of already.
+    told = {it.node for it in fleet.table.problems}
     for node in fleet.table.nodes:
-        if node.robot:
-            full = f"{node.namespace.rstrip('/')}/{node.name}"
+        full = f"{node.namespace.rstrip('/')}/{node.name}"
+        if node.robot and full not in told:
             yield robots[node.robot], "node", full
 
 
@@ -257,15 +269,30 @@ def _on_top(look: Look) -> Iterator[Said]:
 def _separators(look: Look) -> Iterator[Said]:
     word, bare = look.owned.robot.spec.spelled, look.owned.bare
     for token in (it for it in _tokens(look) if not it.startswith("/")):
-        names = []
-        if token.startswith(word):
-            names.append(token[len(word) :].lstrip(_BETWEEN))
-        if token.endswith(word):
-            names.append(token[: -len(word)].rstrip(_BETWEEN))
-        right = next((bare[it] for it in names if it in bare), None)
-        if right:
-            hint = "take the robot out of it: it is put there"
-            yield "MF604", WARNING, f"{token} should be {' or '.join(sorted(right))}", hint
+        for rest in _rests(token, word):
+            right = bare.get(rest.strip(_BETWEEN), frozenset())
+            if right and not _as_a_frame(look, token, rest.strip(_BETWEEN)):
+                hint = "take the robot out of it: it is put there"
+                yield "MF604", WARNING, f"{token} should be {' or '.join(sorted(right))}", hint
+                break
+
+
+def _rests(token: str, word: str) -> Iterator[str]:
+    if token.startswith(word):
+        yield token[len(word) :].lstrip(_BETWEEN)
+    if token.endswith(word):
+        yield token[: -len(word)].rstrip(_BETWEEN)
+
+
+def _as_a_frame(look: Look, token: str, name: str) -> bool:
+    """Spelled as a frame is, and no frame that is known: somebody else may send it."""
+    declared = look.owned.robot.names.declared
+    if name in USUAL_FRAMES or any(name in declared.get(kind, ()) for kind in ("link", "frame")):
+        return False
+    return (
+        respell(look.owned.robot.names._replace(robot=look.owned.robot.spec.spelled), "frame", name)
+        == token
+    )
 
 
 def _mixed(look: Look) -> Iterator[Said]:

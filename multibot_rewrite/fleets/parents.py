@@ -130,10 +130,12 @@ def _between(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
     first: dict[tuple[str, str], str] = {}
     told: set[str] = set()
     specs = {it.spec.namespace: it.spec for it in plan.robots}
+    # A description may begin with the world, and what moves the robot is then taken to move it.
+    links = {link for it in plan.robots for link in it.member.inventory.declared["link"]}
     for (robot, node), edges in fleet.edges.items():
         for edge in edges:
             other = first.setdefault((tf_topic(robot, naming), edge.child), robot)
-            if other == robot or edge.child in told:
+            if other == robot or edge.child in told or edge.child in links:
                 continue
             told.add(edge.child)
             message = (
