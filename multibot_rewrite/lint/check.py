@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import NoReturn
 
+from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
@@ -40,7 +41,7 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Li
     found: list[LintFinding] = []
     sources: dict[str, bytes] = {}
     try:
-        with _limited(settings.seconds):
+        with _limited(settings.seconds), uncollected():
             sources[path] = data = read()
             for subject in read_subjects(path, data, settings):
                 if isinstance(subject, Failed):

@@ -54,12 +54,16 @@ def announcing(folders: Iterable[str]) -> list[str]:
     A look at bytes, because importlib.metadata takes longer to import than a rewrite takes. Of a
     distribution that is there twice the first one counts, as it does for imports.
     """
-    first: dict[str, str] = {}
-    for folder in folders:
-        for name in _names(folder or "."):
-            if name.endswith(_METADATA) and not name.startswith("~"):  # pip's half-removed ones
-                first.setdefault(_key(name), os.path.join(folder, name))
-    return [path for path in first.values() if GROUP.encode() in _entry_points(path)]
+    paths = [
+        os.path.join(folder, name)
+        for folder in folders
+        for name in _names(folder or ".")
+        if name.endswith(_METADATA) and not name.startswith("~")  # pip's half-removed ones
+    ]
+    named = {path for path in paths if GROUP.encode() in _entry_points(path)}
+    # Mostly nobody does, and who hides whom need not be known.
+    first = {_key(os.path.basename(path)): path for path in reversed(paths)} if named else {}
+    return [path for path in first.values() if path in named]
 
 
 def _names(folder: str) -> list[str]:
@@ -79,7 +83,7 @@ def _key(name: str) -> str:
 
 def _entry_points(folder: str) -> bytes:
     try:
-        with open(os.path.join(folder, "entry_points.txt"), "rb") as file:
+        with open(f"{folder}/entry_points.txt", "rb", buffering=0) as file:
             return file.read()
     except OSError:  # most packages have none
         return b""
