@@ -1,0 +1,119 @@
+"""A folder with a fleet: two kinds of robots, companion files, and the fleet file that names them."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+
+ROVER = """\
+<robot name="rover">
+  <!-- kept -->
+  <link name="base_link"/>
+  <link name="lidar_link"/>
+  <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
+</robot>
+"""
+ARM = """\
+<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="tool" default="hand"/>
+  <link name="foot"/>
+  <link name="$(arg tool)"/>
+  <joint name="elbow" type="revolute">
+    <parent link="foot"/><child link="$(arg tool)"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+</robot>
+"""
+ARM_SRDF = """\
+<robot name="arm"><group name="all"><joint name="elbow"/></group></robot>
+"""
+PARAMS = """\
+# of one robot
+amcl:
+  ros__parameters:
+    base_frame_id: base_link  # its base
+    odom_frame_id: odom
+    scan_topic: scan
+"""
+RVIZ = """\
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/LaserScan
+      Name: scan
+      Topic:
+        Value: /scan
+  Global Options:
+    Fixed Frame: map
+"""
+BRIDGE = """\
+- ros_topic_name: scan
+  gz_topic_name: /model/rover/scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+  direction: GZ_TO_ROS
+"""
+LIMITS = "joint_limits:\n  elbow:\n    has_velocity_limits: true\n    max_velocity: 1.0\n"
+SMALL = """\
+layout: frames-per-robot
+affix: prefix
+stack: nav2
+robots:
+  - {name: robot1, description: rover.urdf, pose: {x: 1.0, y: 0.5, yaw: 1.57}}
+  - {name: robot2, description: rover.urdf}
+companions:
+  params: [params.yaml]
+  rviz: one_robot.rviz
+"""
+MIXED = """\
+layout: LAYOUT
+affix: AFFIX
+shared_frames: [map, world]
+companions: {rviz: one_robot.rviz}
+robots:
+  - name: scout
+    description: rover.urdf
+    namespace: fleet_scout
+    AFFIX: s1
+    model: scout_model
+    pose: {x: 1}
+    colour: red
+    stack: localization
+    companions: {params: params.yaml, bridge: bridge.yaml}
+  - name: reach
+    description: arm.urdf.xacro
+    srdf: arm.srdf
+    arguments: {tool: gripper}
+    stack: moveit
+    companions: {moveit: limits.yaml}
+  - name: grip
+    description: arm.urdf.xacro
+    arguments: {tool: fork}
+    stack: moveit
+  - {name: bare, description: rover.urdf, pose: {x: 2}}
+"""
+FILES = {
+    "rover.urdf": ROVER,
+    "arm.urdf.xacro": ARM,
+    "arm.srdf": ARM_SRDF,
+    "params.yaml": PARAMS,
+    "one_robot.rviz": RVIZ,
+    "bridge.yaml": BRIDGE,
+    "limits.yaml": LIMITS,
+}
+
+
+def fleet_folder(folder: Path, fleet: str = SMALL, **files: str) -> Path:
+    """Write the files and the fleet file; gives the path of the latter."""
+    for name, text in FILES.items():
+        (folder / name).write_text(text)
+    for name, text in files.items():
+        (folder / name.replace("__", ".")).write_text(textwrap.dedent(text))
+    path = folder / "fleet.yaml"
+    path.write_text(fleet)
+    return path
+
+
+def mixed(layout: str = "L2", affix: str = "prefix") -> str:
+    """Robots of two kinds and three sets of nodes, one with three words that differ."""
+    return MIXED.replace("LAYOUT", layout).replace("AFFIX", affix)
