@@ -124,6 +124,32 @@ class Restore(Action):
         context.launch_configurations = self.before
 
 
+class DeclareLaunchArgument(Action):
+    def __init__(
+        self,
+        name: str,
+        *,
+        default_value: Any = None,
+        description: Any = None,
+        choices: Any = None,
+        **kwargs: Any,
+    ) -> None:
+        super().__init__(**kwargs)
+        self.name, self.default_value = name, default_value
+
+    def execute(self, context: LaunchContext) -> None:
+        if self.default_value is not None:
+            context.launch_configurations.setdefault(self.name, self.default_value)
+
+
+class LaunchDescription:
+    def __init__(self, initial_entities: Any = None, *, deprecated_reason: Any = None) -> None:
+        self.entities = list(initial_entities or ())
+
+    def visit(self, context: LaunchContext) -> list[Any]:
+        return self.entities
+
+
 class GroupAction(Action):
     def __init__(
         self,
@@ -227,9 +253,11 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     "launch": {
         "Action": Action,
         "LaunchContext": LaunchContext,
+        "LaunchDescription": LaunchDescription,
         "Substitution": Substitution,
     },
     "launch.actions": {
+        "DeclareLaunchArgument": DeclareLaunchArgument,
         "GroupAction": GroupAction,
         "OpaqueFunction": OpaqueFunction,
         "SetLaunchConfiguration": SetLaunchConfiguration,

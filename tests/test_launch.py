@@ -11,11 +11,13 @@ import inspect
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType, ModuleType
 from typing import Any
 
 import launch_stand_in
@@ -407,6 +409,45 @@ def test_a_substitution_needs_a_word(frontend: Any) -> None:
         frontend.words([])
 
 
+PAGE = (REPO / "docs" / "launch.md").read_text()
+PYTHON = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
+def test_the_python_of_the_page(
+    code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    actions = ModuleType("launch_ros.actions")
+    vars(actions)["Node"] = Started
+    monkeypatch.setitem(sys.modules, "launch_ros", ModuleType("launch_ros"))
+    monkeypatch.setitem(sys.modules, "launch_ros.actions", actions)
+    monkeypatch.chdir(Path(fleet).parent)
+    context.launch_configurations["fleet"] = fleet
+    names: dict[str, Any] = {}
+    exec(compile(code, "launch.md", "exec"), names)
+    made = run(context, names["generate_launch_description"]())
+    programs = [it.options["executable"] for it in made]
+    assert programs.count("amcl") == programs.count("create") == 2
+    assert programs.count("robot_state_publisher") == 2
+
+
+def test_the_words_of_the_page_are_those_there_are() -> None:
+    (listed,) = re.findall(r"`\$\(multibot WORD\)` is one of (.*?);", PAGE, re.DOTALL)
+    words = {it.split()[0] for it in re.findall(r"`(.*?)`", listed)}
+    assert words == {*launch.WORDS, launch.FILE}
+
+
+@in_launch
+def test_the_xml_of_the_page(fleet: str, tmp_path: Path) -> None:
+    (text,) = re.findall(r"```xml\n(.*?)```", PAGE, re.DOTALL)
+    (tmp_path / "page.launch.xml").write_text(text)
+    more = {"amcl": "nav2_amcl", "driver": "my_driver"}
+    told, _ = launched(tmp_path / "page.launch.xml", tmp_path, f"fleet:={fleet}", programs=more)
+    drivers = [it["words"] for it in told if it["words"][0].endswith("driver")]
+    assert sorted(words[1] for words in drivers) == ["robot1/lidar_link", "robot2/lidar_link"]
+    assert len([it for it in told if it["words"][0].endswith("amcl")]) == 2
+
+
 def signature(thing: Any) -> Sequence[str]:
     """The names of the parameters, and which are only given by name."""
     made = inspect.signature(thing).parameters.values()
@@ -465,16 +506,17 @@ PROGRAMS = {
 }
 
 
-def launched(file: Path, folder: Path, *arguments: str) -> tuple[list[dict[str, Any]], str]:
+def launched(
+    file: Path, folder: Path, *arguments: str, programs: Mapping[str, str] = MappingProxyType({})
+) -> tuple[list[dict[str, Any]], str]:
     """What the programs of a launch file were told, and what launch said."""
     share = {
         f"share/multibot_example/{path.relative_to(EXAMPLE)}": path.read_text()
         for path in EXAMPLE.glob("*/*.*")
     }
     included = ("ros_gz_sim/launch/gz_sim.launch.py", "gazebo_ros/launch/gazebo.launch.py")
-    fake_packages(
-        folder / "install", {**share, **{f"share/{it}": EMPTY for it in included}}, PROGRAMS
-    )
+    files = {**share, **{f"share/{it}": EMPTY for it in included}}
+    fake_packages(folder / "install", files, {**PROGRAMS, **programs})
     (folder / "told").mkdir()
     (folder / "tmp").mkdir()
     env = {
