@@ -111,6 +111,7 @@ def _companions(plan: FleetPlan) -> Made:
         "params": params,
         "moveit": moveit,
         "behavior_trees": behavior_trees,
+        "lua": lua,
     }
     for kind, make in kinds.items():
         for kin in kin_of(plan):
@@ -120,9 +121,6 @@ def _companions(plan: FleetPlan) -> Made:
                 for robot in kin.robots:
                     text = fill(made.template, robot.spec.namespace, robot.spec.spelled)
                     yield Artefact(_own(robot, os.path.basename(path)), text.encode(), (path,))
-    for kin in kin_of(plan):
-        for path in kin.robots[0].spec.companions.get("lua", ()):
-            yield from lua(kin, path)
 
 
 def _said(finding: Finding, robot: Described) -> Finding:

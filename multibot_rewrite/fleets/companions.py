@@ -8,13 +8,14 @@ from typing import NamedTuple
 from multibot_rewrite.companions import params as ros_params
 from multibot_rewrite.companions.behavior_tree import behavior_tree
 from multibot_rewrite.companions.context import Companion, Context, make_context
-from multibot_rewrite.companions.lua import lua as lua_options
+from multibot_rewrite.companions.lua import lua_file
 from multibot_rewrite.companions.moveit import moveit as moveit_file
+from multibot_rewrite.companions.moveit import with_semantics
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleet import facts_of
 from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.plan import FleetPlan
-from multibot_rewrite.model import Finding
+from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.sources import read_file
 
@@ -38,7 +39,9 @@ def kin_of(plan: FleetPlan) -> Iterator[Kin]:
     for robots in groups.values():
         facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None)
         declared, naming = robots[0].names.declared, plan.fleet.naming
-        yield Kin(tuple(robots), facts, make_context(declared, naming, facts, plan.file.distro))
+        context = make_context(declared, naming, facts, plan.file.distro)
+        context = with_semantics(context, robots[0].semantics)
+        yield Kin(tuple(robots), facts, context)
 
 
 def params(plan: FleetPlan, kin: Kin, path: str) -> Companion:
@@ -58,7 +61,7 @@ def params(plan: FleetPlan, kin: Kin, path: str) -> Companion:
 
 def moveit(plan: FleetPlan, kin: Kin, path: str) -> Companion:
     """One of MoveIt's files."""
-    return moveit_file(read_yaml(read_file(path), path), kin.context)
+    return moveit_file(read_yaml(read_file(path), path), kin.context, kin.facts)
 
 
 def behavior_trees(plan: FleetPlan, kin: Kin, path: str) -> Companion:
@@ -66,6 +69,10 @@ def behavior_trees(plan: FleetPlan, kin: Kin, path: str) -> Companion:
     return behavior_tree(read_file(path), path, kin.context)
 
 
-def lua(kin: Kin, path: str) -> Iterator[Finding]:
-    """What cartographer's options have to be changed to by hand."""
-    yield from lua_options(read_file(path).decode("utf-8", "replace"), path, kin.context)
+def lua(plan: FleetPlan, kin: Kin, path: str) -> Companion:
+    """Cartographer's options: plain assignments are rewritten, all else is reported."""
+    try:
+        text = read_file(path).decode()
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: it is not UTF-8; save it as UTF-8") from None
+    return lua_file(text, path, kin.context)

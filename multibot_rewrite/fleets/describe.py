@@ -12,7 +12,9 @@ from multibot_rewrite.library import Rewrite, rewrite_all
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriting import pipeline
+from multibot_rewrite.rewriting.collect import NOTHING
 
 # Kinds that are names in the ROS graph; the others are the description's own.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
@@ -21,8 +23,8 @@ GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "s
 class Described(NamedTuple):
     """A robot with its rewritten description and SRDF (empty where it has none).
 
-    ``names`` is the rename map of what it declares, ``topics`` that of its ROS names; ``findings``
-    are warnings about the source.
+    ``names`` is the rename map of what it declares, ``topics`` that of its ROS names; ``semantics``
+    is what its SRDF declares, not rewritten. ``findings`` are warnings about the source.
     """
 
     spec: RobotSpec
@@ -30,6 +32,7 @@ class Described(NamedTuple):
     srdf: bytes
     names: Names
     topics: Names
+    semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
 
@@ -73,6 +76,7 @@ def _described(
             _spelled(semantic, robot, naming) if semantic else b"",
             Names(declared, naming, robot.spelled),
             Names(declared, naming, robot.namespace),
+            semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.spelled, tree),
             (*text.findings, *(semantic.findings if semantic else ())),
         )
