@@ -1,7 +1,7 @@
 """Commands that a page shows with what they print: read from it, and run as a reader would.
 
-A block ``console`` has lines ``$ COMMAND``, each with lines of what it prints, in order; ``...``
-stands for lines left out, in a line for a part of it; ``[exit code 1]`` is of what does not end with 0.
+A block ``console`` has lines ``$ COMMAND``, each with some lines of what it prints, in order; ``...``
+stands for a part of a line, ``[exit code 1]`` is of what does not end with 0.
 """
 
 from __future__ import annotations
@@ -11,11 +11,14 @@ import re
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
 import live_fleet
+import planned
+import pytest
 
 ROOT = Path(__file__).parent.parent
 MODULES = {
@@ -40,12 +43,14 @@ class Shown(NamedTuple):
 def sections(text: str) -> dict[str, list[Shown]]:
     """The commands of a page by the heading they are below."""
     found: dict[str, list[Shown]] = {}
-    for part in re.split(r"^#+ (?=.*\n)", "\n" + text, flags=re.MULTILINE)[1:]:
-        heading, _, body = part.partition("\n")
-        blocks = re.findall(r"^```console\n(.*?)^```", body, re.MULTILINE | re.DOTALL)
-        commands = [it for block in blocks for it in _commands(block)]
-        if commands:
-            found.setdefault(heading, []).extend(commands)
+    heading = ""
+    # A heading, or a block, in which a line may begin as a heading does.
+    for title, kind, block in re.findall(
+        r"^(?:#+ ([^\n]*)$|```(\w*)\n(.*?)^```$)", text, re.MULTILINE | re.DOTALL
+    ):
+        heading = title or heading
+        if kind == "console":
+            found.setdefault(heading, []).extend(_commands(block))
     return found
 
 
@@ -66,7 +71,10 @@ def is_live(commands: Sequence[Shown]) -> bool:
 
 def has_ros() -> bool:
     """Can nodes be started here?"""
-    return find_spec("rclpy") is not None
+    try:
+        return find_spec("rclpy.impl") is not None
+    except ImportError:
+        return False
 
 
 class Reader(NamedTuple):
@@ -106,17 +114,44 @@ def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
     return Reader(folder, {**environ, "PATH": path, "COLUMNS": "200", "LC_ALL": "C.UTF-8"})
 
 
-def assert_as_shown(it: Shown, there: Reader) -> None:
-    """The command ends as shown, and prints the shown lines in their order."""
-    done = there.run(it.command)
-    printed = done.stdout
-    assert done.returncode == it.code, f"{it.command}\n{printed}"
-    rest = [line.rstrip() for line in printed.splitlines()]
-    after = -1
-    for line in filter(lambda one: one.strip() != _LEFT_OUT, it.lines):
-        places = (at for at in range(after + 1, len(rest)) if _like(line.rstrip(), rest[at]))
-        after = next(places, -1)
-        assert after >= 0, f"{it.command}\nshown: {line}\nprinted:\n{printed}"
+Tried = Mapping[str, Sequence[tuple[Shown, subprocess.CompletedProcess[str]]]]
+
+
+def tried(
+    pages: Mapping[str, Sequence[Shown]], folder: Path, offset: int, more: Mapping[str, str]
+) -> Tried:
+    """What the commands of each part of a page do, each part in a folder and domain of its own.
+
+    Parts are tried side by side: most of a rehearsal is waiting. Those that need rclpy are left out
+    where there is none.
+    """
+    names = [it for it in pages if has_ros() or not is_live(pages[it])]
+    readers = []
+    for at, _ in enumerate(names):
+        own = folder / str(at)
+        own.mkdir()
+        readers.append(reader(own, planned.domain(offset + at), **more))
+
+    def one(name: str, there: Reader) -> list[tuple[Shown, subprocess.CompletedProcess[str]]]:
+        return [(it, there.run(it.command)) for it in pages[name]]
+
+    with ThreadPoolExecutor(6) as pool:
+        return dict(zip(names, pool.map(one, names, readers), strict=True))
+
+
+def assert_as_shown(name: str, found: Tried) -> None:
+    """The commands of a part end as shown, and print the shown lines in their order."""
+    if name not in found:
+        pytest.skip("no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+    for it, done in found[name]:
+        printed = done.stdout
+        assert done.returncode == it.code, f"{it.command}\n{printed}"
+        rest = [line.rstrip() for line in printed.splitlines()]
+        after = -1
+        for line in it.lines:
+            places = (at for at in range(after + 1, len(rest)) if _like(line.rstrip(), rest[at]))
+            after = next(places, -1)
+            assert after >= 0, f"{it.command}\nshown: {line}\nprinted:\n{printed}"
 
 
 def _like(shown: str, printed: str) -> bool:

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-import planned
 import pytest
 import shown
 import yaml
@@ -25,30 +24,17 @@ PAGES = {
     for folder in FOLDERS
     for heading, commands in shown.sections((folder / "README.md").read_text()).items()
 }
-DOMAINS = {name: 20 + at for at, name in enumerate(PAGES)}
 
 
-def run(name: str, folder: Path, **more: str) -> None:
-    there = shown.reader(folder, planned.domain(DOMAINS[name]), **more)
-    for it in PAGES[name]:
-        shown.assert_as_shown(it, there)
+@pytest.fixture(scope="module")
+def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> shown.Tried:
+    """What the commands of every part of the pages do."""
+    return shown.tried(PAGES, tmp_path_factory.mktemp("pages"), 20, tf2)
 
 
-@pytest.mark.parametrize("name", [it for it in PAGES if not shown.is_live(PAGES[it])])
-def test_a_page_shows_what_is_printed(name: str, tmp_path: Path) -> None:
-    run(name, tmp_path)
-
-
-@pytest.mark.parametrize("name", [it for it in PAGES if shown.is_live(PAGES[it])])
-def test_a_page_shows_what_a_rehearsal_tells(
-    name: str, tmp_path: Path, tf2: dict[str, str]
-) -> None:
-    pytest.importorskip(
-        "rclpy",
-        reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)",
-        exc_type=ImportError,
-    )
-    run(name, tmp_path, **tf2)
+@pytest.mark.parametrize("name", PAGES)
+def test_a_page_shows_what_is_printed(name: str, tried: shown.Tried) -> None:
+    shown.assert_as_shown(name, tried)
 
 
 def rehearsed(commands: Iterable[Shown]) -> dict[str, tuple[str, ...]]:

@@ -1,0 +1,58 @@
+"""The page of recipes: every command runs, prints what is shown, and every known question has one."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+import shown
+from shown import ROOT
+
+PAGE = (ROOT / "docs" / "recipes.md").read_text()
+RECIPES = shown.sections(PAGE)
+# Questions of users, numbered, with the threads they come from.
+QUESTIONS = ROOT.parent / "shared" / "field" / "systems.md"
+THREAD = re.compile(r"([\w.-]+)(?: PR)?#(\d+)")
+
+
+@pytest.fixture(scope="module")
+def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> shown.Tried:
+    """What the commands of every recipe do."""
+    return shown.tried(RECIPES, tmp_path_factory.mktemp("recipes"), 60, tf2)
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_a_recipe_prints_what_it_shows(name: str, tried: shown.Tried) -> None:
+    shown.assert_as_shown(name, tried)
+
+
+def test_every_recipe_has_a_question_an_answer_and_a_command() -> None:
+    parts = re.split(r"^### ", PAGE, flags=re.MULTILINE)[1:]
+    assert len(parts) == len(RECIPES) >= 30
+    for part in parts:
+        heading, rest = part.split("\n", 1)
+        asked, answer = rest.strip().split("\n\n")[:2]
+        assert heading.count('"') >= 2, heading
+        assert asked.startswith("*") and asked.endswith("*"), heading
+        sentences = re.split(r"(?<=[.:])\s+(?=[A-Z`])", answer.strip())
+        assert 1 <= len(sentences) <= 3, (heading, sentences)
+
+
+def test_links_of_the_page_lead_somewhere() -> None:
+    for target in re.findall(r"\]\(([^)#]+)", PAGE):
+        assert (ROOT / "docs" / target).exists(), target
+
+
+def test_every_question_that_is_known_has_a_recipe() -> None:
+    if not QUESTIONS.exists():
+        pytest.skip(f"no list of questions: looked for {QUESTIONS}")
+    text = QUESTIONS.read_text().partition("## (c)")[2].partition("## (d)")[0]
+    entries = re.findall(r"^(\d+)\. (.*(?:\n(?!\d+\. |#).*)*)", text, re.MULTILINE)
+    assert len(entries) == 55
+    answered = set(re.findall(r"#(\d+)", PAGE))
+    missing = [
+        number
+        for number, entry in entries
+        if (asked := {found[1] for found in THREAD.findall(entry)}) and not asked & answered
+    ]
+    assert missing == []
