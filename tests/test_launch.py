@@ -188,10 +188,30 @@ def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
     assert set(context.launch_configurations) == {"where"}
 
 
-def test_only_some_robots(fleet: str, context: Any) -> None:
-    context.launch_configurations.update({"robots": "robot2, "})
-    made = launch.each_robot(fleet, lambda it: [Started(name=it.name)], robots=of("robots"))
-    assert [it.options["name"] for it in run(context, made)] == ["robot2"]
+@pytest.mark.parametrize(
+    ("robots", "wanted"),
+    [
+        ("robot2, ", ["robot2"]),
+        ("robot2,robot1", ["robot2", "robot1"]),
+        (["robot2"], ["robot2"]),
+        ([], ["robot1", "robot2"]),
+        ("", ["robot1", "robot2"]),
+        (None, ["robot2", "robot1"]),
+    ],
+)
+def test_only_some_robots(robots: Any, wanted: list[str], fleet: str, context: Any) -> None:
+    context.launch_configurations.update({"robots": "robot2"})
+    chosen = [of("robots"), ",robot1"] if robots is None else robots
+    made = launch.each_robot(fleet, lambda it: [Started(name=it.name)], robots=chosen)
+    assert [it.options["name"] for it in run(context, made)] == wanted
+
+
+@pytest.mark.parametrize("files", ["params.yaml,more.yaml", ["params.yaml", "more.yaml"]])
+def test_several_files(files: Any, fleet: str, context: Any) -> None:
+    (Path(fleet).with_name("more.yaml")).write_text(PARAMS)
+    Path(fleet).write_text(FLEET.replace("params: params.yaml", "params: [params.yaml, more.yaml]"))
+    (made,) = run(context, launch.node("amcl", files=files, robot="robot2", fleet=fleet))
+    assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
 
 
 def test_a_condition(fleet: str, context: Any) -> None:

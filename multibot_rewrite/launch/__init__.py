@@ -128,7 +128,7 @@ def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
     """An action that does what ``make`` returns for every robot, each robot in a group of its own.
 
-    ``robots`` are names with commas between where only some are wanted; ``action`` is what any
+    ``robots`` are names, with commas between, where only some are wanted; ``action`` is what any
     action takes, such as a condition.
 
         each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])
@@ -136,7 +136,7 @@ def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Act
 
     def groups(context: Context) -> list[Action]:
         loaded = fleet_of(context, fleet)
-        names = _listed(perform(context, robots))
+        names = _listed(context, robots)
         chosen = [loaded.robot(name) for name in names] if names else loaded.robots
         return [_group(loaded, robot, make(robot)) for robot in chosen]
 
@@ -155,16 +155,15 @@ def node(
 ) -> Action:
     """A node of a robot's stacks: launch_ros's Node with its name, namespace, rules and parameters.
 
-    ``name`` is the node's in the stack; ``files`` are parameter files of the fleet, with commas
-    between; ``describe`` gives it the description. ``options`` are Node's own: its remappings come
-    first and its parameters last, where they win.
+    ``name`` is the node's in the stack; ``files`` are parameter files of the fleet, a list or with
+    commas between; ``describe`` gives it the description. ``options`` are Node's own: its
+    remappings come first and its parameters last, where they win.
     """
-
     of = Of(robot, fleet)
 
     def started(context: Context) -> list[Action]:
         its, called = robot_of(context, of), perform(context, name)
-        paths = [file_of(context, it, of) for it in _listed(perform(context, files))]
+        paths = [file_of(context, it, of) for it in _listed(context, files)]
         own = _own_file(context, its, called, describe)
         return [_node(its, called, [*paths, *own], options)]
 
@@ -316,8 +315,13 @@ WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
 )
 
 
-def _listed(text: str) -> list[str]:
-    return [it for it in map(str.strip, text.split(",")) if it]
+def _listed(context: Context, names: Text) -> list[str]:
+    """Names with commas between, or a list of them; of a list with substitutions launch makes one
+    text."""
+    several = not isinstance(names, str) and isinstance(names, Sequence)
+    if several and all(isinstance(it, str) for it in names):
+        return list(names)
+    return [it for it in map(str.strip, perform(context, names).split(",")) if it]
 
 
 def _nobody(context: Context, of: Of) -> bool:
