@@ -21,10 +21,6 @@ from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.model import MultibotError
 
 LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfix")]
-    "scout": ("fleet_scout", "s1", "scout_model"),
-    "reach": ("reach",) * 3,
-    "grip": ("grip",) * 3,
-}
 
 
 def made(folder: Path, text: str, **files: str) -> dict[str, str]:

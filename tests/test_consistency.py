@@ -1,0 +1,252 @@
+"""What is found in files that were made: faults are planted in them; right ones have none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+from fleet_folder import PARAMS, SMALL, fleet_folder, mixed
+from robots import CORPUS
+
+from multibot_rewrite.fleets.artefacts import Artefacts, make_artefacts
+from multibot_rewrite.fleets.consistency import consistency, twice
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.started import started
+from multibot_rewrite.fleets.written import Written, line_in_source, values
+from multibot_rewrite.model import Finding, MultibotError
+
+PARENTS = """\
+layout: L2
+affix: prefix
+description: rover.urdf
+robots: [{name: r1}, {name: r2}]
+"""
+
+
+def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
+    return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files))))
+
+
+def written(made: Artefacts) -> list[Written]:
+    return [Written(it.path, it.data.decode(), it.sources) for it in made.files]
+
+
+def looked(plan: FleetPlan, files: Iterable[Written]) -> list[Finding]:
+    return list(consistency(plan, started(plan), list(files)))
+
+
+def planted(folder: Path, path: str, old: str, new: str, text: str = SMALL) -> list[Finding]:
+    """What is found once ``old`` is ``new`` in one of the files that are made."""
+    plan = planned(folder, text)
+    files = written(make_artefacts(plan))
+    assert [it for it in files if it.path == path and old in it.text], path
+    changed = [
+        it._replace(text=it.text.replace(old, new, 1)) if it.path == path else it for it in files
+    ]
+    return looked(plan, changed)
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+@pytest.mark.parametrize("affix", ["prefix", "postfix"])
+def test_what_is_made_is_right(layout: str, affix: str, tmp_path: Path) -> None:
+    plan = planned(tmp_path, mixed(layout, affix))
+    assert looked(plan, written(make_artefacts(plan))) == []
+
+
+L1, L4 = SMALL.replace("frames-per-robot", "L1"), SMALL.replace("frames-per-robot", "L4")
+L4 = L4.replace("affix: prefix", "affix: postfix")
+UNDERSCORES = f"separators: {{link: _}}\n{SMALL}"
+PLANTED = {
+    "frame-of-another": ("robot1/params.yaml", "robot1/base_link", "robot2/base_link", SMALL, "MF602"),
+    "topic-of-another": ("robot1/params.yaml", "/robot1/amcl", "/robot2/amcl", SMALL, "MF602"),
+    "in-the-second": ("robot2/params.yaml", "robot2/odom", "robot1/odom", SMALL, "MF602"),
+    "link-of-another": ("robot2/rover.urdf", 'e="robot2/base_l', 'e="robot1/base_l', SMALL, "MF602"),
+    "joint-of-another": ("robot2/rover.urdf", "robot2_lidar", "robot1_lidar", SMALL, "MF602"),
+    "postfix-of-another": ("robot1/params.yaml", "base_link/robot1", "base_link/robot2", L4, "MF602"),
+    "namespace-of-another": ("robot1/params.yaml", "/robot1/amcl", "/robot2/amcl", L1, "MF602"),
+    "prefix-twice": ("robot1/params.yaml", "robot1/odom", "robot1/robot1/odom", SMALL, "MF603"),
+    "postfix-twice": ("robot1/params.yaml", "odom/robot1", "odom/robot1/robot1", L4, "MF603"),
+    "namespace-twice": ("robot1/params.yaml", "/robot1/amcl", "/robot1/robot1/amcl", L1, "MF603"),
+    "link-twice": ("robot1/rover.urdf", "robot1/lidar", "robot1/robot1/lidar", SMALL, "MF603"),
+    "joint-twice": ("robot1/rover.urdf", "robot1_lidar", "robot1_robot1_lidar", SMALL, "MF603"),
+    "in-the-file-of-all": ("one_robot.rviz", "/robot1/scan", "/robot1/robot1/scan", SMALL, "MF603"),
+    "frame-prefix": (
+        "robot1/params.yaml",
+        "    base_frame_id",
+        "    frame_prefix: robot1/\n    base_frame_id",
+        SMALL,
+        "MF603",
+    ),
+    "tf-frame-prefix": (
+        "robot1/params.yaml",
+        "    base_frame_id",
+        "    tf_frame_prefix_enable: true\n    base_frame_id",
+        SMALL,
+        "MF603",
+    ),
+    "no-separator": ("robot1/params.yaml", "robot1/odom", "robot1odom", SMALL, "MF604"),
+    "wrong-separator": ("robot1/params.yaml", "robot1/odom", "robot1_odom", SMALL, "MF604"),
+    "slash-for-underscore": ("robot1/params.yaml", "robot1_base", "robot1/base", UNDERSCORES, "MF604"),
+    "no-separator-behind": ("robot1/params.yaml", "base_link/robot1", "base_linkrobot1", L4, "MF604"),
+    "bare-frame": ("robot1/params.yaml", "robot1/base_link", "base_link", SMALL, "MF605"),
+    "bare-odometry": ("robot1/params.yaml", "robot1/odom", "odom", SMALL, "MF605"),
+    "one-tf": ("robot1/params.yaml", "scan_topic: scan", "tf_topic: /tf", L1, "MF606"),
+    "own-tf": ("robot1/params.yaml", "scan_topic: scan", "tf_topic: /robot1/tf", SMALL, "MF606"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", PLANTED)
+def test_a_fault_in_a_file_is_found_with_its_line(case: str, tmp_path: Path) -> None:
+    path, old, new, text, code = PLANTED[case]
+    found = planted(tmp_path, path, old, new, text)
+    assert [it.code for it in found] == [code], found
+    key = new.removeprefix("    ").partition(":")[0] if "\n" in new else ""
+    assert (key or new.split()[-1].strip('e="')) in found[0].message
+    source = "one_robot.rviz" if path.endswith("rviz") else path.partition("/")[2]
+    assert Path(found[0].file).name == source
+    assert found[0].line > 1
+    assert "multibot" not in found[0].message
+    assert found[0].hint
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        pytest.param("# its base", "# robot2/base_link, robot1odom", id="comment"),
+        pytest.param("scan_topic: scan", "map_file: /maps/robot2/site.yaml", id="file"),
+        pytest.param("scan_topic: scan", "url: package://robot2/meshes/a.stl", id="package"),
+        pytest.param("scan_topic: scan", "x: $(find-pkg-share robot2)/params", id="substitution"),
+        pytest.param("scan_topic: scan", "scan_topic: robot1_front/scan", id="another-word"),
+        pytest.param("scan_topic: scan", "plugin: base_link", id="no-frame"),
+        pytest.param("scan_topic: scan", "odom_topic: odom", id="topic"),
+    ],
+)
+def test_what_is_no_fault(old: str, new: str, tmp_path: Path) -> None:
+    assert planted(tmp_path, "robot1/params.yaml", old, new) == []
+
+
+def test_many_lines_of_one_fault_are_one_finding(tmp_path: Path) -> None:
+    plan = planned(tmp_path)
+    files = [
+        it._replace(text=it.text.replace("robot1/", "robot2/")) if it.path == "robot1/params.yaml"
+        else it for it in written(make_artefacts(plan))
+    ]  # fmt: skip
+    (found,) = looked(plan, files)
+    assert "2 lines more are like it" in found.message
+
+
+def test_what_a_companion_told_is_not_told_again(tmp_path: Path) -> None:
+    params = PARAMS.replace("scan_topic: scan", "scan_topic: /robot2/scan")
+    made = make_artefacts(planned(tmp_path, SMALL, params__yaml=params))
+    assert [it.code for it in made.findings if it.level == "error"] == ["MF126"]
+
+
+def test_the_line_is_that_of_the_source_behind_inserted_ones(tmp_path: Path) -> None:
+    source = tmp_path / "a.yaml"
+    source.write_text("a: 1\nb: 2\nc: 3\n")
+    file = Written("r/a.yaml", "new: 0\na: 1\nb: r2\nmore: 1\nc: 3\n", (str(source),))
+    lines = [line_in_source(file, at)[1] for at in (2, 3, 5)]
+    assert lines == [1, 2, 3]
+
+
+def test_values_of_each_format() -> None:
+    yaml_ = Written("a.yaml", "a: {b: [1, x]}\n'c': \"d\"\n", ())
+    assert [tuple(it) for it in values(yaml_)] == [
+        ("a", "a", True, 1), ("b", "b", True, 1), ("1", "b", False, 1), ("x", "b", False, 1),
+        ("c", "c", True, 2), ("d", "c", False, 2),
+    ]  # fmt: skip
+    xml = Written("a.urdf", '<a>\n<b c="d">e</b></a>', ())
+    assert [tuple(it) for it in values(xml)] == [("d", "c", False, 2), ("e", "b", False, 2)]
+    assert [it.text for it in values(Written("a.md", "one\ntwo\n", ()))] == ["one", "two"]
+    assert list(values(Written("a.yaml", "# nothing\n", ()))) == []
+
+
+@pytest.mark.parametrize(
+    ("token", "word"),
+    [
+        ("r1/r1/a", "r1"), ("a/r1/r1", "r1"), ("r1_r1_a", "r1"), ("x/r1_r1", "r1"),
+        ("r1/a/r1", ""), ("r11/r11", ""), ("ar1/r1b", ""), ("r1/r12", ""), ("r1", ""),
+    ],
+)  # fmt: skip
+def test_twice_in_a_name(token: str, word: str) -> None:
+    assert twice(token, ("r1",)) == word
+
+
+def test_a_robot_whose_link_is_called_like_it_is_no_fault(tmp_path: Path) -> None:
+    rover = '<robot name="x"><link name="robot1"/></robot>'
+    plan = planned(tmp_path, PARENTS.replace("r1", "robot1"), rover__urdf=rover)
+    made = make_artefacts(plan)
+    assert "robot1/robot1" in next(it.data for it in made.files if "robot1/" in it.path).decode()
+    assert looked(plan, written(made)) == []
+
+
+# ---------------------------------------------------------------- parents
+
+
+def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
+    params = (
+        "amcl: {ros__parameters: {odom_frame_id: odom}}\n"
+        "slam_toolbox:\n  ros__parameters: {odom_frame: odom, map_frame: map}\n"
+    )
+    text = f"stack: [localization, nav2_slam]\ncompanions: {{params: params.yaml}}\n{PARENTS}"
+    plan = planned(tmp_path, text, params__yaml=params)
+    found = [it for it in make_artefacts(plan).findings if it.code == "MF607"]
+    assert len(found) == 1
+    assert "frame r1/odom of r1 is sent by amcl and by slam_toolbox" in found[0].message
+    assert (Path(found[0].file).name, found[0].line) == ("params.yaml", 2)
+
+
+FILTER = (
+    "ekf_filter_node:\n  ros__parameters: {odom_frame: odom, base_link_frame: lidar_link, MORE}\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        pytest.param("world_frame: odom", ["below r1/base_link and r1/odom"], id="two-parents"),
+        pytest.param("world_frame: odom, publish_tf: false", [], id="switched-off"),
+        pytest.param("world_frame: map, map_frame: map", [], id="filters-the-map"),
+    ],
+)
+def test_what_a_parameter_file_says_is_sent(more: str, said: list[str], tmp_path: Path) -> None:
+    text = f"stack: robot_localization\ncompanions: {{params: params.yaml}}\n{PARENTS}"
+    plan = planned(tmp_path, text, params__yaml=FILTER.replace("MORE", more))
+    found = [it for it in make_artefacts(plan).findings if it.code == "MF607"]
+    assert [said[0] in it.message for it in found] == [True] * len(said)
+
+
+def test_two_robots_that_send_a_shared_frame_on_one_topic(tmp_path: Path) -> None:
+    text = f"stack: nav2\nshared_frames: [map, odom]\n{PARENTS}"
+    found = [it for it in make_artefacts(planned(tmp_path, text)).findings if it.code == "MF607"]
+    assert ["frame odom is sent by robots r1 and r2" in it.message for it in found] == [True]
+    assert found[0].level == "error"
+    apart = text.replace("layout: L2", "layout: L3")
+    assert not [
+        it for it in make_artefacts(planned(tmp_path, apart)).findings if it.code == "MF607"
+    ]
+
+
+# ---------------------------------------------------------------- real files
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+def test_nothing_is_found_in_what_real_files_become(layout: str, tmp_path: Path) -> None:
+    params = sorted((CORPUS / "nav2_params").rglob("*.yaml"))
+    urdfs = sorted((CORPUS / "urdf").rglob("*.urdf"))
+    if not params or not urdfs:
+        pytest.skip(f"no corpus of real files: looked in {CORPUS}")
+    looked_at, told = 0, []
+    for at, file in enumerate(params[:: len(params) // 12]):
+        text = f"layout: {layout}\naffix: prefix\nstack: nav2\ndescription: {urdfs[at * 80]}\n"
+        text += f"companions: {{params: {file}}}\nrobots: [{{name: rob_a}}, {{name: rob_b}}]\n"
+        try:
+            made = make_artefacts(planned(tmp_path, text))
+        except MultibotError:
+            continue
+        looked_at += 1
+        told += [it for it in made.findings if it.code.startswith("MF6") and it.code != "MF607"]
+    assert looked_at > 3
+    assert told == []
