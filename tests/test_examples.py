@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
+import planned
 import pytest
 import shown
 import yaml
@@ -134,6 +135,19 @@ def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:
         assert re.search(sent, lines, re.MULTILINE)
 
 
+def test_the_fleet_file_of_the_readme_works_as_it_stands(tmp_path: Path) -> None:
+    (fleet,) = re.findall(r"```yaml\n(layout.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
+    (tmp_path / "fleet.yaml").write_text(fleet)
+    there = shown.reader(tmp_path)
+    nav2 = "examples/namespace_and_prefix/nav2"
+    there.run(f"cp fixtures/robots/rover.urdf .; cp {nav2}_params.yaml params.yaml")
+    there.run(f"cp {nav2}.rviz one_robot.rviz")
+    done = there.run("multibot build fleet.yaml -o out")
+    assert done.returncode == 0, done.stdout
+    assert "robot2/odom" in (tmp_path / "out" / "robot2" / "params.yaml").read_text()
+    assert "/robot2/scan" in (tmp_path / "out" / "one_robot.rviz").read_text()
+
+
 def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:
     there = shown.reader(tmp_path)
     copied = "cp -r examples/two_robots_postfix own && multibot build own/fleet.yaml -o out"
@@ -144,3 +158,14 @@ def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:
     stale = there.run("multibot build own/fleet.yaml -o out --check")
     assert stale.returncode == 1
     assert "robot2/params.yaml: stale" in stale.stdout
+
+
+@pytest.mark.deep
+def test_twenty_robots_are_as_planned(tmp_path: Path, tf2: dict[str, str]) -> None:
+    if not shown.has_ros():
+        pytest.skip("no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+    rows = "".join(f"  - {{name: robot{at}, pose: {{x: {at}}}}}\n" for at in range(20))
+    include = "include: examples/two_robots_postfix/fleet.yaml\n"
+    (tmp_path / "twenty.yaml").write_text(f"{include}robots:\n{rows}")
+    done = shown.reader(tmp_path, planned.domain(99), **tf2).run("multibot rehearse twenty.yaml")
+    assert (done.returncode, "20 robots, 0 findings: as planned" in done.stdout) == (0, True)
