@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 Numbers = Mapping[_Element, int]
 _BLANK = regex(rb"\s*")
+_ATTRIBUTE = regex(rb"\s(?:[^\s=:/>\"']+:)?([^\s=:/>\"']+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 
 
 class Place(NamedTuple):
@@ -83,13 +84,19 @@ def _within(source: bytes, start: int, attribute: str | None) -> int:
     """How far behind the start of its tag a value stands; an attribute that is not there: 0."""
     if attribute is None:
         return 0
-    end = tag_end(source, start)
     if not attribute:
+        end = tag_end(source, start)
         blank = _BLANK.match(source, end)
         return (blank.end() if blank else end) - start
-    name = re.escape(attribute.rpartition("}")[2].encode())
-    found = re.compile(rb"[\s:](" + name + rb"\s*=)").search(source, start, end)
-    return found.start(1) - start if found else 0
+    at = _attributes(source, start).get(attribute.rpartition("}")[2].encode())
+    return at - start if at else 0
+
+
+@lru_cache(maxsize=64)
+def _attributes(source: bytes, start: int) -> dict[bytes, int]:
+    """Where the names of a tag's attributes stand, without their prefixes."""
+    found = _ATTRIBUTE.finditer(source, start, tag_end(source, start))
+    return {it[1]: it.start(1) for it in found}
 
 
 def _told(subject: Subject, call: Call) -> str:
