@@ -24,7 +24,7 @@ from multibot_rewrite.lint.configured import (
 )
 from multibot_rewrite.lint.records import LEVELS, LintFinding
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import UsageError
 
@@ -112,13 +112,16 @@ def _lint(
         return lint_data("<stdin>", standard_input(), settings)
     watch = partial(watched, total=len(paths), doing="linting")
     findings = lint_files(paths, settings, jobs=int(options.jobs or 0), watch=watch)
-    return _fixed(options, settings, findings) if options.fix else findings
+    if not options.fix or not _mended(options, among(paths, settings), findings):
+        return findings
+    # Anew, and all: what is written in one file is found through others.
+    return lint_files(paths, settings, jobs=int(options.jobs or 0))
 
 
-def _fixed(
+def _mended(
     options: argparse.Namespace, settings: Settings, findings: list[LintFinding]
-) -> list[LintFinding]:
-    """Mend the files; what is left to find. With --diff they stay, and so does what is found."""
+) -> list[str]:
+    """The files that are mended. With --diff none is, and the changes are printed."""
     from multibot_rewrite.lint.fix import fix
     from multibot_rewrite.sources import read_file
 
@@ -128,12 +131,11 @@ def _fixed(
     if options.diff:
         for file, (data, _) in new.items():
             print_bytes(diff(old[file], data, file, f"{file} mended"), "--output")
-        return findings
+        return []
     write_all((file, data) for file, (data, _) in new.items())
     if files:
         say(f"mended {', '.join(files)}", PROGRAM)
-    left = [it for it in findings if it.file not in new]
-    return sorted([*left, *(it for _, found in new.values() for it in found)])
+    return files
 
 
 def _write_baseline(options: argparse.Namespace, findings: Sequence[LintFinding]) -> int:

@@ -29,12 +29,15 @@ def lint_files(
     ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` sees the
     files' findings pass, for a progress bar.
     """
+    settings = among(paths, settings)
+    found = _linted(paths, settings, jobs or os.cpu_count() or 1, watch)
+    return _in_order(_once(it for its in found for it in its), paths)
+
+
+def among(paths: Sequence[str], settings: Settings) -> Settings:
+    """The settings for one of several files: what the others include, and the URDFs of SRDFs."""
     settings = settings._replace(included=included(paths))
-    settings = settings._replace(urdfs=named_urdfs(paths, settings.included))
-    found = [
-        it for its in _linted(paths, settings, jobs or os.cpu_count() or 1, watch) for it in its
-    ]
-    return _in_order(_once(found), paths)
+    return settings._replace(urdfs=named_urdfs(paths, settings.included))
 
 
 def _linted(
