@@ -6,7 +6,7 @@ import argparse
 import os
 from collections.abc import Iterable, Mapping, Sequence
 
-from multibot_rewrite.cli.folders import change_folder, check_inside, locked
+from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import print_findings, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.fleets.artefacts import Artefact, make_artefacts
@@ -120,6 +120,7 @@ def _written(options: argparse.Namespace, files: Sequence[Artefact], found: Chan
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")
     check_inside(options.output, (*found.write, *found.remove))
+    clear_leftovers(options.output)
     data = {it.path: it.data for it in files}
     if found.write or found.remove:
         note = NOTE, data[MANIFEST]

@@ -28,7 +28,8 @@ def write_all(items: Iterable[tuple[str, bytes]], folders: bool = False) -> None
         made.clear()
     finally:
         for temporary in staged.values():
-            with suppress(FileNotFoundError):
+            # Not there, or on a disk that was never written to.
+            with suppress(OSError):
                 os.unlink(temporary)
         for folder in reversed(made):
             with suppress(OSError):

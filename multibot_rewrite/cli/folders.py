@@ -91,7 +91,6 @@ def change_folder(
     with _removed_unless_done(made):
         with explained(folder):
             make_folders(os.path.dirname(real), made)
-        _clear(real)
         try:
             _swap(real, write, remove, note[0])
         except _CannotSwapError:
@@ -109,13 +108,17 @@ def _removed_unless_done(made: list[str]) -> Iterator[None]:
                 os.rmdir(folder)
 
 
-def _clear(folder: str) -> None:
-    """What builds that were killed have left beside the folder."""
-    above, name = os.path.split(folder)
+def clear_leftovers(folder: str) -> None:
+    """Remove what builds that were killed have left, beside the folder and in it."""
+    real = _real(folder)
+    above, name = os.path.split(real)
     with suppress(OSError):
-        for entry in os.listdir(above):
-            if entry.startswith(f".{name}.") and entry.endswith(STAGE):
-                shutil.rmtree(os.path.join(above, entry), ignore_errors=True)
+        for left in os.listdir(above):
+            if left.startswith(f".{name}.") and left.endswith(STAGE):
+                shutil.rmtree(os.path.join(above, left), ignore_errors=True)
+        for path, entry in list(_walk(real)):
+            if _LEFT.fullmatch(entry.name):
+                os.unlink(os.path.join(real, path))
 
 
 def _swap(folder: str, write: Mapping[str, bytes], remove: Collection[str], note: str) -> None:
