@@ -105,7 +105,7 @@ def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
     programs.mkdir()
     for name, module in MODULES.items():
         file = programs / name
-        own = f" --domain {domain}" if name == "multibot" else ""
+        own = f" --domain {domain} {' '.join(planned.PATIENTLY)}" if name == "multibot" else ""
         rest = f'if [ "$1" = rehearse ]; then set -- "$@"{own}; fi\n' if own else ""
         file.write_text(f'#!/bin/bash\n{rest}exec "{sys.executable}" -m {module} "$@"\n')
         file.chmod(0o755)
