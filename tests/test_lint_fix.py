@@ -1,0 +1,190 @@
+"""urdf-lint --fix: proved, idempotent, and nothing but the edited spans is another byte."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from robots import spread
+
+from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.lint import fix as fixing
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.fix import fix
+from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.model import Edit, ProofError
+
+SAMPLE = 60
+BOM = b"\xef\xbb\xbf"
+# A byte order mark, a prefix nobody uses, a version XML has not, a comment that silences nothing.
+MENDABLE = (
+    b'<?xml version="1.0"?>\r\n'
+    b"<robot name='r' xmlns:x=\"urn:x\"\txmlns:y = 'urn:y'>\r\n"
+    b"  <!-- urdf-lint: ignore MB501, MB201 - nobody knows -->\r\n"
+    b"  <link  name='a' /><!-- kept -->\r\n"
+    b"</robot>"
+)
+MENDED = (
+    b"<?xml version=\"1.0\"?>\r\n<robot name='r'>\r\n  <link  name='a' /><!-- kept -->\r\n</robot>"
+)
+
+
+def spliced(data: bytes, edits: set[Edit]) -> bytes:
+    """The text with the edits made, the last first; a plain reading of what an edit is."""
+    reached = len(data) + 1
+    for it in sorted(edits, key=lambda it: it.start, reverse=True):
+        assert it.end <= reached, "edits of one round do not overlap"
+        data, reached = data[: it.start] + it.before + data[it.end :], it.start
+    return data
+
+
+def by_hand(path: str, data: bytes) -> bytes:
+    """All rounds of edits, made without the code that is tested."""
+    for _ in range(fixing.ROUNDS):
+        edits = {edit for it in lint_data(path, data, Settings()) for edit in it.edits}
+        if not edits:
+            break
+        data = spliced(data, edits)
+    return data
+
+
+def counted(found: list[LintFinding]) -> Counter[str]:
+    return Counter(it.code for it in found)
+
+
+def check(path: str, data: bytes) -> bool:
+    """Fix a text; was there anything to mend?"""
+    before = lint_data(path, data, Settings())
+    mendable = Counter(it.code for it in before if it.edits)
+    mended, left = fix(path, data, Settings())
+    assert (mended != data) == bool(mendable)
+    assert mended == by_hand(path, data)
+    assert fix(path, mended, Settings()) == (mended, left)
+    assert not any(it.edits for it in left)
+    assert not counted(left) - counted(before)
+    assert counted(before) - counted(left) >= mendable
+    return bool(mendable)
+
+
+def test_what_is_mended_and_nothing_else() -> None:
+    assert fix("r.urdf", MENDABLE, Settings())[0] == MENDED
+    assert check("r.urdf", MENDABLE)
+    assert not check("r.urdf", MENDED)
+
+
+@pytest.mark.parametrize(
+    "data", [MENDABLE, MENDABLE.replace(b"\r\n", b"\n"), BOM + MENDABLE, MENDABLE + b"\n\n"]
+)
+def test_marks_and_line_ends_around_it_stay(data: bytes) -> None:
+    assert check("r.urdf", data)
+    mended = fix("r.urdf", data, Settings())[0]
+    assert mended.removeprefix(BOM).count(b"\r") == data.count(b"\r") - (1 if b"\r" in data else 0)
+
+
+def test_files_of_the_corpus(corpus: dict[str, Path]) -> None:
+    # Most of what is mended are prefixes that nothing uses.
+    likely = {name: path for name, path in corpus.items() if b" xmlns:" in path.read_bytes()}
+    assert sum(check(str(it), it.read_bytes()) for it in spread(likely, SAMPLE).values()) > 5
+
+
+@pytest.mark.deep
+def test_every_file_of_the_corpus(corpus: dict[str, Path]) -> None:
+    mended = 0
+    for path in corpus.values():
+        mended += check(str(path), path.read_bytes())
+    assert mended > 50
+
+
+def with_edits(monkeypatch: pytest.MonkeyPatch, *edits: Edit) -> None:
+    """The lint proposes these edits, whatever it finds."""
+
+    def lint(path: str, data: bytes, _: Settings) -> list[LintFinding]:
+        return [LintFinding("MB142", "note", "m", "", path, 1, 1, edits=edits)]
+
+    monkeypatch.setattr(fixing, "lint_data", lint)
+
+
+ONE = b'<robot name="r"><link name="a"/><link name="b"/></robot>'
+
+
+@pytest.mark.parametrize(
+    ("edit", "said"),
+    [
+        (Edit(16, 32, b"", None), "changes more"),
+        (Edit(17, 21, b"limb", None), "changes more"),
+        (Edit(16, 16 + 16, b'<link name="a"/><link name="c"/>', None), "changes more"),
+        (Edit(56, 56, b"", None), ""),
+    ],
+)
+def test_a_fix_that_goes_too_far_is_refused(
+    monkeypatch: pytest.MonkeyPatch, edit: Edit, said: str
+) -> None:
+    with_edits(monkeypatch, edit)
+    if not said:
+        assert fix("r.urdf", ONE, Settings())[0] == ONE
+        return
+    with pytest.raises(ProofError, match=said):
+        fix("r.urdf", ONE, Settings())
+
+
+def test_fixes_that_come_back_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_edits(monkeypatch, Edit(28, 29, b"a", None))
+    with pytest.raises(ProofError, match="come back"):
+        fix("r.urdf", ONE, Settings())
+
+
+# ---------------------------------------------------------------- the command
+
+
+def test_diff_shows_and_writes_nothing(tmp_path: Path, capsysbinary: object) -> None:
+    file = tmp_path / "r.urdf"
+    file.write_bytes(MENDABLE)
+    assert main([str(file), "--fix", "--diff"]) == 1
+    out, err = capsysbinary.readouterr()  # type: ignore[attr-defined]
+    assert file.read_bytes() == MENDABLE
+    assert b"-<robot name='r' xmlns:x" in out
+    assert b"+<robot name='r'>\r\n" in out
+    assert err.endswith(b"\n") and b"mended" not in err
+
+
+def test_fix_writes_and_tells_what_is_left(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file, other = tmp_path / "r.urdf", tmp_path / "other.urdf"
+    file.write_bytes(MENDABLE.replace(b"<!-- kept -->", b"<link name='b'/>"))
+    other.write_bytes(MENDED)
+    file.chmod(0o640)
+    assert main([str(tmp_path), "--fix"]) == 1
+    out, err = capsys.readouterr()
+    assert file.read_bytes().count(b"xmlns") == 0
+    assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, MENDED)
+    assert [line.split()[1] for line in out.splitlines() if "note:" not in line] == ["MB501"]
+    assert f"mended {file}" in err and "other.urdf" not in err
+
+
+def test_what_is_found_through_another_file_is_not_lost(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The whole is mended; what its part does to it is found through it, and still is."""
+    space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    (tmp_path / "part.xacro").write_text(f'<robot {space}><link name="b"/></robot>')
+    comment = "<!-- urdf-lint: ignore MB201 -->\n"
+    include = '<xacro:include filename="part.xacro"/>'
+    whole = tmp_path / "whole.xacro"
+    whole.write_text(f'<robot name="r" {space}>\n{comment}<link name="a"/>{include}</robot>')
+    assert main([str(tmp_path), "--fix", "--select", "MB501,MB002,MB201"]) == 1
+    assert "ignore" not in whole.read_text()
+    out = capsys.readouterr().out
+    assert out.startswith(f"{tmp_path}/part.xacro:1:") and out.count("MB") == 1
+
+
+def test_a_second_run_has_nothing_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "r.urdf"
+    file.write_bytes(MENDABLE)
+    assert main([str(file), "--fix", "--quiet"]) == 0
+    written = file.stat().st_mtime_ns
+    capsys.readouterr()
+    assert main([str(file), "--fix", "--quiet"]) == 0
+    assert (file.stat().st_mtime_ns, capsys.readouterr().err) == (written, "")
