@@ -19,6 +19,7 @@ from multibot_rewrite.xacro_trace import ORIGIN, Origin, Trace, alike, tracing
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
 _UNWORDED = (OSError, ValueError, RuntimeError, TypeError)
 # The folder of a package for $(find PACKAGE), empty where it is not known.
+LONG = 1000
 Find = Callable[[str], str]
 # What xacro's functions call the element that they work on.
 _NODES = ("node", "elt", "tag")
@@ -185,6 +186,6 @@ def _reason(error: Exception) -> str:
     cause = str(inner or "")
     if isinstance(inner, Exception) and not cause:
         text = f"{type(inner).__name__} {text}"
-    if cause:
-        text = text.replace(f"{cause} {cause}", cause)
+    if len(text) < LONG:
+        text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
     return text or type(error).__name__
