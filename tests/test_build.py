@@ -248,7 +248,7 @@ def test_findings_are_sorted_and_said_once(
     told = [it for it in lines if "MF701" in it]
     assert len(told) == 1
     assert "robot 'robot1'" in told[0]
-    assert "so for 1 robots more" in told[0]
+    assert "so for 1 more robot" in told[0]
     assert "multibotGraphHole" not in "".join(lines)
     assert "multibotSpelledHole" not in "".join(lines)
 

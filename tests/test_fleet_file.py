@@ -10,7 +10,6 @@ from typing import Any
 import pytest
 import yaml
 from fleet_folder import fleet_folder
-from 
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.by_schema import TYPES
@@ -25,6 +24,7 @@ from multibot_rewrite.fleets.fleet_file import (
 )
 from multibot_rewrite.model import InputError
 
+REPO = Path(__file__).parent.parent
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
 PAGE = (REPO / "docs" / "fleet-file.md").read_text()
 

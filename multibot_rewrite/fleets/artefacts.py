@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import shlex
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
@@ -11,7 +12,7 @@ from typing import NamedTuple
 from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.graph_names import known_topics
-from multibot_rewrite.companions.rviz import RvizRobot, rviz
+from multibot_rewrite.companions.rviz import RvizRobot, RvizText, rviz, start_command
 from multibot_rewrite.companions.template import GRAPH, SPELLED, fill
 from multibot_rewrite.companions.yaml_text import YamlText, quoted, read_yaml
 from multibot_rewrite.fleet import expected
@@ -87,7 +88,7 @@ def _once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
 def _of_many(first: Finding, more: int) -> Finding:
     if not more:
         return first
-    return first._replace(message=f"{first.message}; so for {more} robots more")
+    return first._replace(message=f"{first.message}; so for {more} more robot{'s' * (more != 1)}")
 
 
 def _descriptions(plan: FleetPlan) -> Made:
@@ -147,6 +148,18 @@ def _said(finding: Finding, robot: Described) -> Finding:
 
 
 def _rviz(plan: FleetPlan) -> Made:
+    for path, made, findings in _configs(plan):
+        yield from findings
+        yield from (Artefact(_place(it, path), it.text.encode(), (path,)) for it in made)
+
+
+def _place(made: RvizText, path: str) -> str:
+    name = os.path.basename(path)
+    return f"{made.robot}/{name}" if made.robot else name
+
+
+def _configs(plan: FleetPlan) -> Iterator[tuple[str, tuple[RvizText, ...], tuple[Finding, ...]]]:
+    """By the file they are made from: what each window shows."""
     groups: dict[str, list[Described]] = {}
     for robot in plan.robots:
         for path in robot.spec.companions.get("rviz", ()):
@@ -155,12 +168,7 @@ def _rviz(plan: FleetPlan) -> Made:
     for path, robots in groups.items():
         shown = [_shown(own[robot.spec.name]) for robot in robots]
         world = transforms.world_of(plan.file, plan.fleet.naming)
-        made, findings = rviz(_yaml(path), shown, world=world)
-        yield from findings
-        for it in made:
-            name = os.path.basename(path)
-            where = f"{it.robot}/{name}" if it.robot else name
-            yield Artefact(where, it.text.encode(), (path,))
+        yield path, *rviz(_yaml(path), shown, world=world)
 
 
 def _shown(plan: FleetPlan) -> RvizRobot:
@@ -243,11 +251,17 @@ def _commands(plan: FleetPlan) -> Made:
         yield from (*placed.findings, *remarks)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
         rows += [f"{transforms.command(it)}\n" for it in placed.transforms]
-        rows += [f"{spawn.gz_command(it)}\n" for it in spawned]
-        rows += [f"# Gazebo Classic: {spawn.classic_command(it)}\n" for it in spawned]
+        rows += [spawn.either(it, robot) for it in spawned]
         rows += [*(f"{teleop.command(it)}\n" for it in teleop.teleops(one)), "```\n"]
         for pose in placed.initial:
             yield Artefact(_own(robot, "start_pose.yaml"), _start_pose(one, pose))
+    windows = [
+        shlex.join(start_command(it, _place(it, path)))
+        for path, made, _ in _configs(plan)
+        for it in made
+    ]
+    if windows:
+        rows += ["\n## RViz\n\n```sh\n", *(f"{line}\n" for line in windows), "```\n"]
     yield Artefact(COMMANDS, "".join(rows).encode())
 
 

@@ -87,6 +87,14 @@ def classic_command(it: Spawn) -> str:
     return shlex.join(["ros2", "run", *CLASSIC, *classic_arguments(it)])
 
 
+def either(it: Spawn, robot: Described) -> str:
+    """The line for the simulator that the description is written for, the other one as a comment."""
+    gz, classic = gz_command(it), classic_command(it)
+    if CLASSIC_PLUGIN.encode() in robot.description:
+        return f"{classic}\n# gz-sim: {gz}\n"
+    return f"{gz}\n# Gazebo Classic: {classic}\n"
+
+
 def _pose(pose: Pose) -> list[str]:
     values = pose._asdict()
     return [word for key, flag in FLAGS.items() for word in (flag, str(values[key]))]

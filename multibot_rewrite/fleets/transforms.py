@@ -88,7 +88,7 @@ def _place(plan: FleetPlan, robot: Described, pose: Pose) -> Iterator[object]:
     if locators:
         what = f"{' and '.join(locators)} sends where it is, so its pose makes no transform"
         hint = "a second parent would make the frame jump"
-        hint += "; set amcl's initial_pose" if AMCL in locators else ""
+        hint += f"; give {AMCL} its start_pose.yaml, too" if AMCL in locators else ""
         yield _finding(robot, "MF701", what, hint)
         return
     roots = _roots(sent, naming)
