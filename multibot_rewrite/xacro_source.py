@@ -19,8 +19,9 @@ from multibot_rewrite.xacro_trace import ORIGIN, Origin, Trace, alike, tracing
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
 _UNWORDED = (OSError, ValueError, RuntimeError, TypeError)
 # The folder of a package for $(find PACKAGE), empty where it is not known.
-LONG = 1000
 Find = Callable[[str], str]
+# Of a longer message no repetition is looked for.
+LONG = 1000
 # What xacro's functions call the element that they work on.
 _NODES = ("node", "elt", "tag")
 # What xacro says -> what to do about it; {} stands for the argument that is missing.

@@ -1,0 +1,343 @@
+"""Findings in xacro: the place in the source, the calls that led there, the arguments, packages."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.lint.settings import ArgumentSet, Settings
+
+SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+LOST = '<joint name="j" type="fixed"><parent link="gone"/><child link="a"/></joint>'
+MACRO = '<xacro:macro name="arm" params="side">\n  <link name="${side}_arm"/>\n</xacro:macro>'
+MANIFEST = "<package><name>%s</name></package>"
+
+
+def xacro(body: str, name: str = "r") -> str:
+    return f"<robot{f' name={name!r}' if name else ''} {SPACE}>\n{body}\n</robot>\n"
+
+
+def write(folder: Path, files: Mapping[str, str | bytes]) -> None:
+    for name, content in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+def linted(folder: Path, *paths: str, **settings: object) -> list[LintFinding]:
+    """All findings that fail, of files named relative to the folder, linted from there."""
+    before = Path.cwd()
+    os.chdir(folder)
+    try:
+        chosen = Settings(**{"select": ("MB1", "MB2", "MB501"), **settings})  # type: ignore[arg-type]
+        return [it for it in lint_files(paths, chosen) if it.level != "note"]
+    finally:
+        os.chdir(before)
+
+
+def places(found: list[LintFinding]) -> list[tuple[str, str, int, int]]:
+    return [(it.code, it.file, it.line, it.column) for it in found]
+
+
+def one(
+    folder: Path, files: Mapping[str, str | bytes], *paths: str, **options: object
+) -> LintFinding:
+    write(folder, files)
+    (found,) = linted(folder, *(paths or files), **options)
+    return found
+
+
+# ---------------------------------------------------------------- where
+
+PARTS = {
+    "plain": ("r.xacro", 'a<!--\n-->\n  <link name="a"/> ' + LOST, 4, 57),
+    "umlauts": ("r.xacro", "<link name='äöü'/> <!-- äöü --> " + LOST.replace('"a"', "'äöü'"), 2, 70),
+    "if": ("r.xacro", f'<link name="a"/>\n<xacro:if value="1">\n {LOST}\n</xacro:if>', 4, 39),
+    "attribute": ("r.xacro", '<link name="a"/>\n<joint name="j"\n type="fixed">\n'
+                  '<parent\n  link="gone"/><child link="a"/></joint>', 6, 3),
+    "crlf": ("r.xacro", f'<link name="a"/>\r\n\r\n{LOST}', 4, 38),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", PARTS)
+def test_line_and_column_are_those_of_the_source(tmp_path: Path, case: str) -> None:
+    name, body, line, column = PARTS[case]
+    found = one(tmp_path, {name: xacro(body)}, select=("MB202",))
+    assert (found.file, found.line, found.column, found.calls) == (name, line, column, ())
+
+
+def test_a_macro_is_told_with_its_calls(tmp_path: Path) -> None:
+    files = {
+        "robot.xacro": xacro(
+            '<xacro:include filename="parts/arms.xacro"/>\n'
+            '<link name="base"/>\n<xacro:arms of="base"/>'
+        ),
+        "parts/arms.xacro": xacro(
+            '<xacro:include filename="arm.xacro"/>\n'
+            '<xacro:macro name="arms" params="of">\n\n<xacro:arm side="left"/></xacro:macro>',
+            "",
+        ),
+        "parts/arm.xacro": xacro(MACRO, ""),
+    }
+    found = one(tmp_path, files, select=("MB501",))
+    assert places([found]) == [("MB501", "parts/arm.xacro", 3, 9)]
+    assert found.calls == ("parts/arms.xacro:5: arm", "robot.xacro:4: arms")
+
+
+def test_a_block_is_told_where_the_caller_wrote_it(tmp_path: Path) -> None:
+    macro = (
+        '<xacro:macro name="m" params="*inside">\n<xacro:insert_block name="inside"/></xacro:macro>'
+    )
+    body = f'{macro}\n<link name="a"/>\n<xacro:m>\n  {LOST}\n</xacro:m>'
+    found = one(tmp_path, {"r.xacro": xacro(body)}, select=("MB202",))
+    assert (found.line, found.column) == (6, 40)
+    assert found.calls == ("r.xacro:5: m",)
+
+
+def test_a_loop_of_a_macro_has_all_of_its_calls(tmp_path: Path) -> None:
+    macro = (
+        '<xacro:macro name="m" params="n"><link name="l${n}"/>\n'
+        '<xacro:if value="${n}"><xacro:m n="${n - 1}"/></xacro:if></xacro:macro>'
+    )
+    body = f'{macro}\n<xacro:m n="1"/>'
+    found = one(tmp_path, {"r.xacro": xacro(body)}, select=("MB501",))
+    assert (found.line, found.calls) == (2, ("r.xacro:3: m", "r.xacro:4: m"))
+
+
+def test_one_place_in_a_macro_is_one_finding(tmp_path: Path) -> None:
+    """Whatever its calls, and from however many files."""
+    calls = "".join(f'<xacro:arm side="{it}"/>' for it in ("left", "right", "third"))
+    robot = xacro(f'<link name="base"/><xacro:include filename="arm.xacro"/>\n{calls}')
+    files = {"one.xacro": robot, "two.xacro": robot, "arm.xacro": xacro(MACRO, "")}
+    found = one(tmp_path, files, select=("MB501",))
+    assert found.message.startswith("link 'left_arm'")
+    assert found.hint.endswith("and 2 more like it, by other calls of the macro")
+    assert found.calls == ("one.xacro:3: arm",)
+
+
+def test_what_a_second_call_repeats_is_one_finding(tmp_path: Path) -> None:
+    macro = (
+        '<xacro:macro name="m"><link name="a"/>\n<link name="b"/>\n<link name="c"/></xacro:macro>'
+    )
+    body = f'{macro}\n<xacro:m/>\n<xacro:m/>\n<link name="x"/><link name="x"/>'
+    write(tmp_path, {"r.xacro": xacro(body)})
+    first, other = linted(tmp_path, "r.xacro", select=("MB201",))
+    assert first.message == "link 'a' is declared twice, and so are 2 more that the same call makes"
+    assert (first.line, first.calls) == (2, ("r.xacro:6: m",))
+    assert (other.message, other.line) == ("link 'x' is declared twice", 7)
+
+
+def test_inner_calls_are_the_cause_where_the_outer_one_is_the_same(tmp_path: Path) -> None:
+    macros = (
+        '<xacro:macro name="wheel" params="n"><link name="w${n}"/><link name="t${n}"/></xacro:macro>'
+        '<xacro:macro name="base">\n<xacro:wheel n="1"/>\n<xacro:wheel n="1"/>\n'
+        '<xacro:wheel n="2"/>\n<xacro:wheel n="2"/></xacro:macro>'
+    )
+    write(tmp_path, {"r.xacro": xacro(f"{macros}\n<xacro:base/>")})
+    # Two causes, in one place of the macro: told once, with both counted.
+    (found,) = linted(tmp_path, "r.xacro", select=("MB201",))
+    assert found.calls[0] == "r.xacro:4: wheel"
+    assert "and so are 1 more" in found.message and "and 1 more like it" in found.hint
+
+
+# ---------------------------------------------------------------- arguments
+
+SIM = (
+    '<xacro:arg name="sim" default="none"/>\n<link name="a"/>\n'
+    "<xacro:if value=\"${'$(arg sim)' == 'gz'}\">" + LOST + "</xacro:if>"
+)
+
+
+def sets(*given: tuple[str, Mapping[str, str]]) -> tuple[ArgumentSet, ...]:
+    return tuple(ArgumentSet(pattern, tuple(args.items())) for pattern, args in given)
+
+
+def test_each_set_of_arguments_is_linted_beside_the_default_one(tmp_path: Path) -> None:
+    given = sets(("*", {"sim": "gz"}), ("other*", {"sim": "x"}), ("*", {"sim": "none"}))
+    found = one(tmp_path, {"r.xacro": xacro(SIM)}, arguments=given)
+    assert (found.code, found.line, found.arguments) == ("MB202", 4, "sim:=gz")
+
+
+def test_what_all_of_them_have_is_told_once_and_without_arguments(tmp_path: Path) -> None:
+    given = sets(("*", {"sim": "gz"}))
+    found = one(tmp_path, {"r.xacro": xacro(f'<link name="a"/>{LOST}')}, arguments=given)
+    assert found.arguments == ""
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({}, [("MB103", "")]),
+        ({"side": "left"}, []),
+        ({"other": "left"}, [("MB103", "other:=left")]),
+    ],
+)
+def test_an_argument_without_default(
+    tmp_path: Path, given: Mapping[str, str], expected: list[tuple[str, str]]
+) -> None:
+    write(tmp_path, {"r.xacro": xacro('<link name="$(arg side)"/>')})
+    found = linted(tmp_path, "r.xacro", arguments=sets(("*", given)) if given else ())
+    assert [(it.code, it.arguments) for it in found] == expected
+
+
+def test_a_set_that_fails_leaves_the_others(tmp_path: Path) -> None:
+    body = SIM + "<xacro:if value=\"${'$(arg sim)' == 'bad'}\"><link name=\"${x}\"/></xacro:if>"
+    write(tmp_path, {"r.xacro": xacro(body)})
+    given = sets(("*", {"sim": "bad"}), ("*", {"sim": "gz"}))
+    found = linted(tmp_path, "r.xacro", arguments=given)
+    assert [(it.code, it.arguments) for it in found] == [
+        ("MB202", "sim:=gz"),
+        ("MB103", "sim:=bad"),
+    ]
+
+
+def test_arguments_on_the_command_line_and_in_the_configuration(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(tmp_path, {"r.xacro": xacro(SIM)})
+    monkeypatch.chdir(tmp_path)
+    assert main(["r.xacro", "--quiet", "--select", "MB202"]) == 0
+    assert main(["r.xacro", "sim:=gz", "--quiet", "--select", "MB202"]) == 1
+    said = capsys.readouterr().out
+    assert said.endswith("which is not declared [with sim:=gz]\n")
+    (tmp_path / "urdf-lint.toml").write_text('[[xacro]]\narguments = {sim = "gz"}\n')
+    assert main(["r.xacro", "--quiet", "--select", "MB202"]) == 1
+    assert capsys.readouterr().out == said
+
+
+# ---------------------------------------------------------------- parts and packages
+
+
+@pytest.mark.parametrize("space", ["", "  "])
+@pytest.mark.parametrize(
+    "part",
+    [
+        f"<robot {SPACE}>{LOST}<link name='b'/></robot>",
+        f"<robot name='p' {SPACE}>{LOST}<link name='b'/></robot>",
+        f"<parts {SPACE}><link name='b'/>{LOST}</parts>",
+    ],
+    ids=["nameless", "named", "other-root"],
+)
+def test_a_part_is_judged_where_it_is_included(tmp_path: Path, part: str, space: str) -> None:
+    """It may use what the whole declares, and its root be called anything."""
+    include = f'<xacro:include {space}filename="p.xacro"/>'
+    joint = '<joint name="k" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    links = '<link name="a"/><link name="gone"/>'
+    write(tmp_path, {"r.xacro": xacro(include + joint + links), "p.xacro": part})
+    assert linted(tmp_path, "p.xacro", "r.xacro") == []
+    assert linted(tmp_path, "p.xacro") != [] or "name" not in part
+
+
+def test_a_urdf_that_is_a_part_is_judged_where_it_is_included(tmp_path: Path) -> None:
+    part = f'<robot name="p"><link name="b"/>{LOST.replace("gone", "base")}</robot>'
+    joint = '<joint name="k" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    body = f'<xacro:include filename="p.urdf"/><link name="base"/><link name="a"/>{joint}'
+    write(tmp_path, {"r.xacro": xacro(body), "p.urdf": part})
+    assert linted(tmp_path, "p.urdf", "r.xacro") == []
+    assert [it.code for it in linted(tmp_path, "p.urdf")] == ["MB202", "MB202"]
+
+
+def packages(tmp_path: Path) -> None:
+    """Two packages of one repository, one in another folder, one that nobody has."""
+    part = xacro(f"<link name='a'/>{LOST}", "")
+    write(
+        tmp_path,
+        {
+            "ws/robot/package.xml": MANIFEST % "robot",
+            "ws/robot/urdf/own.xacro": xacro('<xacro:include filename="$(find robot)/p.xacro"/>'),
+            "ws/robot/urdf/next.xacro": xacro('<xacro:include filename="$(find parts)/p.xacro"/>'),
+            "ws/robot/urdf/far.xacro": xacro('<xacro:include filename="$(find far)/p.xacro"/>'),
+            "ws/robot/p.xacro": part,
+            "ws/some/deeper/package.xml": MANIFEST % "parts",
+            "ws/some/deeper/p.xacro": part,
+            "elsewhere/far/package.xml": MANIFEST % "far",
+            "elsewhere/far/p.xacro": part,
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "roots", "expected"),
+    [
+        ("own", (), "ws/robot/p.xacro"),
+        ("next", (), "ws/some/deeper/p.xacro"),
+        ("far", ("elsewhere",), "elsewhere/far/p.xacro"),
+    ],
+)
+def test_packages_are_found_without_ros(
+    tmp_path: Path,
+    name: str,
+    roots: tuple[str, ...],
+    expected: str,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for variable in ("AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"):
+        monkeypatch.delenv(variable, raising=False)
+    packages(tmp_path)
+    folders = tuple(str(tmp_path / it) for it in roots)
+    (found,) = linted(tmp_path, f"ws/robot/urdf/{name}.xacro", select=("MB202",), roots=folders)
+    assert (found.code, found.file) == ("MB202", expected)
+    whole = str(tmp_path / f"ws/robot/urdf/{name}.xacro")
+    (found,) = linted(tmp_path, whole, select=("MB202",), roots=folders)
+    assert found.file == str(tmp_path / expected)
+    os.makedirs(tmp_path / "ws" / "here", exist_ok=True)
+    (found,) = linted(
+        tmp_path / "ws" / "here", f"../robot/urdf/{name}.xacro", select=("MB202",), roots=folders
+    )
+    above = str(tmp_path / expected) if roots else os.path.join("..", expected[3:])
+    assert found.file == above
+
+
+def test_a_package_that_nobody_has_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    packages(tmp_path)
+    (found,) = linted(tmp_path, "ws/robot/urdf/far.xacro")
+    assert (found.code, found.line) == ("MB103", 2)
+    assert found.message == "xacro failed: package 'far' is not found"
+    assert "roots" in found.hint
+
+
+def test_installed_packages_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    packages(tmp_path)
+    share = tmp_path / "install" / "share"
+    share.mkdir(parents=True)
+    (tmp_path / "elsewhere" / "far").rename(share / "far")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    (found,) = linted(tmp_path, "ws/robot/urdf/far.xacro", select=("MB202",))
+    assert found.file == "install/share/far/p.xacro"
+
+
+def test_a_repository_of_one_package_looks_at_no_neighbours(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
+    packages(tmp_path)
+    (tmp_path / "ws" / "robot" / ".git").mkdir()
+    (found,) = linted(tmp_path, "ws/robot/urdf/next.xacro")
+    assert found.code == "MB103"
+
+
+def test_what_xacro_warns_about_is_not_printed(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    body = '<xacro:property name="pi" value="3"/><link name="a"/><xacro:property name="q" x="1"/>'
+    write(tmp_path, {"r.xacro": xacro(body)})
+    linted(tmp_path, "r.xacro")
+    assert capfd.readouterr().err == ""
+
+
+def test_messages_hold_no_path_of_this_machine(tmp_path: Path) -> None:
+    """So a baseline holds on others."""
+    packages(tmp_path)
+    body = '<xacro:include filename="$(find robot)/nowhere.xacro"/><link name="a"/>'
+    write(tmp_path, {"ws/robot/urdf/own.xacro": xacro(body)})
+    (found,) = linted(tmp_path, "ws/robot/urdf/own.xacro")
+    assert found.message == "xacro failed: No such file or directory: ws/robot/nowhere.xacro"
