@@ -326,3 +326,37 @@ def test_markdown_has_a_row_for_each_rule() -> None:
     text = FORMS["markdown"](found)
     assert text.count(" -> ") == sum(len(node.rules) for node in found.nodes)
     assert "\n## robot2\n" in text
+
+
+@pytest.mark.parametrize(
+    ("parameters", "off"),
+    [
+        pytest.param("", {}, id="nothing is said"),
+        pytest.param("<publish_odom_tf>true</publish_odom_tf>", {}, id="on"),
+        pytest.param("<publish_odom>false</publish_odom>", {"odom": "publish_odom"}, id="off"),
+        pytest.param(
+            "<publish_odom_tf>false</publish_odom_tf>",
+            {"/tf": "publish_odom_tf or publish_wheel_tf"},
+            id="off by one of two",
+        ),
+        pytest.param(
+            "<publish_odom_tf>false</publish_odom_tf><publish_wheel_tf>true</publish_wheel_tf>",
+            {},
+            id="on by the other",
+        ),
+    ],
+)
+def test_a_plugin_without_what_its_parameters_switch_off(
+    parameters: str, off: dict[str, str]
+) -> None:
+    text = (
+        (FIXTURES / "robots" / "rover.urdf")
+        .read_text()
+        .replace("<publish_odom>true</publish_odom>", "")
+    )
+    text = text.replace("<publish_odom_tf>true</publish_odom_tf>", parameters)
+    found = collect(read_document(text.encode(), "rover"), builtin_tree())
+    drive = next(facts for facts, table in plugin_nodes(found, "r") if table.name == "diff_drive")
+    conditions = {it.name: it.when for it in drive.endpoints if it.when}
+    assert conditions == off
+    assert bool(drive.sends) == ("/tf" not in off)

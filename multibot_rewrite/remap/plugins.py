@@ -26,6 +26,8 @@ from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.vocabulary import Rewriter
 
 ROS_NODE = "ros/remapping"
+# What switches a parameter off; one that is not there leaves it to the others.
+OFF = ("false", "False", "0", "")
 
 
 def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
@@ -36,12 +38,13 @@ def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, 
         # The vocabulary does not list what a plugin publishes below its own name; the file does.
         private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
         frames = tuple(_frames(inventory, host))
+        off = "/tf" in switched_off(host.element, rewriter)
         facts = NodeFacts(
             name,
             rewriter.names[0],
             (*_endpoints(inventory, host), *private),
             frames=frames,
-            sends=tuple(_sends(rewriter, frames, inventory.declared["link"])),
+            sends=tuple(_sends(rewriter, frames, inventory.declared["link"], off)),
         )
         namespace = "/" + _told(host.element, "namespace").strip("/")
         yield facts, NodeTable(robot, name, namespace, name, rules)
@@ -82,8 +85,9 @@ def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
         (SUBSCRIBES, TOPIC, rewriter.subscribes),
         (SERVES, SERVICE, rewriter.serves),
     )
+    off = switched_off(host.element, rewriter)
     for role, kind, names in wired:
-        yield from (Endpoint(kind, role, name) for name in names)
+        yield from (Endpoint(kind, role, name, when=off.get(name, "")) for name in names)
     for claim in inventory.claims:
         if _sets_topic(claim) and host.element in claim.element.iterancestors():
             kind = SERVICE if claim.site.kinds[0] == SERVICE else TOPIC
@@ -108,13 +112,26 @@ def _is_frame(site: Site) -> bool:
     return site.form == "whole" and site.kinds[:1] == ("frame",)
 
 
+def switched_off(plugin: etree._Element, rewriter: Rewriter) -> dict[str, str]:
+    """The topics that the plugin's parameters turn off, and what would turn each on."""
+    told: dict[str, list[tuple[str, str]]] = {}
+    for switch in rewriter.switches:
+        parameter, _, topic = switch.partition("=")
+        told.setdefault(topic, []).append((parameter, plugin.findtext(parameter, "").strip()))
+    return {
+        topic: " or ".join(parameter for parameter, _ in switches)
+        for topic, switches in told.items()
+        if any(text for _, text in switches) and all(text in OFF for _, text in switches)
+    }
+
+
 def _sends(
-    rewriter: Rewriter, frames: tuple[Frame, ...], links: Container[str]
+    rewriter: Rewriter, frames: tuple[Frame, ...], links: Container[str], off: bool
 ) -> Iterator[tuple[str, str]]:
     """What a plugin that publishes tf sends: from a frame of its own to a link, as odometry is."""
     own = [frame.parameter for frame in frames if frame.default not in links]
     base = [frame.parameter for frame in frames if frame.default in links]
-    if "/tf" in rewriter.publishes and own and base:
+    if "/tf" in rewriter.publishes and own and base and not off:
         yield own[0], base[0]
 
 

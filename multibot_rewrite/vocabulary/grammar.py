@@ -23,6 +23,7 @@ SETTINGS = (
     "publishes",
     "subscribes",
     "serves",
+    "switches",
     "insert",
     "unique",
     "process_wide",
@@ -61,7 +62,8 @@ class Rewriter(NamedTuple):
     """One section: what is known about an element, a plugin, a hardware class or a shared block.
 
     ``publishes``, ``subscribes`` and ``serves`` are topics and services that no element controls:
-    only a remap rule moves them.
+    only a remap rule moves them. ``switches`` are parameters that turn one of them off, each as
+    ``parameter=name``.
     ``inserts`` is false where the consumer throws on children it does not know.
     ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
     tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
@@ -78,6 +80,7 @@ class Rewriter(NamedTuple):
     publishes: tuple[str, ...]
     subscribes: tuple[str, ...]
     serves: tuple[str, ...]
+    switches: tuple[str, ...]
     inserts: bool
     unique: str
     process_wide: bool
@@ -162,6 +165,7 @@ def assemble(
         words("publishes"),
         words("subscribes"),
         words("serves"),
+        words("switches"),
         settings.get("insert", "yes") == "yes",
         settings.get("unique", ""),
         settings.get("process_wide", "no") == "yes",
@@ -194,6 +198,7 @@ def merge(first: Rewriter, second: Rewriter) -> Rewriter:
         publishes=first.publishes + second.publishes,
         subscribes=first.subscribes + second.subscribes,
         serves=first.serves + second.serves,
+        switches=first.switches + second.switches,
         hardwired=first.hardwired + second.hardwired,
         inserts=first.inserts and second.inserts,
         process_wide=first.process_wide or second.process_wide,
