@@ -82,7 +82,8 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
 
     found = find_files(paths, SUFFIXES, refuse)
     # What is found below "." is named as git names it.
-    found = [path.removeprefix("./") if path not in paths else path for path in found]
+    if "." in paths:
+        found = [path if path in paths else path.removeprefix("./") for path in found]
     kept = [path for path in found if path in paths or not is_excluded(path, config)]
     if not kept:
         raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")

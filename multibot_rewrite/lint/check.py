@@ -17,7 +17,7 @@ from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.lint.settings import Settings, level_of
 from multibot_rewrite.lint.subjects import Failed, read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
-from multibot_rewrite.model import InputError
+from multibot_rewrite.model import InputError, VocabularyError
 from multibot_rewrite.sources import read_file
 
 AGAIN = 0.5
@@ -54,6 +54,8 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Li
         found.append(failure(path, str(error), settings))
     except _TooLongError:
         found.append(too_long(path, settings.seconds))
+    except VocabularyError:
+        raise
     except Exception as error:  # the other files are linted all the same
         found.append(breakdown(path, error))
     return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)

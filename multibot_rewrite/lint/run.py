@@ -12,6 +12,7 @@ from multibot_rewrite.lint.included import included
 from multibot_rewrite.lint.pairing import named_urdfs
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.rewriters.builtin import builtin_tree
 
 # A worker costs more to start than a few files to lint.
 FEW = 12
@@ -30,6 +31,8 @@ def lint_files(
     files' findings pass, for a progress bar.
     """
     settings = among(paths, settings)
+    # What is wrong with a vocabulary is told before anything is linted.
+    builtin_tree(settings.vocabulary)
     found = _linted(paths, settings, jobs or os.cpu_count() or 1, watch)
     return _in_order(_once(it for its in found for it in its), paths)
 
