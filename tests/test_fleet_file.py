@@ -293,7 +293,10 @@ BAD: dict[str, tuple[str, ...]] = {
         "@params.yaml:1:1: not well-formed XML",
     ),
     "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: no f"),
-    "bridge-of-params": (f"{ONE}companions: {{bridge: params.yaml}}\n", "@params.yaml:2: no list of topics"),
+    "bridge-of-params": (
+        f"{ONE}companions: {{bridge: params.yaml}}\n",
+        "@params.yaml:2: no list of topics",
+    ),
 }
 
 
