@@ -1,0 +1,349 @@
+"""The command urdf-lint: what it says, where, and its exit codes."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import pty
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from robots import FIXTURES
+
+from multibot_rewrite.cli.lint_usage import SWITCHES, VALUES
+from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.lint.formats import FORMATS
+from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.model import ERROR
+
+COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.urdf_lint"]
+HARMLESS = '<robot name="r"><link name="a"/></robot>'
+BROKEN = '<robot name="r"><link name="a">'
+TWO_ROOTS = '<robot name="r">\n<link name="a"/>\n<link name="b"/></robot>'
+LEFT = '<robot name="r"><link name="${p}a"/></robot>'
+ROVER = str(FIXTURES / "robots" / "rover.urdf")
+LINE = re.compile(r"(?P<file>.+):(?P<line>\d+):(?P<column>\d+): (?P<code>MB\d{3}) (note: )?\S.*")
+
+
+@pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a file of each kind, which is the working directory."""
+    files = {
+        "good.urdf": HARMLESS,
+        "two_roots.urdf": TWO_ROOTS,
+        "left.urdf": LEFT,
+        "sub/deep/robot.urdf": HARMLESS,
+        "sub/other.srdf": '<robot name="r"/>',
+        "sub/notes.txt": BROKEN,
+        ".hidden/bad.urdf": BROKEN,
+        "empty/readme.md": "",
+    }
+    for name, text in files.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
+    """Exit code, standard output, standard error."""
+    try:
+        code = main(list(words))
+    except SystemExit as end:
+        code = int(end.code or 0)
+    out, err = capsys.readouterr()
+    return code, out, err
+
+
+# ---------------------------------------------------------------- exit codes
+
+TWO = ["two_roots.urdf"]
+ENDS: list[tuple[Sequence[str], int]] = [
+    (["good.urdf"], 0),
+    (TWO, 1),
+    (["good.urdf", *TWO], 1),
+    (["."], 1),
+    (["sub"], 0),
+    # Not looked for, but named.
+    (["sub/notes.txt"], 1),
+    ([".hidden/bad.urdf"], 1),
+    (["left.urdf"], 1),
+    (["left.urdf", "--fail-on", "error"], 0),
+    (["left.urdf", "--fail-on", "error", "--ignore", "MB105"], 0),
+    ([*TWO, "--ignore", "MB5"], 0),
+    ([*TWO, "--select", "MB2"], 0),
+    ([*TWO, "--select", "MB501"], 1),
+    ([*TWO, "--select", "MB5", "--ignore", "MB501"], 0),
+    ([*TWO, "--ignore", "MB5", "--select", "MB501"], 1),
+    ([ROVER], 0),
+    ([ROVER, "--fail-on", "note"], 1),
+    ([ROVER, "--robots", "robot1,robot2", "--layout", "L2"], 0),
+    ([ROVER, "--robots", "robot1,robot2", "--fail-on", "note"], 1),
+    ([ROVER, "--target", "usd"], 0),
+    (["--explain", "MB202"], 0),
+    (["--explain", "MB5"], 0),
+    (["--list-rules"], 0),
+    (["--help"], 0),
+    (["--version"], 0),
+]
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(("words", "code"), ENDS, ids=[" ".join(it) for it, _ in ENDS])
+def test_exit_codes(words: Sequence[str], code: int, capsys: pytest.CaptureFixture[str]) -> None:
+    assert said(capsys, *words)[0] == code
+
+
+WRONG: list[tuple[Sequence[str], str]] = [
+    ([], "no PATH given; for example: urdf-lint urdf/"),
+    ([""], "the name of a file is empty"),
+    (["nowhere.urdf"], "nowhere.urdf: there is no such file or folder"),
+    (["good.urdf", "nowhere"], "nowhere: there is no such file or folder"),
+    (["empty"], "empty: no *.urdf or *.xacro or *.srdf there"),
+    (["good.urdf", "--select", "MB999"], "no rule has the code 'MB999'"),
+    (["good.urdf", "--ignore", "MB2,nonsense"], "no rule has the code 'nonsense'"),
+    (["good.urdf", "--select", "mb2"], "did you mean 'MB2'?"),
+    (["good.urdf", "--select", ","], "no rule has the code ''"),
+    (["--explain", "MB999"], "no rule has the code 'MB999'"),
+    (["good.urdf", "--format", "xml"], "invalid choice: 'xml'"),
+    (["good.urdf", "--fail-on", "never"], "use one of error, warning, note"),
+    (["good.urdf", "--jobs", "-1"], "--jobs -1: write a number of processes"),
+    (["good.urdf", "--jobs", "two"], "--jobs two: write a number of processes"),
+    (["good.urdf", "--robots", "1a"], "robot name '1a'"),
+    (["good.urdf", "--robots", "a,a"], "the robot 'a' is named twice"),
+    (["good.urdf", "--layout", "L9"], "layout 'L9' is not known"),
+    (["good.urdf", "--target", "stl"], "usd, mjcf"),
+    (["good.urdf", "--diff"], "give both"),
+    (["good.urdf", "--fix", "--diff", "--output", "x"], "leave out --output"),
+    (["good.urdf", "-"], "standard input is linted alone"),
+    (["-", "--fix"], "standard input is linted alone"),
+    (["good.urdf", "--config", "no.toml"], "no.toml"),
+    (["good.urdf", "--baseline", "no.json"], "no.json"),
+    (["good.urdf", "--vocabulary", "no.vocab"], "no.vocab"),
+    (["good.urdf", "--output", "no/such/file"], "the folder no/such does not exist"),
+    (["good.urdf", "--output", "good.urdf"], "choose another one for --output"),
+    (["good.urdf", "--output", "sub/../good.urdf"], "choose another one for --output"),
+    (["sub", "--write-baseline", "sub/other.srdf"], "choose another one for --write-baseline"),
+    (["good.urdf", "--output", "sub"], "it is a folder"),
+    (["good.urdf", "--write-baseline", "x", "--baseline", "y"], "takes neither"),
+    (["good.urdf", "--unknown"], "--unknown"),
+    (["good.urdf", "--changed-since", "no-such-revision"], "git"),
+]
+
+
+@pytest.mark.parametrize(("words", "reason"), WRONG, ids=[" ".join(it) for it, _ in WRONG])
+def test_wrong_use_is_one_line_and_changes_nothing(
+    words: Sequence[str], reason: str, here: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = {path: path.read_bytes() for path in here.rglob("*") if path.is_file()}
+    code, out, err = said(capsys, *words)
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith("urdf-lint: ") and reason in err
+    assert {path: path.read_bytes() for path in here.rglob("*") if path.is_file()} == before
+
+
+@pytest.mark.usefixtures("here")
+def test_zero_files_are_no_pass(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("urdf-lint.toml").write_text('exclude = ["*.urdf", "*.srdf"]\n')
+    assert said(capsys, ".") == (2, "", "urdf-lint: .: exclude leaves no file to lint\n")
+    assert said(capsys, "good.urdf")[0] == 0
+
+
+# ---------------------------------------------------------------- what is said
+
+
+@pytest.mark.usefixtures("here")
+def test_lines_are_such_that_editors_find_the_place(capsys: pytest.CaptureFixture[str]) -> None:
+    _, out, err = said(capsys, ".", "--robots", "robot1,robot2")
+    lines = [LINE.fullmatch(line) for line in out.splitlines()]
+    assert all(lines)
+    assert {it["file"] for it in lines if it} >= {"left.urdf", "two_roots.urdf"}
+    assert re.fullmatch(r"urdf-lint: 5 files: 1 error, 1 warning(, \d+ notes?)?\n", err)
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        (".", "sub/deep/robot.urdf"),
+        ("./sub", "./sub/deep/robot.urdf"),
+        ("sub", "sub/deep/robot.urdf"),
+        ("sub/deep/robot.urdf", "sub/deep/robot.urdf"),
+        ("./sub/deep/robot.urdf", "./sub/deep/robot.urdf"),
+    ],
+)
+def test_files_are_named_as_they_were_given(
+    given: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("sub/deep/robot.urdf").write_text(BROKEN)
+    _, out, _ = said(capsys, given, "--select", "MB101")
+    assert [line.partition(":")[0] for line in out.splitlines()] == [told]
+
+
+@pytest.mark.usefixtures("here")
+def test_the_order_is_that_of_files_and_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("b.urdf", "a.urdf"):
+        many = "".join(f'\n<link name="{at}"/>' for at in range(30))
+        Path(name).write_text(f'<robot name="r">{many}</robot>')
+    _, out, _ = said(capsys, "b.urdf", "a.urdf", "--select", "MB501")
+    places = [LINE.fullmatch(line) for line in out.splitlines()]
+    lines = [int(it["line"]) for it in places if it]
+    assert lines == [*range(3, 32)] * 2
+    assert [it["file"] for it in places if it] == ["b.urdf"] * 29 + ["a.urdf"] * 29
+
+
+@pytest.mark.usefixtures("here")
+def test_a_file_that_is_given_twice_is_linted_once(capsys: pytest.CaptureFixture[str]) -> None:
+    os.symlink("two_roots.urdf", "link.urdf")
+    _, out, err = said(capsys, *TWO, "./two_roots.urdf", "link.urdf", ".", "--select", "MB501")
+    assert out.count("MB501") == 1
+    assert err.startswith("urdf-lint: 5 files: 1 error")
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize("form", FORMATS)
+def test_output_has_what_would_be_printed(form: str, capsys: pytest.CaptureFixture[str]) -> None:
+    code, out, _ = said(capsys, ".", "--format", form)
+    assert said(capsys, ".", "--format", form, "--output", "report")[:2] == (code, "")
+    assert Path("report").read_text() == out
+
+
+@pytest.mark.usefixtures("here")
+def test_quiet_says_nothing_but_findings(capsys: pytest.CaptureFixture[str]) -> None:
+    assert said(capsys, "good.urdf", "--quiet") == (0, "", "")
+    code, out, err = said(capsys, *TWO, "--quiet")
+    assert (code, err) == (1, "")
+    assert "MB501" in out
+
+
+@pytest.mark.usefixtures("here")
+def test_json_is_there_when_nothing_is_found(capsys: pytest.CaptureFixture[str]) -> None:
+    assert json.loads(said(capsys, "good.urdf", "--format", "json")[1])["findings"] == []
+
+
+def test_explain_tells_one_rule_or_a_group(capsys: pytest.CaptureFixture[str]) -> None:
+    out = said(capsys, "--explain", "MB202")[1]
+    rule = RULES["MB202"]
+    assert out.startswith("MB202 undeclared-link (error)\n")
+    assert all(text in out for text in (rule.what, rule.why, rule.fix, "Bad:", "Good:"))
+    assert said(capsys, "--explain", "MB2")[1].count("Why: ") == sum(
+        code.startswith("MB2") for code in RULES
+    )
+
+
+def test_list_rules_lists_each_in_a_line(capsys: pytest.CaptureFixture[str]) -> None:
+    lines = said(capsys, "--list-rules")[1].splitlines()
+    assert [line.split()[0] for line in lines] == list(RULES)
+    assert all(line.split()[1] == RULES[line.split()[0]].level for line in lines)
+
+
+def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
+    out = said(capsys, "--help")[1]
+    options = {name for name, *_ in (*VALUES, *SWITCHES)} | {"--format", "--vocabulary"}
+    assert [it for it in options if it not in out] == []
+    assert max(map(len, out.splitlines())) <= 100
+
+
+def test_every_rule_of_several_robots_asks_for_them() -> None:
+    """A plain lint tells nothing that hangs on robots nobody named."""
+    for code in ("MB106", "MB405", "MB422"):
+        assert RULES[code].options.get("robots"), code
+    assert RULES["MB202"].level == ERROR
+
+
+def test_what_one_robot_is_already_is_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from multibot_rewrite import rewrite
+
+    file = tmp_path / "robot1.urdf"
+    file.write_bytes(rewrite(ROVER, "robot1", layout="L2").data)
+    words = [str(file), "--layout", "L2", "--select", "MB106"]
+    assert said(capsys, *words, "--robots", "robot2,robot1")[0] == 1
+    assert said(capsys, *words, "--robots", "robot2,robot3")[0] == 0
+    assert said(capsys, *words)[0] == 0
+
+
+# ---------------------------------------------------------------- streams
+
+
+def test_standard_input(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(TWO_ROOTS.encode())))
+    code, out, err = said(capsys, "-", "--select", "MB501")
+    assert (code, out.partition(" ")[0]) == (1, "<stdin>:3:7:")
+    assert err == "urdf-lint: 1 file: 1 error\n"
+
+
+STREAMS = [
+    ("1>&-", 2, "standard output is closed; name a file with --output"),
+    ("1>&- --output report", 1, "5 files"),
+    (">/dev/full", 2, "No space left on device"),
+    ("--output /dev/full", 2, "No space left on device"),
+    ("--output /dev/stdout", 1, "5 files"),
+    ("2>&-", 1, ""),
+    ("<&-", 1, "5 files"),
+]
+
+
+@pytest.mark.usefixtures("here")
+@pytest.mark.parametrize(("how", "code", "words"), STREAMS)
+def test_streams_that_are_closed_or_full(how: str, code: int, words: str) -> None:
+    line = f"{' '.join(COMMAND)} . {how}"
+    result = subprocess.run(line, shell=True, capture_output=True, text=True, check=False)
+    assert result.returncode == code
+    assert words in result.stderr
+    assert "Traceback" not in result.stderr + result.stdout
+
+
+@pytest.mark.usefixtures("here")
+def test_a_reader_that_goes_away() -> None:
+    line = f"{' '.join(COMMAND)} . | true; echo ${{PIPESTATUS[0]}}"
+    result = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=False)
+    assert result.stdout.splitlines()[-1] == "1"
+    assert result.stderr == (
+        "urdf-lint: standard output was closed before everything was written\n"
+    )
+
+
+def on_a_terminal(words: Sequence[str], **environment: str) -> str:
+    """What the command prints where somebody is looking."""
+    parent, child = pty.openpty()
+    known = {**os.environ, "TERM": "xterm", **environment}
+    lint = subprocess.Popen([*COMMAND, *words], stdout=child, stderr=child, env=known)
+    os.close(child)
+    text = b""
+    while True:
+        try:
+            read = os.read(parent, 65536)
+        except OSError:  # how a terminal says that nobody writes any more
+            break
+        if not read:
+            break
+        text += read
+    lint.wait()
+    os.close(parent)
+    return text.decode()
+
+
+@pytest.mark.usefixtures("here")
+def test_a_terminal_has_colours_and_a_progress_bar() -> None:
+    for at in range(40):
+        Path(f"sub/{at}.urdf").write_text(HARMLESS)
+    text = on_a_terminal(["."])
+    assert "\x1b[31mMB501\x1b[0m" in text
+    assert "linting" in text and "\x1b[2K" in text
+    # The bar is taken away before anything else is written.
+    assert "linting" not in text[text.index("two_roots.urdf") :]
+
+
+@pytest.mark.usefixtures("here")
+def test_no_color_is_heeded_and_few_files_have_no_bar() -> None:
+    text = on_a_terminal(["."], NO_COLOR="1")
+    assert "\x1b" not in text and "linting" not in text
