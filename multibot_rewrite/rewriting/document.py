@@ -17,8 +17,11 @@ from multibot_rewrite.model import Edit, Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
-# stays on: without it lxml makes libxml2 load external DTDs.)
-_PARSER = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+# stays on: without it lxml makes libxml2 load external DTDs.) Blanks between elements are most of a
+# tree, and mean nothing.
+_PARSER = etree.XMLParser(
+    resolve_entities=False, no_network=True, load_dtd=False, remove_blank_text=True
+)
 _OPENING = regex(rb"<[A-Za-z_:\x80-\xff]")
 _SILENT = regex(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
 _TAG = regex(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
