@@ -17,8 +17,9 @@ from multibot_rewrite.vocabulary.__main__ import page
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
-COMMANDS = re.findall(r"^    (urdf-postfix fixtures.*|multibot .*)$", README, re.MULTILINE)
+COMMANDS = re.findall(r"^    (urdf-postfix fixtures.*|urdf-lint .*|multibot .*)$", README, re.MULTILINE)
 MODULES = {
+    "urdf-lint": "multibot_rewrite.cli.urdf_lint",
     "urdf-postfix": "multibot_rewrite.cli.urdf_postfix",
     "multibot": "multibot_rewrite.cli.multibot",
 }
@@ -55,6 +56,15 @@ def test_the_readme_diff_is_what_the_command_prints() -> None:
     ).stdout.splitlines()
     missing = [line for line in shown[1].splitlines() if line[:1] in "+-" and line not in printed]
     assert missing == []
+
+
+def test_the_readme_findings_are_what_the_command_prints() -> None:
+    shown = re.search(r"\$ (urdf-lint .*)\n((?:fixtures.*\n)+)", README)
+    assert shown is not None
+    command = [sys.executable, "-m", MODULES["urdf-lint"], *shlex.split(shown[1])[1:]]
+    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    printed = [line for line in result.stdout.splitlines() if "note:" not in line]
+    assert (result.returncode, printed) == (1, shown[2].splitlines())
 
 
 def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
