@@ -15,7 +15,7 @@ from multibot_rewrite.companions.graph_names import known_topics
 from multibot_rewrite.companions.rviz import RvizRobot, RvizText, rviz, start_command
 from multibot_rewrite.companions.template import GRAPH, SPELLED, fill
 from multibot_rewrite.companions.yaml_text import YamlText, quoted, read_yaml
-from multibot_rewrite.fleet import expected
+from multibot_rewrite.fleet import Fleet, expected
 from multibot_rewrite.fleets import bridge, spawn, teleop, transforms
 from multibot_rewrite.fleets.companions import Kin, behavior_trees, kin_of, lua, moveit, params
 from multibot_rewrite.fleets.consistency import consistency
@@ -44,6 +44,7 @@ class Artefact(NamedTuple):
 
 
 Made = Iterator[Artefact | Finding]
+Config = tuple[str, tuple[RvizText, ...], tuple[Finding, ...]]
 
 
 class Artefacts(NamedTuple):
@@ -56,13 +57,22 @@ class Artefacts(NamedTuple):
 def make_artefacts(plan: FleetPlan) -> Artefacts:
     """Every file of a fleet; raises InputError for a companion that cannot be read or rewritten."""
     with uncollected():
-        made = [it for make in _MAKERS for it in make(plan)]
+        fleet, each = started(plan), list(alone(plan))
+        configs = list(_configs(plan, each))
+        made = [
+            *_descriptions(plan),
+            *_companions(plan),
+            *_rviz(configs),
+            *_bridges(plan),
+            *_tables(plan, fleet),
+            *_commands(each, configs),
+        ]
         files = sorted(it for it in made if isinstance(it, Artefact))
         _check_apart(files)
         told = [it for it in made if isinstance(it, Finding)]
         told += [it for robot in plan.robots for it in robot.findings]
         written = [Written(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files]
-        told += consistency(plan, started(plan), written, told)
+        told += consistency(plan, fleet, written, told)
         return Artefacts(tuple(files), tuple(_once(plan, told)))
 
 
@@ -147,8 +157,8 @@ def _said(finding: Finding, robot: Described) -> Finding:
     return finding._replace(message=message, hint=hint)
 
 
-def _rviz(plan: FleetPlan) -> Made:
-    for path, made, findings in _configs(plan):
+def _rviz(configs: Iterable[Config]) -> Made:
+    for path, made, findings in configs:
         yield from findings
         yield from (Artefact(_place(it, path), it.text.encode(), (path,)) for it in made)
 
@@ -158,13 +168,13 @@ def _place(made: RvizText, path: str) -> str:
     return f"{made.robot}/{name}" if made.robot else name
 
 
-def _configs(plan: FleetPlan) -> Iterator[tuple[str, tuple[RvizText, ...], tuple[Finding, ...]]]:
+def _configs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[Config]:
     """By the file they are made from: what each window shows."""
     groups: dict[str, list[Described]] = {}
     for robot in plan.robots:
         for path in robot.spec.companions.get("rviz", ()):
             groups.setdefault(path, []).append(robot)
-    own = {it.robots[0].spec.name: it for it in alone(plan)} if groups else {}
+    own = {it.robots[0].spec.name: it for it in each}
     for path, robots in groups.items():
         shown = [_shown(own[robot.spec.name]) for robot in robots]
         world = transforms.world_of(plan.file, plan.fleet.naming)
@@ -214,8 +224,7 @@ def _bridges(plan: FleetPlan) -> Made:
         yield Finding("MF509", "warning", message, hint, file, it.line, 1)
 
 
-def _tables(plan: FleetPlan) -> Made:
-    fleet = started(plan)
+def _tables(plan: FleetPlan, fleet: Fleet) -> Made:
     table = fleet.table
     # The same wherever the command was run.
     folder = os.path.dirname(os.path.abspath(plan.file.file))
@@ -241,10 +250,10 @@ def _remappings(table: Table) -> str:
     return head + "".join(rows)
 
 
-def _commands(plan: FleetPlan) -> Made:
+def _commands(each: Iterable[FleetPlan], configs: Iterable[Config]) -> Made:
     """The lines that start what no file does, robot by robot."""
     rows = ["# Commands of this fleet\n"]
-    for one in alone(plan):
+    for one in each:
         (robot,) = one.robots
         placed = transforms.place(one)
         spawned, remarks = spawn.spawns(one)
@@ -256,9 +265,7 @@ def _commands(plan: FleetPlan) -> Made:
         for pose in placed.initial:
             yield Artefact(_own(robot, "start_pose.yaml"), _start_pose(one, pose))
     windows = [
-        shlex.join(start_command(it, _place(it, path)))
-        for path, made, _ in _configs(plan)
-        for it in made
+        shlex.join(start_command(it, _place(it, path))) for path, made, _ in configs for it in made
     ]
     if windows:
         rows += ["\n## RViz\n\n```sh\n", *(f"{line}\n" for line in windows), "```\n"]
@@ -278,13 +285,3 @@ def _start_pose(plan: FleetPlan, pose: transforms.InitialPose) -> bytes:
 
 def _yaml(path: str) -> YamlText:
     return read_yaml(read_file(path), path)
-
-
-_MAKERS: tuple[Callable[[FleetPlan], Made], ...] = (
-    _descriptions,
-    _companions,
-    _rviz,
-    _bridges,
-    _tables,
-    _commands,
-)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.describe import Described, describe
 from multibot_rewrite.fleets.fleet_file import FleetFile
@@ -24,6 +25,11 @@ def plan_fleet(file: FleetFile, also: Sequence[str] = ()) -> FleetPlan:
     ``also`` are nodes that every robot runs, too. Raises as ``rewrite_all``, and UsageError for an
     unknown stack.
     """
+    with uncollected():
+        return _planned(file, also)
+
+
+def _planned(file: FleetFile, also: Sequence[str]) -> FleetPlan:
     robots = describe(file.robots, file.policy, file.vocabulary)
     stacks: dict[tuple[str, ...], list[Described]] = {}
     for robot in robots:
