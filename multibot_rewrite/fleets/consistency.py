@@ -153,12 +153,11 @@ def _in_files(plan: FleetPlan, own: Sequence[Owned], files: Sequence[Written]) -
     for it in own:
         words.update(dict.fromkeys(it.words, it.robot.spec.name))
     seen: dict[tuple[object, ...], set[str]] = {}
-    masks = {name: _mask(it.words) for name, it in by_name.items()}
     for file in files:
         owned = by_name.get(file.path.partition("/")[0])
         if owned is None or "/" not in file.path:
             continue
-        masked = masks[owned.robot.spec.name].sub("\0", file.text)
+        masked = _masked(file.text, owned.words)
         like = seen.setdefault((file.sources, file.path.partition("/")[2], _pattern(owned)), set())
         if masked in like:
             continue
@@ -167,9 +166,12 @@ def _in_files(plan: FleetPlan, own: Sequence[Owned], files: Sequence[Written]) -
         yield from _in_file(file, owned, others, plan.fleet.naming)
 
 
-def _mask(words: Iterable[str]) -> re.Pattern[str]:
-    either = "|".join(re.escape(it) for it in sorted(words, key=len, reverse=True))
-    return re.compile(f"(?<![A-Za-z0-9])(?:{either})(?![A-Za-z0-9])")
+def _masked(text: str, words: Iterable[str]) -> str:
+    """The text with holes for its robot: robots with one such text have the same but for their names,
+    wherever the words stand."""
+    for word in sorted(words, key=len, reverse=True):
+        text = text.replace(word, "\0")
+    return text
 
 
 def _pattern(owned: Owned) -> tuple[object, ...]:
@@ -333,7 +335,9 @@ def _in_common(own: Sequence[Owned], files: Sequence[Written]) -> Iterator[Findi
     for file in files:
         if "/" in file.path or not file.sources:
             continue
-        for token in dict.fromkeys(_TOKEN.findall(file.text)):
+        # Most lines are the same for every robot.
+        lines = "\n".join(dict.fromkeys(file.text.splitlines()))
+        for token in dict.fromkeys(_TOKEN.findall(lines)):
             found = either.search(token)
             owned = words.get(found[1]) if found else None
             if found and owned and not any(found[1] in it.split("/") for it in owned.bare):
