@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import redirect_stderr
 from functools import partial
 from glob import escape, glob
+from io import StringIO
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import regex
@@ -135,12 +137,14 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
     find = partial(package_folder, file=path, roots=settings.roots)
     name = f"{path} (expanded)"
-    try:
-        return expand(path, {}, find), name
-    except InputError:
-        if not sets:
-            raise
-        return expand(path, sets[0], find), name
+    # What xacro warns about is told to who runs it.
+    with redirect_stderr(StringIO()):
+        try:
+            return expand(path, {}, find), name
+        except InputError:
+            if not sets:
+                raise
+            return expand(path, sets[0], find), name
 
 
 def _names(srdf: Inventory) -> set[str]:
