@@ -6,6 +6,7 @@ killed; and nothing but the end of a process stops an expression like 9**9**9.
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import select
@@ -78,6 +79,9 @@ class Crew(Generic[_Item, _Made]):
                 os.close(other.orders.fileno())
                 os.close(other.answers.fileno())
             _limit_memory()
+            # A command is short and collects nothing; a worker of ten thousand files has to.
+            gc.freeze()
+            gc.enable()
             heard, told = os.fdopen(orders[0], "rb"), os.fdopen(answers[1], "wb")
             while True:
                 pickle.dump(self.work(self.items[pickle.load(heard)]), told)
