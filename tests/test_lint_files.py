@@ -230,3 +230,9 @@ def test_worlds_are_told_one_by_one() -> None:
     )
     found = lint_data("w.sdf", source.encode(), Settings(select=("MB109",)))
     assert [it.line for it in found] == [3, 4]
+
+
+def test_a_namespace_is_told_where_it_is_declared() -> None:
+    source = b'<robot name="r"\n    xmlns:xacro="x"><link name="a"/></robot>'
+    (found,) = lint_data("r.urdf", source, Settings(select=("MB142",)))
+    assert (found.line, found.column) == (2, 5)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 Numbers = Mapping[_Element, int]
 _BLANK = regex(rb"\s*")
-_ATTRIBUTE = regex(rb"\s(?:[^\s=:/>\"']+:)?([^\s=:/>\"']+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ATTRIBUTE = regex(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 
 
 class Place(NamedTuple):
@@ -93,9 +93,10 @@ def _within(source: bytes, start: int, attribute: str | None) -> int:
 
 @lru_cache(maxsize=64)
 def _attributes(source: bytes, start: int) -> dict[bytes, int]:
-    """Where the names of a tag's attributes stand, without their prefixes."""
-    found = _ATTRIBUTE.finditer(source, start, tag_end(source, start))
-    return {it[1]: it.start(1) for it in found}
+    """Where the names of a tag's attributes stand, with their prefixes and without."""
+    found = list(_ATTRIBUTE.finditer(source, start, tag_end(source, start)))
+    bare = {it[2]: it.start(2) for it in found}
+    return bare | {it[1]: it.start(1) for it in found}
 
 
 def _told(subject: Subject, call: Call) -> str:
