@@ -17,7 +17,9 @@ from multibot_rewrite.vocabulary.__main__ import page
 
 ROOT = Path(__file__).parent.parent
 README = (ROOT / "README.md").read_text()
-COMMANDS = re.findall(r"^    (urdf-postfix fixtures.*|urdf-lint .*|multibot .*)$", README, re.MULTILINE)
+COMMANDS = re.findall(
+    r"^    (urdf-postfix fixtures.*|urdf-lint .*|multibot .*)$", README, re.MULTILINE
+)
 MODULES = {
     "urdf-lint": "multibot_rewrite.cli.urdf_lint",
     "urdf-postfix": "multibot_rewrite.cli.urdf_postfix",
