@@ -32,6 +32,7 @@ VALUES = (
     ("--layout", "NAME", "where tf lives, for --robots: L1 to L4 (default: frames-per-robot)"),
     ("--affix", "SIDE", "postfix or prefix, for --robots"),
     ("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
+    ("--roots", "A,B", "folders in which the package of package://NAME is looked for"),
     ("--urdf", "FILE", "the URDF that SRDF files belong to (default: the one of that robot name)"),
     ("--config", "FILE", "urdf-lint.toml or pyproject.toml (default: the nearest one above)"),
     ("--baseline", "FILE", "findings that are known: only new ones are told"),
@@ -104,7 +105,7 @@ def check_use(options: argparse.Namespace) -> None:
 
 def given(options: argparse.Namespace) -> dict[str, object]:
     """What the command line says about the settings, by the names of ``with_options``."""
-    lists = ("select", "ignore", "robots", "target")
+    lists = ("select", "ignore", "robots", "roots", "target")
     said: dict[str, object] = {
         name: tuple(value.split(",")) for name in lists if (value := getattr(options, name))
     }
