@@ -21,6 +21,8 @@ _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
 # Beyond what a worker has when it starts; what needs more takes the machine with it.
 MOST_MEMORY = 4 * 2**30
+# So many objects may wait for the collector.
+MOST_LEFT = 500_000
 
 
 class _Worker(NamedTuple):
@@ -79,13 +81,13 @@ class Crew(Generic[_Item, _Made]):
                 os.close(other.orders.fileno())
                 os.close(other.answers.fileno())
             _limit_memory()
-            # A command is short and collects nothing; a worker of ten thousand files has to.
             gc.freeze()
-            gc.enable()
+            gc.disable()
             heard, told = os.fdopen(orders[0], "rb"), os.fdopen(answers[1], "wb")
             while True:
                 pickle.dump(self.work(self.items[pickle.load(heard)]), told)
                 told.flush()
+                _collect()
         finally:
             os._exit(0)
 
@@ -161,6 +163,12 @@ def _ready(busy: dict[int, int]) -> list[int]:
     for fd in busy:
         poll.register(fd, select.POLLIN)
     return [fd for fd, _ in poll.poll()]
+
+
+def _collect() -> None:
+    """Free what xacro's trees leave, which hold on to each other: seldom, and all at once."""
+    if gc.get_count()[0] > MOST_LEFT:
+        gc.collect()
 
 
 def _limit_memory() -> None:
