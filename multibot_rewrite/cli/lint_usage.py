@@ -32,7 +32,7 @@ VALUES = (
     ("--layout", "NAME", "where tf lives, for --robots: L1 to L4 (default: frames-per-robot)"),
     ("--affix", "SIDE", "postfix or prefix, for --robots"),
     ("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
-    ("--roots", "A,B", "folders in which the package of package://NAME is looked for"),
+    ("--roots", "A,B", "folders in which package://NAME and $(find NAME) are looked for"),
     ("--urdf", "FILE", "the URDF that SRDF files belong to (default: the one of that robot name)"),
     ("--config", "FILE", "urdf-lint.toml or pyproject.toml (default: the nearest one above)"),
     ("--baseline", "FILE", "findings that are known: only new ones are told"),
