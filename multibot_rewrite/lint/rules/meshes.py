@@ -170,7 +170,9 @@ def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
     lost = [it for it in _asked(subject) if it.path and not it.folders]
     for package, it in {_package(it): it for it in reversed(lost)}.items():
-        yield _problem(it.used, f"package {package!r} was not found", "name a folder it is in: --roots")
+        yield _problem(
+            it.used, f"package {package!r} was not found", "name a folder it is in: --roots"
+        )
 
 
 def _package(it: Lookup) -> str:
