@@ -85,11 +85,10 @@ def _place(plan: FleetPlan, robot: Described, pose: Pose) -> Iterator[object]:
     locators = [node for node, edges in sent.items() if any(_locates(it, naming) for it in edges)]
     if AMCL in locators:
         yield InitialPose(name, AMCL, initial_pose(pose))
+        return
     if locators:
         what = f"{' and '.join(locators)} sends where it is, so its pose makes no transform"
-        hint = "a second parent would make the frame jump"
-        hint += f"; give {AMCL} its start_pose.yaml, too" if AMCL in locators else ""
-        yield _finding(robot, "MF701", what, hint)
+        yield _finding(robot, "MF701", what, "a second parent would make the frame jump")
         return
     roots = _roots(sent, naming)
     if len(roots) != 1:
