@@ -630,3 +630,14 @@ def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str])
     with contextlib.suppress(InputError):
         assert from_yaml(text.encode(), "p") == plan
     assert isinstance(yaml.safe_load(text), dict)
+
+
+def test_parameters_of_a_node_of_your_own(tmp_path: Path) -> None:
+    fleet_folder(tmp_path, f"parameters: facts.yaml\n{SMALL}")
+    facts = "nodes:\n  mast:\n    package: acme\n    params:\n      eye: {kind: frame}\n"
+    (tmp_path / "facts.yaml").write_text(facts)
+    own = "mast:\n  ros__parameters:\n    eye: base_link\n    note: base\n"
+    (tmp_path / "params.yaml").write_text(own)
+    assert build(tmp_path) == 0
+    made = (tmp_path / "out" / "robot1" / "params.yaml").read_text()
+    assert made == own.replace("mast:", "/robot1/mast:").replace("base_link", "robot1/base_link")

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from multibot_rewrite.companions import params as ros_params
 from multibot_rewrite.companions.behavior_tree import behavior_tree
 from multibot_rewrite.companions.context import Companion, Context, make_context
+from multibot_rewrite.companions.known_params import known_params
 from multibot_rewrite.companions.lua import lua_file
 from multibot_rewrite.companions.moveit import moveit as moveit_file
 from multibot_rewrite.companions.moveit import with_semantics
@@ -49,13 +50,12 @@ def params(plan: FleetPlan, kin: Kin, path: str) -> Companion:
     paths = kin.robots[0].spec.companions["params"]
     read = {it: read_yaml(read_file(it), it) for it in paths}
     beside = [document for it, document in read.items() if it != path]
+    known = known_params(plan.file.parameters)
     words = {word for it in plan.robots for word in (it.spec.namespace, it.spec.spelled)}
-    made = ros_params.params(
-        read[path], kin.context, beside=beside, facts=kin.facts, robots=sorted(words)
-    )
+    made = ros_params.params(read[path], kin.context, known, beside, kin.facts, sorted(words))
     if path != paths[0]:
         return made
-    more = ros_params.without_sections(list(read.values()), kin.context)
+    more = ros_params.without_sections(list(read.values()), kin.context, known)
     return made._replace(findings=(*made.findings, *more))
 
 

@@ -21,7 +21,7 @@ SCHEMA = "fleet.schema.json"
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
 POLICY = ("layout", "affix", "topics", "groups", "separators", "shared_frames", "shared_topics")
-PATHS = ("include", "description", "srdf", "nodes", "vocabulary")
+PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
 Places = Mapping[Path, tuple[str, int]]
 # What stands behind ``robots:``, empty lines and comments aside.
 _ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
@@ -64,13 +64,14 @@ class RobotSpec(NamedTuple):
 class FleetFile(NamedTuple):
     """A fleet file as it is meant; ``policy`` are the options of ``make_naming`` that it gives,
     ``files`` all that was read or will be beside the robots' own: it, what it includes, nodes,
-    vocabulary."""
+    parameters, vocabulary."""
 
     file: str
     policy: Mapping[str, Any]
     world: str
     distro: str
     nodes: str
+    parameters: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
@@ -94,16 +95,18 @@ def read_fleet(path: str) -> FleetFile:
     robots = tuple(_robot(read, naming, at) for at in range(len(data["robots"])))
     _check_apart(robots)
     _check_world(read, naming)
-    nodes, vocabulary = data.get("nodes", ""), tuple(_listed(data.get("vocabulary", [])))
+    nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
+    vocabulary = tuple(_listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
         policy,
         data.get("world", ""),
         data.get("distro", "jazzy"),
         nodes,
+        parameters,
         vocabulary,
         robots,
-        tuple(filter(None, (*read.files, nodes, *vocabulary))),
+        tuple(filter(None, (*read.files, nodes, parameters, *vocabulary))),
     )
 
 
