@@ -44,12 +44,6 @@ def respell(names: Names, word: str, value: str, namespaced: bool = True) -> str
     return there.spell(value, names.robot) if there else value
 
 
-def respell_interface(names: Names, value: str) -> str:
-    """``elbow/position`` with the component spelled for the robot."""
-    component, slash, interface = value.partition("/")
-    return respell(names, "component", component) + slash + interface
-
-
 def is_declared(names: Names, word: str, value: str) -> bool:
     """Does the description declare this link, joint, sensor, gpio or hardware?"""
     return any(value in names.declared.get(kind, ()) for kind in KINDS[word])
