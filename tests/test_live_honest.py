@@ -212,6 +212,7 @@ def child_of(pid: int) -> int:
     return int(children.read_text())
 
 
+@pytest.mark.deep
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="no /proc to look for children")
 def test_a_pause_of_the_looking_process_is_no_quiet(ros: None, tmp_path: Path) -> None:
     """A busy machine may hold it up while the graph comes in."""

@@ -107,6 +107,7 @@ def test_peers_under_localhost_where_multicast_is_lost(tmp_path: Path) -> None:
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
+@pytest.mark.deep
 def test_a_super_client_sees_forty_participants_and_a_plain_one_says_why_not(
     tmp_path: Path,
 ) -> None:

@@ -91,6 +91,7 @@ def test_without_rules_it_leaks_and_says_so() -> None:
     assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
 
 
+@pytest.mark.deep
 def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
     own = tmp_path / "own.yaml"
     own.write_text(
@@ -109,6 +110,7 @@ def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
     assert "robot_state_publisher" not in done.stdout
 
 
+@pytest.mark.deep
 def test_many_robots_share_processes() -> None:
     names = [f"robot{at}" for at in range(1, 13)]
     done = rehearse(6, ROVER, *names, "--stack", "robot_state", "--layout", "L2")
