@@ -63,6 +63,7 @@ def test_robots_on_two_hosts_are_checked_from_a_third_by_multicast(plan: Path) -
     assert "2 robots, 0 findings: as planned" in done.stderr
 
 
+@pytest.mark.deep
 def test_a_leak_on_another_host_is_named(plan: Path) -> None:
     with hosts(3) as (one, two, base):
         leaky = node("robot2", subscriptions=[["/cmd_vel", "String"]])
@@ -74,6 +75,7 @@ def test_a_leak_on_another_host_is_named(plan: Path) -> None:
     assert "/robot1/drive" not in done.stdout
 
 
+@pytest.mark.deep
 def test_peers_are_named_on_one_side_only(plan: Path) -> None:
     """Robots that speak on their own machine only: who names their machines sees them."""
     with hosts(3) as (one, two, base):

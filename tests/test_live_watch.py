@@ -89,6 +89,7 @@ def test_a_fleet_that_comes_up_while_it_is_watched(plan: Path) -> None:
     assert said == "multibot: 2 robots, 0 findings: as planned\n"
 
 
+@pytest.mark.deep
 def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
     own = domain(71)
     with (
@@ -116,6 +117,7 @@ def test_what_goes_away_is_missing_once_the_graph_is_quiet(plan: Path) -> None:
     assert code == 1
 
 
+@pytest.mark.deep
 def test_a_terminal_has_a_screen(plan: Path) -> None:
     own = domain(73)
     leader, follower = pty.openpty()
