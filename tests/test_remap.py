@@ -270,6 +270,8 @@ def test_one_robot_alone_is_held_against_another() -> None:
 
 # ---------------------------------------------------------------- from a description
 
+ODOM, TF = "publish_odom", "publish_odom_tf or publish_wheel_tf"
+
 
 def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
     source = (FIXTURES / "robots" / "rover.urdf").read_bytes()
@@ -329,25 +331,21 @@ def test_markdown_has_a_row_for_each_rule() -> None:
 
 
 @pytest.mark.parametrize(
-    ("parameters", "off"),
+    ("parameters", "off", "sends"),
     [
-        pytest.param("", {}, id="nothing is said"),
-        pytest.param("<publish_odom_tf>true</publish_odom_tf>", {}, id="on"),
-        pytest.param("<publish_odom>false</publish_odom>", {"odom": "publish_odom"}, id="off"),
+        pytest.param("", {"odom": ODOM, "/tf": TF}, False, id="nothing is said"),
+        pytest.param("<publish_odom_tf>true</publish_odom_tf>", {"odom": ODOM}, True, id="tf"),
+        pytest.param("<publish_odom>1</publish_odom>", {"/tf": TF}, False, id="odometry"),
         pytest.param(
-            "<publish_odom_tf>false</publish_odom_tf>",
-            {"/tf": "publish_odom_tf or publish_wheel_tf"},
-            id="off by one of two",
-        ),
-        pytest.param(
-            "<publish_odom_tf>false</publish_odom_tf><publish_wheel_tf>true</publish_wheel_tf>",
-            {},
-            id="on by the other",
+            "<publish_odom>false</publish_odom><publish_wheel_tf>true</publish_wheel_tf>",
+            {"odom": ODOM},
+            False,
+            id="only the wheels' tf",
         ),
     ],
 )
 def test_a_plugin_without_what_its_parameters_switch_off(
-    parameters: str, off: dict[str, str]
+    parameters: str, off: dict[str, str], sends: bool
 ) -> None:
     text = (
         (FIXTURES / "robots" / "rover.urdf")
@@ -359,4 +357,4 @@ def test_a_plugin_without_what_its_parameters_switch_off(
     drive = next(facts for facts, table in plugin_nodes(found, "r") if table.name == "diff_drive")
     conditions = {it.name: it.when for it in drive.endpoints if it.when}
     assert conditions == off
-    assert bool(drive.sends) == ("/tf" not in off)
+    assert bool(drive.sends) == sends

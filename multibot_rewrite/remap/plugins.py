@@ -20,14 +20,13 @@ from multibot_rewrite.remap.records import (
     NodeTable,
     Rule,
 )
+from multibot_rewrite.rewriters.switches import switched_off, switches
 from multibot_rewrite.rewriting.collect import Host, Inventory
 from multibot_rewrite.rewriting.document import locate
 from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.vocabulary import Rewriter
 
 ROS_NODE = "ros/remapping"
-# What switches a parameter off; one that is not there leaves it to the others.
-OFF = ("false", "False", "0", "")
 
 
 def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
@@ -38,7 +37,7 @@ def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, 
         # The vocabulary does not list what a plugin publishes below its own name; the file does.
         private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
         frames = tuple(_frames(inventory, host))
-        off = "/tf" in switched_off(host.element, rewriter)
+        off = _sends_none(host, rewriter)
         facts = NodeFacts(
             name,
             rewriter.names[0],
@@ -112,17 +111,10 @@ def _is_frame(site: Site) -> bool:
     return site.form == "whole" and site.kinds[:1] == ("frame",)
 
 
-def switched_off(plugin: etree._Element, rewriter: Rewriter) -> dict[str, str]:
-    """The topics that the plugin's parameters turn off, and what would turn each on."""
-    told: dict[str, list[tuple[str, str]]] = {}
-    for switch in rewriter.switches:
-        parameter, _, topic = switch.partition("=")
-        told.setdefault(topic, []).append((parameter, plugin.findtext(parameter, "").strip()))
-    return {
-        topic: " or ".join(parameter for parameter, _ in switches)
-        for topic, switches in told.items()
-        if any(text for _, text in switches) and all(text in OFF for _, text in switches)
-    }
+def _sends_none(host: Host, rewriter: Rewriter) -> bool:
+    """Odometry is off: of the switches of tf the first is its, others are for the wheels."""
+    found = [it for it in switches(host.element, rewriter) if it.topic == "/tf"]
+    return bool(found) and not found[0].on
 
 
 def _sends(

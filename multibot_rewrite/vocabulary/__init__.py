@@ -54,7 +54,8 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     publishes: TOPIC...    topics that no parameter moves, where ``ros/remapping`` is read: remapped
     subscribes: TOPIC...   the same
     serves: SERVICE...     the same
-    switches: P=TOPIC...   false in parameter P (in each that is there) turns that topic off
+    switches: P=TOPIC...   parameter P turns that topic on, P=TOPIC=on: it is on unless P says false;
+                           of several for /tf the first is that of odometry
     insert: yes | no       no where the consumer throws on children it does not know (default: yes)
     unique: KIND           bare names of this kind are looked up in the whole world
     hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them

@@ -13,6 +13,7 @@ from multibot_rewrite.model import ERROR, WARNING, Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, TF_TOPICS, make_naming, overlap
 from multibot_rewrite.rewriters.insert import insertions
 from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.rewriters.switches import switched_off
 from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rewriting import hazards, robots
 from multibot_rewrite.rewriting.remarks import Remark
@@ -38,13 +39,6 @@ WORLD_SYSTEMS = {
     "gz-sim-altimeter-system": "every altimeter is published once more for each copy",
     "gz-sim-air-pressure-system": "every barometer is published once more for each copy",
     "gz-sim-scene-broadcaster-system": "every state of the world is sent once more for each copy",
-}
-# What switches a plugin's tf off and on: its children, and whether it is on without them.
-TF_SWITCHES = {
-    "gazebo_ros_diff_drive": (("publish_odom_tf", "publish_wheel_tf"), False),
-    "gazebo_ros_ackermann_drive": (("publish_odom_tf", "publish_wheel_tf"), False),
-    "gazebo_ros_tricycle_drive": (("publish_odom", "publish_wheel_tf"), False),
-    "gazebo_ros_planar_move": (("publish_odom_tf",), True),
 }
 DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
 DEVICE = regex(
@@ -330,17 +324,11 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
         rewriter = host.node.rewriter
         if rewriter is None or "/tf" not in rewriter.publishes or not rewriter.inserts:
             continue
-        if not _sends_tf(host.element, rewriter.names[0]) or _moves_tf(host.element):
+        if "/tf" in switched_off(host.element, rewriter) or _moves_tf(host.element):
             continue
         of = "the controllers it loads publish" if rewriter.process_wide else "it publishes"
         message = f"plugin {host.element.get('name', '')!r}: {of} on /tf, which no namespace moves"
         yield Problem(host.element, message, None, "<remapping>/tf:=tf</remapping>")
-
-
-def _sends_tf(plugin: _Element, name: str) -> bool:
-    switches, default = TF_SWITCHES.get(name, ((), True))
-    said = [it for tag in switches if (it := (plugin.findtext(tag) or "").strip().lower())]
-    return any(it in ("true", "1") for it in said) or (default and not said)
 
 
 def _moves_tf(plugin: _Element) -> bool:

@@ -1,0 +1,42 @@
+"""Which topics a plugin's own parameters turn off."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element
+
+    from multibot_rewrite.vocabulary import Rewriter
+
+ON, OFF = ("true", "1"), ("false", "0")
+
+
+class Switch(NamedTuple):
+    """A parameter of a plugin that turns a topic on or off, and whether it is on in this file."""
+
+    parameter: str
+    topic: str
+    on: bool
+
+
+def switches(plugin: _Element, rewriter: Rewriter) -> tuple[Switch, ...]:
+    """The switches of a plugin as they stand; one that is not there is as its code has it."""
+    return tuple(_switch(plugin, *it.split("=")) for it in rewriter.switches)
+
+
+def _switch(plugin: _Element, parameter: str, topic: str, usual: str = "off") -> Switch:
+    text = plugin.findtext(parameter, "").strip().lower()
+    on = text in ON or (usual == "on" and text not in OFF)
+    return Switch(parameter, topic, on)
+
+
+def switched_off(plugin: _Element, rewriter: Rewriter) -> dict[str, str]:
+    """The topics that no switch of theirs turns on, and what would."""
+    found = switches(plugin, rewriter)
+    on = {it.topic for it in found if it.on}
+    off: dict[str, list[str]] = {}
+    for it in found:
+        if it.topic not in on:
+            off.setdefault(it.topic, []).append(it.parameter)
+    return {topic: " or ".join(parameters) for topic, parameters in off.items()}
