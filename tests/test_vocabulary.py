@@ -76,6 +76,7 @@ def builtin() -> list[Rewriter]:
         pytest.param("ros: 3", "ros: is '3', use 1 or 2", id="ros"),
         pytest.param("ros: 1\nros: 2", "ros:", id="ros-twice"),
         pytest.param("insert: maybe", "insert: is 'maybe', use yes or no", id="insert"),
+        pytest.param("switches: odom", "'odom' is no PARAMETER=TOPIC[=on]", id="switches"),
         pytest.param("with: nope", "there is no [block nope]", id="block"),
         pytest.param("with: ros nope", "there is no [block nope]", id="second-block"),
     ],

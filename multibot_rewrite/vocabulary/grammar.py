@@ -55,6 +55,7 @@ FORMS = (
 )
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
+_SWITCH = regex(rf"{_NAME}=[^\s=]+(?:=on)?")
 _PATH = regex(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
 
@@ -150,6 +151,9 @@ def assemble(
             f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
         )
     namespaced = any("namespace" in site.kinds for site in sites)
+    for word in settings.get("switches", "").split():
+        if not _SWITCH.fullmatch(word):
+            raise VocabularyError(f"{file}:{line}: switches: {word!r} is no PARAMETER=TOPIC[=on]")
 
     def words(key: str) -> tuple[str, ...]:
         return tuple(settings.get(key, "").split())
