@@ -151,9 +151,6 @@ def assemble(
             f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
         )
     namespaced = any("namespace" in site.kinds for site in sites)
-    for word in settings.get("switches", "").split():
-        if not _SWITCH.fullmatch(word):
-            raise VocabularyError(f"{file}:{line}: switches: {word!r} is no PARAMETER=TOPIC[=on]")
 
     def words(key: str) -> tuple[str, ...]:
         return tuple(settings.get(key, "").split())
@@ -232,6 +229,9 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
         raise VocabularyError(
             f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
         )
+    wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
+    if wrong:
+        raise VocabularyError(f"{place}: switches: {wrong[0]!r} is no PARAMETER=TOPIC[=on]")
     settings[key] = value
 
 
