@@ -23,7 +23,7 @@ from pairs import Row, child, paired, seconds, table
 from robots import robot
 
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.params import params
+from multibot_rewrite.companions.params.rewrite import params
 from multibot_rewrite.companions.template import fill
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets.artefacts import Artefacts, make_artefacts

@@ -20,7 +20,7 @@ import yaml
 from pairs import Row, paired, seconds, table
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params import params
+from multibot_rewrite.companions.params.rewrite import params
 from multibot_rewrite.companions.template import fill
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.naming import make_naming

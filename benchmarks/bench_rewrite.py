@@ -19,15 +19,15 @@ from lxml import etree
 from pairs import Row, child, paired, table
 from robots import robot
 
+from multibot_rewrite import pipeline
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriting import pipeline
-from multibot_rewrite.rewriting.apply import cut, fill
-from multibot_rewrite.rewriting.collect import collect
-from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.rewriting.plan import make_plan
+from multibot_rewrite.steps.apply import cut, fill
+from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.steps.plan import make_plan
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark.md"
 ATTRIBUTES = {"name", "link", "joint", "reference"}

@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite import pipeline
 from multibot_rewrite.model import Change, Finding, UsageError
 from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
+from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriting import pipeline
-from multibot_rewrite.rewriting.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
-from multibot_rewrite.sources import Source, args_for, read_source
+from multibot_rewrite.sources.read import Source, args_for, read_source
+from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.document import read_document
 
 if TYPE_CHECKING:
-    from multibot_rewrite.rewriting.explain import Explanation
+    from multibot_rewrite.reports.explain import Explanation
 
 
 class Rewrite(NamedTuple):
@@ -116,7 +118,11 @@ def explain(
     data, name = read_source(source, args_for(source, urdf, args))
     beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
     outside = pipeline.declarations(*beside, tree) if beside else {}
-    return pipeline.explain(data, file or name, naming, tree, outside, robot, line)
+    from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
+
+    inventory = collect(read_document(data, file or name), tree, outside)
+    pipeline.check_outside(inventory, outside)
+    return explain_line(inventory, naming, tree, robot, line)
 
 
 def strip(

@@ -9,8 +9,8 @@ from typing import Any
 import yaml
 
 from multibot_rewrite.companions.respell import Names
-from multibot_rewrite.companions.rviz import RvizRobot
-from multibot_rewrite.companions.rviz_read import rviz_data
+from multibot_rewrite.companions.rviz.read import rviz_data
+from multibot_rewrite.companions.rviz.rewrite import RvizRobot
 from multibot_rewrite.companions.yaml_text import YamlText, pairs
 from multibot_rewrite.naming import make_naming
 

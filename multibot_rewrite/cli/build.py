@@ -23,7 +23,7 @@ from multibot_rewrite.fleets.manifest import (
 from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import ERROR, Finding, UsageError
 from multibot_rewrite.remap.records import Problem
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 MORE = """\
 examples:

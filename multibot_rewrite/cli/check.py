@@ -18,7 +18,7 @@ from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.graph.watching import Verdict, final, judge
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 MORE = """\
 examples:
@@ -63,7 +63,7 @@ def _plan(path: str) -> Expectation:
     data = read_file(path)
     if not is_fleet(data):
         return from_yaml(data, path)
-    from multibot_rewrite.fleet import expected
+    from multibot_rewrite.fleets.fleet import expected
     from multibot_rewrite.fleets.plan import plan_fleet
     from multibot_rewrite.fleets.started import started
 

@@ -14,11 +14,7 @@ from multibot_rewrite.cli.tables import Grid, clip, json_bytes, print_report
 from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import InputError
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.rewriting.collect import collect
-from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.rewriting.survey import (
+from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
     Mention,
@@ -32,7 +28,11 @@ from multibot_rewrite.rewriting.survey import (
     share,
     survey,
 )
-from multibot_rewrite.sources import read_file, read_source
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.read import read_file, read_source
+from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.document import read_document
 
 SUFFIXES = (".urdf", ".sdf")
 MORE = """\

@@ -10,7 +10,7 @@ from multibot_rewrite.cli.usage import policy, xacro_args
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import explain
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.rewriting.explain import Explanation
+from multibot_rewrite.reports.explain import Explanation
 
 EXAMPLE_ROBOT = "robot1"
 

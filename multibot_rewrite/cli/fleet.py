@@ -10,7 +10,7 @@ from multibot_rewrite.cli.output import print_bytes, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.fleet import Fleet, make_fleet
+from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import ERROR, UsageError
 from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS
 from multibot_rewrite.remap.records import Problem

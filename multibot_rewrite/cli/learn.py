@@ -28,7 +28,7 @@ from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.stacks import built_in
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 MORE = """\
 examples:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.cli import fleet
-from multibot_rewrite.fleet import expected
+from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.graph.plan_file import to_yaml
 
 MORE = """\

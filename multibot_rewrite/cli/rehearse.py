@@ -14,7 +14,7 @@ from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_folder
-from multibot_rewrite.fleet import Fleet, expected
+from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.graph.environment import listed
 from multibot_rewrite.graph.live.child import PLAY, RosUnusable, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text

@@ -9,7 +9,7 @@ from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.output import say
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.tables import Grid, print_report
-from multibot_rewrite.fleet import Fleet
+from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.remap.bridge import as_yaml, bridge
 from multibot_rewrite.remap.forms import EVERY_ROBOT, FORMS
 from multibot_rewrite.remap.records import Table

@@ -124,7 +124,7 @@ def _mended(
 ) -> list[str]:
     """The files that are mended. With --diff none is, and the changes are printed."""
     from multibot_rewrite.lint.fix import fix
-    from multibot_rewrite.sources import read_file
+    from multibot_rewrite.sources.read import read_file
 
     files = sorted({it.file for it in findings if it.edits})
     old = {file: read_file(file) for file in files}

@@ -14,7 +14,7 @@ from multibot_rewrite.cli.usage import check_use, input_name, parser, policy, xa
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources import Source, read_source
+from multibot_rewrite.sources.read import Source, read_source
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

@@ -12,14 +12,14 @@ from multibot_rewrite.cli.tables import Grid, json_bytes, print_report
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import Site, UsageError
+from multibot_rewrite.reports.suggest import suggest, vocabulary_text
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import block_of, look_up, near_names
-from multibot_rewrite.rewriting.collect import collect
-from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.rewriting.suggest import suggest, vocabulary_text
-from multibot_rewrite.sources import read_source
-from multibot_rewrite.vocabulary import TYPES, Rewriter, Vocabulary
-from multibot_rewrite.vocabulary.describe import facts
+from multibot_rewrite.rewriters.vocabulary import TYPES, Rewriter, Vocabulary
+from multibot_rewrite.rewriters.vocabulary.describe import facts
+from multibot_rewrite.sources.read import read_source
+from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.document import read_document
 
 MORE = """\
 examples:

@@ -13,15 +13,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.sax.saxutils import escape
 
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.known_params import in_release
-from multibot_rewrite.companions.param_topics import FROM_NODE, topic
-from multibot_rewrite.companions.spelled import SPELLERS, is_plain
+from multibot_rewrite.companions.params.known import in_release
+from multibot_rewrite.companions.params.spelled import SPELLERS, is_plain
+from multibot_rewrite.companions.params.topics import FROM_NODE, topic
+from multibot_rewrite.companions.params.undeclared import lacks, mentions, renamed, said_of
 from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
-from multibot_rewrite.companions.undeclared import lacks, mentions, renamed, said_of
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
-from multibot_rewrite.rewriting.document import Document, finding, read_document, value_slot
 from multibot_rewrite.rosnames import check_topic_name
+from multibot_rewrite.steps.document import Document, finding, read_document, value_slot
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

@@ -10,14 +10,14 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.params.spelled import frames_are_spelled, is_plain
+from multibot_rewrite.companions.params.undeclared import lacks, renamed, said_of
 from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.companions.spelled import frames_are_spelled, is_plain
 from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
-from multibot_rewrite.companions.undeclared import lacks, renamed, said_of
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
-from multibot_rewrite.rewriting.mentions import mentioned
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).

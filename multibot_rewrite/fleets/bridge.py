@@ -11,12 +11,12 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.blocks import Block, blocks, cut_out, is_block, moved, newline
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.graph_names import NOTHING, is_topic, robot_topic
 from multibot_rewrite.companions.respell import is_declared, respell
-from multibot_rewrite.companions.rviz_read import text_of
-from multibot_rewrite.companions.rviz_spell import without_placeholder
+from multibot_rewrite.companions.rviz.blocks import Block, blocks, cut_out, is_block, moved, newline
+from multibot_rewrite.companions.rviz.names import without_placeholder
+from multibot_rewrite.companions.rviz.read import text_of
 from multibot_rewrite.companions.template import Template, cut, fill
 from multibot_rewrite.companions.yaml_text import (
     Splice,

@@ -9,7 +9,7 @@ import yaml
 
 from multibot_rewrite.companions.yaml_text import anchors, line_of, pairs, read_yaml
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 Path = tuple[Any, ...]

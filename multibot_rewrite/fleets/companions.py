@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from multibot_rewrite.companions import params as ros_params
 from multibot_rewrite.companions.behavior_tree import behavior_tree
 from multibot_rewrite.companions.context import Companion, Context, make_context
-from multibot_rewrite.companions.known_params import known_params
 from multibot_rewrite.companions.lua import lua_file
-from multibot_rewrite.companions.moveit import moveit as moveit_file
-from multibot_rewrite.companions.moveit import with_semantics
+from multibot_rewrite.companions.moveit.rewrite import moveit as moveit_file
+from multibot_rewrite.companions.moveit.rewrite import with_semantics
+from multibot_rewrite.companions.params import rewrite as ros_params
+from multibot_rewrite.companions.params.known import known_params
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleet import facts_of
 from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.plan import FleetPlan
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 
 class Kin(NamedTuple):

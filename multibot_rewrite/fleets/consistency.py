@@ -12,8 +12,8 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.fleet import Fleet
 from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.parents import parents
 from multibot_rewrite.fleets.plan import FleetPlan
 from multibot_rewrite.fleets.written import Value, Written, line_in_source, values

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
+from multibot_rewrite import pipeline
 from multibot_rewrite.companions.respell import Names
-from multibot_rewrite.fleet import Member, member
+from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
 from multibot_rewrite.library import Rewrite, rewrite_all
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriting import pipeline
-from multibot_rewrite.rewriting.collect import NOTHING
+from multibot_rewrite.steps.collect import NOTHING
 
 # Kinds that are names in the ROS graph; the others are the description's own.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})

@@ -11,9 +11,9 @@ from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple
 
-from multibot_rewrite.companions.colours import read_colour
-from multibot_rewrite.fleet import facts_of
+from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.fleets.by_schema import Path, read_fitting
+from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import yaml
 
-from multibot_rewrite.companions.sections import found_sections, pattern_of
+from multibot_rewrite.companions.params.sections import found_sections, pattern_of
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 from multibot_rewrite.model import InputError
 

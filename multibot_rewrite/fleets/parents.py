@@ -9,11 +9,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from multibot_rewrite.companions.sections import PARAMETERS, found_sections
+from multibot_rewrite.companions.params.sections import PARAMETERS, found_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
-from multibot_rewrite.fleet import Fleet
 from multibot_rewrite.fleets.companions import Kin, kin_of
 from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.node_params import node_parameters
 from multibot_rewrite.fleets.plan import FleetPlan
 from multibot_rewrite.fleets.written import Written, line_in_source

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.bulk import uncollected
-from multibot_rewrite.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.describe import Described, describe
+from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile
 
 

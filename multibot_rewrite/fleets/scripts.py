@@ -16,10 +16,10 @@ from typing import Any, NamedTuple, NoReturn
 from multibot_rewrite.companions.graph_names import known_topics, robot_topic
 from multibot_rewrite.companions.respell import respell
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.fleet import Fleet
 from multibot_rewrite.fleets import spawn, teleop, transforms
 from multibot_rewrite.fleets.artefacts import Artefact, Artefacts, make_artefacts
 from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
 from multibot_rewrite.fleets.node_params import (
     Value,
@@ -34,7 +34,7 @@ from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
 from multibot_rewrite.remap.marked import unknown
 from multibot_rewrite.remap.records import TOPIC, NodeFacts, NodeTable, Problem, Table
 from multibot_rewrite.remap.table import placed, target_of
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 Rules = list[tuple[str, str]]
 

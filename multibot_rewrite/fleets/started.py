@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.fleet import Fleet
+from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.plan import FleetPlan
 from multibot_rewrite.fleets.transforms import NODE, place
 from multibot_rewrite.graph.transforms import Edge

@@ -9,7 +9,7 @@ import shlex
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.companions.rviz import world_frame
+from multibot_rewrite.companions.rviz.rewrite import world_frame
 from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
 from multibot_rewrite.fleets.plan import FleetPlan
@@ -19,7 +19,7 @@ from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridge import TF_TYPE, known_topics
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.table import placed, target_of
-from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.steps.collect import Inventory
 
 NODE = "start_pose"
 AMCL = "amcl"

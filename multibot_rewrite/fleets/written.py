@@ -10,7 +10,7 @@ from lxml import etree
 
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 # Text for people, and for shells.
 _LINES = (".md", ".py", ".sh")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
 from multibot_rewrite.remap.records import Name, NodeFacts, Table
-from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.steps.collect import Inventory
 
 # What every node has, and what nobody misses.
 ALWAYS = ("/rosout", "/parameter_events")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.naming import Naming, affix
 from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.steps.collect import Inventory
 
 STATE_PUBLISHER = "robot_state_publisher"
 

@@ -18,7 +18,7 @@ from multibot_rewrite.lint.settings import Settings, level_of
 from multibot_rewrite.lint.subjects import Failed, read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError, VocabularyError
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 AGAIN = 0.5
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from lxml.etree import _Element
 
-from multibot_rewrite.rewriting.document import Document
+from multibot_rewrite.steps.document import Document
 
 _ByTag = Mapping[str, Sequence[_Element]]
 

@@ -13,8 +13,8 @@ from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
-from multibot_rewrite.rewriting.apply import cut
-from multibot_rewrite.rewriting.document import Document, read_document
+from multibot_rewrite.steps.apply import cut
+from multibot_rewrite.steps.document import Document, read_document
 
 # A fix may uncover another one; what is not done by then goes round in circles.
 ROUNDS = 5

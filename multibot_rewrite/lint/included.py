@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
 
 _INCLUDE = regex(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
 # What stands before the last substitution of a path is not known.

@@ -17,9 +17,9 @@ from multibot_rewrite.lint.settings import Settings, matches
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriting.collect import NOTHING, Inventory, collect
-from multibot_rewrite.rewriting.document import read_document
-from multibot_rewrite.sources import read_file
+from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
+from multibot_rewrite.steps.document import read_document
 
 _NAME = regex(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
 # A root element stands in the first bytes; looking for it must not cost a read of the whole.
@@ -132,7 +132,7 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
     """With the default arguments, else with the first that the settings have for the file."""
     if not path.endswith(".xacro"):
         return read_file(path), path
-    from multibot_rewrite.xacro_source import expand
+    from multibot_rewrite.sources.expand import expand
 
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
     find = partial(package_folder, file=path, roots=settings.roots)

@@ -12,10 +12,10 @@ from lxml.etree import _Element
 
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
-from multibot_rewrite.rewriting.document import tag_end
+from multibot_rewrite.steps.document import tag_end
 
 if TYPE_CHECKING:
-    from multibot_rewrite.xacro_trace import Call
+    from multibot_rewrite.sources.trace import Call
 
 Numbers = Mapping[_Element, int]
 _BLANK = regex(rb"\s*")

@@ -15,11 +15,11 @@ from multibot_rewrite.lint.schema import Fault
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR, WARNING, Edit
 from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import Document
+from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.document import Document
 
 if TYPE_CHECKING:
-    from multibot_rewrite.xacro_trace import Origin
+    from multibot_rewrite.sources.trace import Origin
 
 NOTE = "note"
 # From the worst on; a note never makes a lint fail.

@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.checks.audit import nearest
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.rewriting.audit import nearest
-from multibot_rewrite.rewriting.document import Document, tag_end
+from multibot_rewrite.steps.document import Document, tag_end
 
 _FILE = Path(__file__).parent / "urdf.schema"
 ROBOT = "robot"

@@ -21,9 +21,9 @@ from multibot_rewrite.lint.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriting.collect import NOTHING, collect
-from multibot_rewrite.rewriting.collect import SRDF as SRDF_SECTION
-from multibot_rewrite.rewriting.document import Document, read_document
+from multibot_rewrite.steps.collect import NOTHING, collect
+from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
+from multibot_rewrite.steps.document import Document, read_document
 
 # Tells that the root is that of an SRDF, whatever stands in it.
 NO_URDF: Declared = {"link": {}}
@@ -70,8 +70,8 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
-    from multibot_rewrite.xacro_source import expand_traced  # a URDF needs none of it
-    from multibot_rewrite.xacro_trace import Trace
+    from multibot_rewrite.sources.expand import expand_traced  # a URDF needs none of it
+    from multibot_rewrite.sources.trace import Trace
 
     trace = Trace({path: data}, path)
     find = partial(package_folder, file=path, roots=settings.roots)

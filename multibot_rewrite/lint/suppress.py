@@ -18,7 +18,7 @@ from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.settings import Settings, is_on, is_silent, level_of
 from multibot_rewrite.model import Edit
-from multibot_rewrite.rewriting.document import locate
+from multibot_rewrite.steps.document import locate
 
 UNUSED, BROKEN = "MB002", "MB003"
 # With one of them the file was not looked at to its end.

@@ -10,7 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim
-from multibot_rewrite.rewriting.document import tag_end
+from multibot_rewrite.steps.document import tag_end
 
 Starts = Mapping[_Element, int]
 _ATTRIBUTE = regex(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, cast
 from lxml import etree
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
-from multibot_rewrite.rewriting.collect import Inventory
+from multibot_rewrite.steps.collect import Inventory
 
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
 TF_TYPE = "tf2_msgs/msg/TFMessage"

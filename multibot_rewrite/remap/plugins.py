@@ -21,10 +21,10 @@ from multibot_rewrite.remap.records import (
     Rule,
 )
 from multibot_rewrite.rewriters.switches import switched_off, switches
-from multibot_rewrite.rewriting.collect import Host, Inventory
-from multibot_rewrite.rewriting.document import locate
+from multibot_rewrite.rewriters.vocabulary import Rewriter
 from multibot_rewrite.rosnames import parse_remap
-from multibot_rewrite.vocabulary import Rewriter
+from multibot_rewrite.steps.collect import Host, Inventory
+from multibot_rewrite.steps.document import locate
 
 ROS_NODE = "ros/remapping"
 

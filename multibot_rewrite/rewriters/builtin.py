@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from multibot_rewrite.model import VocabularyError
 from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.vocabulary import advice, load_vocabulary
+from multibot_rewrite.rewriters.vocabulary import advice, load_vocabulary
 
 
 @lru_cache(maxsize=8)

@@ -10,8 +10,8 @@ from lxml import etree
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_default
+from multibot_rewrite.rewriters.vocabulary import Rewriter, split_path, split_step
 from multibot_rewrite.rosnames import expand, split_remap
-from multibot_rewrite.vocabulary import Rewriter, split_path, split_step
 
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 # Read from the plugin itself where it has no <ros>; a <ros> would hide them (gazebo_ros node.cpp).

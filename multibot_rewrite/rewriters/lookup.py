@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from multibot_rewrite.model import Site
 from multibot_rewrite.rewriters.tree import library_key
-from multibot_rewrite.vocabulary import Rewriter, Vocabulary
+from multibot_rewrite.rewriters.vocabulary import Rewriter, Vocabulary
 
 _LIKE = 0.6
 

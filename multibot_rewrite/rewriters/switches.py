@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-    from multibot_rewrite.vocabulary import Rewriter
+    from multibot_rewrite.rewriters.vocabulary import Rewriter
 
 ON, OFF = ("true", "1"), ("false", "0")
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.model import Site, VocabularyError
-from multibot_rewrite.vocabulary import Rewriter, Vocabulary, split_path, split_step
+from multibot_rewrite.rewriters.vocabulary import Rewriter, Vocabulary, split_path, split_step
 
 if TYPE_CHECKING:
     from lxml.etree import _Element

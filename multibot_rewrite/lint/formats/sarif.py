@@ -19,7 +19,7 @@ from multibot_rewrite.lint.formats.shared import (
 )
 from multibot_rewrite.lint.records import LintFinding, Rule
 from multibot_rewrite.model import Edit
-from multibot_rewrite.rewriting.document import locate
+from multibot_rewrite.steps.document import locate
 from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]

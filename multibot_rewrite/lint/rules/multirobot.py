@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks import hazards, robots
+from multibot_rewrite.checks.remarks import Remark
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import NOTE, SRDF, XACRO, Problem, Subject, rule
 from multibot_rewrite.lint.written import claim_is_fixed, is_fixed, starts_of
@@ -15,8 +17,6 @@ from multibot_rewrite.rewriters.insert import insertions
 from multibot_rewrite.rewriters.spelling import HOLE
 from multibot_rewrite.rewriters.switches import switched_off
 from multibot_rewrite.rewriters.tree import library_key
-from multibot_rewrite.rewriting import hazards, robots
-from multibot_rewrite.rewriting.remarks import Remark
 from multibot_rewrite.rosnames import split_remap
 
 TWO = ("robot1", "robot2")
@@ -678,7 +678,7 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.rewriters.contact import respell_collisions
-    from multibot_rewrite.rewriting.plan import LAST, respeller
+    from multibot_rewrite.steps.plan import LAST, respeller
 
     document, claims, _, declared, _ = subject.inventory
     first, last = (

@@ -11,8 +11,8 @@ from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import NOTE, SRDF, URDF, Problem, Subject, rule
 from multibot_rewrite.model import ERROR, WARNING, Claim, Edit
 from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN
-from multibot_rewrite.rewriting.document import value_slot
 from multibot_rewrite.rosnames import check_topic_name, propose_token, split_remap
+from multibot_rewrite.steps.document import value_slot
 
 WORLD = "world"
 SPOKEN = frozenset({"topic", "service", "namespace"})

@@ -11,15 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.lint.robot import Joint
-from multibot_rewrite.model import ERROR, WARNING, Claim
-from multibot_rewrite.naming import FRAME_KINDS
-from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
-from multibot_rewrite.rewriting.audit import uses_xacro
-from multibot_rewrite.rewriting.collect import Inventory
-from multibot_rewrite.rewriting.document import locate
-from multibot_rewrite.rewriting.references import (
+from multibot_rewrite.checks.audit import uses_xacro
+from multibot_rewrite.checks.references import (
     COMPARED,
     HINTED,
     Loose,
@@ -31,10 +24,17 @@ from multibot_rewrite.rewriting.references import (
     repeated,
     where,
 )
-from multibot_rewrite.rewriting.remarks import Remark
+from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.robot import Joint
+from multibot_rewrite.model import ERROR, WARNING, Claim
+from multibot_rewrite.naming import FRAME_KINDS
+from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
+from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.document import locate
 
 if TYPE_CHECKING:
-    from multibot_rewrite.xacro_trace import Origin
+    from multibot_rewrite.sources.trace import Origin
 
 # What may stand in a frame parameter though nothing in the file has it: it is made at run time.
 MADE = ("odom", "map", "world")

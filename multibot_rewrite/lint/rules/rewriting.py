@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.audit import unknown_hardware, unknown_plugins
+from multibot_rewrite.checks.mentions import remark, unclaimed_mentions
 from multibot_rewrite.lint.records import NOTE, SRDF, URDF, Problem, Subject, rule
 from multibot_rewrite.model import WARNING
-from multibot_rewrite.rewriting.audit import unknown_hardware, unknown_plugins
-from multibot_rewrite.rewriting.mentions import remark, slot_values, unclaimed_mentions
+from multibot_rewrite.steps.document import slot_values
 
 
 @rule(

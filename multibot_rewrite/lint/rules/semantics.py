@@ -8,12 +8,12 @@ from math import isfinite
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.references import nearest, repeated
 from multibot_rewrite.lint.groups import chain, groups_of, joints_of, links_of, text_of
 from multibot_rewrite.lint.records import NOTE, SRDF, Problem, Subject, rule
 from multibot_rewrite.lint.robot import Joint, Robot
 from multibot_rewrite.lint.rules.references import undeclared
 from multibot_rewrite.model import ERROR, WARNING
-from multibot_rewrite.rewriting.references import nearest, repeated
 
 # What srdfdom (model.cpp) reads: an element, the attributes without which it is left out, the others
 # and its children.

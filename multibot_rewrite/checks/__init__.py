@@ -1,0 +1,1 @@
+"""What is asked about a description: for its rewrite and for the lint."""

@@ -1,0 +1,138 @@
+"""What a person should know about a description before it is rewritten: one function a question."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.checks.hazards import hazards
+from multibot_rewrite.checks.references import (
+    ambiguous,
+    doubtful,
+    duplicates,
+    loose_ends,
+    nearest,
+    remarks,
+)
+from multibot_rewrite.checks.remarks import Remark, told
+from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.naming import Naming
+from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
+from multibot_rewrite.rewriters.vocabulary import Rewriter
+from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.document import Document, finding
+
+__all__ = ["audit", "is_unknown", "nearest", "unknown_hardware", "unknown_plugins"]
+
+
+def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
+    """All findings that do not depend on the robot's name, in source order."""
+    document = inventory.document
+    found = [
+        *leftover_xacro(inventory),
+        *worlds(inventory),
+        *told(document, duplicates(inventory), ERROR),
+        *told(document, undeclared(inventory, naming), WARNING),
+        *told(document, ambiguous(inventory), WARNING),
+        *told(document, unknown_plugins(inventory, tree), WARNING),
+        *told(document, unknown_hardware(inventory, tree), WARNING),
+        *hazards(inventory, naming),
+    ]
+    return sorted(found, key=lambda item: (item.line, item.column, item.code))
+
+
+def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
+    """Elements and substitutions that only xacro understands."""
+    document = inventory.document
+    source = document.source
+    hint = "expand it first: give the file the name ….xacro, or run xacro"
+    elements = document.root.iter("*") if uses_xacro(document) else iter(())
+    tags = ((str(e.tag), start) for e, start in zip(elements, document.starts, strict=False))
+    tag, start = next(((tag, start) for tag, start in tags if "/xacro}" in tag), ("", 0))
+    if tag:
+        message = f"xacro element <{tag.rpartition('}')[2]}>"
+        yield finding(document, start, "MB105", ERROR, message, hint)
+    elif b"${" in source or b"$(arg" in source:
+        value, start = next(_substitutions(document), ("", 0))
+        if value:
+            message = f"xacro substitution {value!r}"
+            yield finding(document, start, "MB105", ERROR, message, hint)
+
+
+def _substitutions(document: Document) -> Iterator[tuple[str, int]]:
+    """Values that hold one, claimed or not, and their elements; comments do not count."""
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        values = (*element.values(), element.text or "", *(c.tail or "" for c in element))
+        for value in values:
+            if "${" in value or "$(arg" in value:
+                yield " ".join(str(value).split()), start
+
+
+def uses_xacro(document: Document) -> bool:
+    """A cheap look before the search: is a prefix bound to xacro, and is it used?"""
+    spaces = document.root.nsmap.items()
+    prefixes = {f"<{prefix}:" for prefix, uri in spaces if prefix and "/xacro" in uri}
+    return any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
+
+
+def worlds(inventory: Inventory) -> Iterator[Finding]:
+    """A world holds several models: which of them is the robot, nobody can tell."""
+    document = inventory.document
+    starts = zip(document.root.iter("*"), document.starts, strict=True)
+    for element, start in starts if document.root.tag == "sdf" else ():
+        if element.tag == "world":
+            message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
+            hint = "give the model.sdf of the robot, and <include> the results in the world"
+            yield finding(document, start, "MB109", ERROR, message, hint)
+
+
+def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """Uses of a link or joint that nothing declares: they stay as they are."""
+    loose = loose_ends(doubtful(inventory), inventory.declared, naming.shared_frames)
+    for it in remarks(loose, inventory.declared):
+        yield it._replace(message=f"{it.message}: it stays as it is")
+
+
+def is_unknown(rewriter: Rewriter) -> bool:
+    """No section knows the plugin: the element's own stands in, or the one for any ROS node."""
+    return rewriter.select == "plugin" or rewriter.names[0] == ANY_WITH_ROS
+
+
+def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
+    """Plugins no section knows: what their parameters name can only be guessed."""
+    known = {}
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is None or not is_unknown(rewriter):
+            continue
+        name = host.element.get("filename") or host.element.get("name") or ""
+        if name not in known:
+            known[name] = nearest(library_key(name), tree.vocabulary.names("plugin"))
+        near = known[name]
+        yield Remark(
+            host.element,
+            host.start,
+            None,
+            "MB902",
+            f"plugin {name!r} is not in the vocabulary: its own parameters stay as they are",
+            f"the nearest known one is {near!r}" if near else "",
+        )
+
+
+def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
+    """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is None or rewriter.select != "hardware":
+            continue
+        name = host.element.findtext("hardware/plugin", "").strip()
+        if not name or host.element.find("hardware/param") is None:
+            continue
+        near = nearest(name, tree.vocabulary.names("hardware"))
+        yield Remark(
+            host.element,
+            host.start,
+            None,
+            "MB903",
+            f"hardware class {name!r} is not in the vocabulary: its own parameters stay as they are",
+            f"the nearest known one is {near!r}" if near else "",
+        )

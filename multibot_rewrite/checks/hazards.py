@@ -1,0 +1,181 @@
+"""What several robots of one description will stumble over: one function a hazard."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+from multibot_rewrite.checks.remarks import Remark, about, told
+from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.naming import (
+    FRAME_KINDS,
+    NAMESPACE,
+    POSTFIX,
+    PREFIX,
+    TF_TOPICS,
+    Naming,
+    affix,
+)
+from multibot_rewrite.rewriters.spelling import spell
+from multibot_rewrite.rewriters.vocabulary import Rewriter
+from multibot_rewrite.rosnames import split_remap
+from multibot_rewrite.steps.collect import Host, Inventory
+
+
+def hazards(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+    """All of them, whatever the robots are called."""
+    for hazard in (
+        prefix_only,
+        leading_slashes,
+        moved_tf,
+        bare_lookups,
+        process_wide,
+        hardwired,
+        outside_frames,
+        reordered,
+    ):
+        yield from told(inventory.document, hazard(inventory, naming), WARNING)
+
+
+def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """Parameters that the consumer puts in front of names: they cannot hold a postfix."""
+    if naming.affix == PREFIX or "sensor" not in naming.separators:
+        return
+    for claim in inventory.claims:
+        if claim.site.form == "prefix":
+            message = (
+                f"{claim.site.path} {claim.value!r} stands in front of names that code makes, a "
+                "postfix cannot reach them"
+            )
+            yield about(claim, "MB422", message, "use --affix prefix")
+
+
+def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
+    for claim in inventory.claims:
+        kinds = claim.site.kinds
+        if claim.site.form != "whole" or kinds[0] not in FRAME_KINDS:
+            continue
+        if claim.value[:1] == "/" and claim.value[1:] not in naming.shared_frames:
+            message = f"frame {claim.value!r} starts with a slash, tf2 look-ups reject it"
+            yield about(claim, "MB301", message, "drop the slash")
+
+
+def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """A rule of the file that takes a plugin off the one /tf which the layout wants."""
+    for claim in inventory.claims if not naming.layout.tf_per_robot else ():
+        rule = split_remap(claim.value) if claim.site.form == "remap" else None
+        if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
+            message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
+            hint = "drop the rule, or use --layout both"
+            yield about(claim, "MB423", message, hint)
+
+
+def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """Consumers that find things by bare name in the whole world, where those names stay bare."""
+    declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
+    for rewriter, host in _known_hosts(inventory):
+        kind = rewriter.unique
+        if kind in declared and kind not in naming.separators:
+            message = (
+                f"{rewriter.names[0]} looks {kind}s up by bare name in the whole world: "
+                "it may find another robot's"
+            )
+            hint = f"--layout both spells {kind}s per robot"
+            yield _host(host, "MB425", message, hint)
+
+
+def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """Remap rules that hold for every node of the process keep robots apart only by namespaces
+    (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
+    if naming.topics != NAMESPACE:
+        for rewriter, host in _known_hosts(inventory):
+            if not rewriter.process_wide:
+                continue
+            message = (
+                f"remap rules of {rewriter.names[0]} hold for the whole process, other robots' too"
+            )
+            hint = "with several robots in one Gazebo use --topics namespace"
+            yield _host(host, "MB426", message, hint)
+        return
+    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.rewriter)}
+    for claim in inventory.claims if inside else ():
+        rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
+        if rule is None or inside.isdisjoint(claim.element.iterancestors()):
+            continue
+        if rule.target.startswith("/"):
+            message = f"{claim.value!r} holds for the whole process, other robots' nodes too"
+            hint = "a relative target ends in each robot's own namespace"
+            yield about(claim, "MB426", message, hint)
+
+
+def hardwired(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """Plugins whose code looks for a literal name: under another one they find nothing."""
+    for rewriter, host in _known_hosts(inventory):
+        for entry in rewriter.hardwired:
+            kind, _, name = entry.partition(":")
+            if name in inventory.declared[kind] and affix(naming, kind, name) is not None:
+                message = (
+                    f"{rewriter.names[0]} looks for a {kind} called {name!r}, which is renamed"
+                )
+                hint = "its code knows no other name: use --layout tf-per-robot"
+                yield _host(host, "MB428", message, hint)
+
+
+def _host(host: Host, code: str, message: str, hint: str) -> Remark:
+    return Remark(host.element, host.start, None, code, message, hint)
+
+
+def _holds_for_all(rewriter: Rewriter | None) -> bool:
+    return rewriter is not None and rewriter.process_wide
+
+
+def _known_hosts(inventory: Inventory) -> Iterator[tuple[Rewriter, Host]]:
+    for host in inventory.hosts:
+        if host.node.rewriter is not None:
+            yield host.node.rewriter, host
+
+
+def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
+    for claim in inventory.claims:
+        if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
+            continue
+        for kind, there in spell(claim, inventory.declared, naming):
+            if kind == "frame":
+                new = there.spell(claim.value, "ROBOT")
+                message = (
+                    f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
+                )
+                hint = f"--shared-frames world,map,{claim.value} keeps it"
+                yield about(claim, "MB427", message, hint)
+
+
+def reordered(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+    """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
+    of pinocchio's configuration vector."""
+    if naming.affix != POSTFIX or "joint" not in naming.separators:
+        return
+    siblings: dict[str, list[str]] = defaultdict(list)
+    declared = inventory.declared["joint"]
+    for claim in inventory.claims:
+        parent = claim.element.find("parent") if declared.get(claim.value) is claim else None
+        if parent is not None:
+            siblings[parent.get("link", "")].append(claim.value)
+    for link, names in siblings.items():
+        old = sorted(names)
+        # The order may hang on the robot's name: a first and a last one show it.
+        orders = [sorted(names, key=lambda name: _ordered(naming, name, r)) for r in "\0~"]
+        new = next((order for order in orders if order != old), None)
+        if new is not None:
+            yield about(
+                inventory.declared["joint"][new[0]],
+                "MB405",
+                f"the joints below link {link!r} change their order: {', '.join(new)}",
+                "urdfdom sorts them by name, a prefix would not: --affix prefix",
+            )
+
+
+def _ordered(naming: Naming, name: str, robot: str) -> str:
+    there = affix(naming, "joint", name)
+    return there.spell(name, robot) if there else name

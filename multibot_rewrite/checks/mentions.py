@@ -1,0 +1,127 @@
+"""Names of the description that stand where no site claims them: what a rewrite may have missed."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.model import WARNING, Finding, Site
+from multibot_rewrite.rewriters.tree import Node, Tree
+from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.document import finding, value_slot
+
+_BETWEEN = regex(r":=|::|[\s,;/]+")
+_NUMBERS = regex(r"[-+0-9.eE\s]*$")
+
+
+class Mention(NamedTuple):
+    """An unclaimed value that is ``name`` or holds it; ``attribute`` is empty for text."""
+
+    element: etree._Element
+    start: int
+    attribute: str
+    value: str
+    name: str
+
+
+def find_mentions(
+    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+) -> list[Finding]:
+    """A warning for each of ``unclaimed_mentions``, at the value itself."""
+    document = inventory.document
+    found = []
+    for it in unclaimed_mentions(inventory, values, names, tree):
+        slot = value_slot(document.source, it.start, it.attribute, it.value)
+        said = remark(it)
+        at = slot[0] if slot else it.start
+        found.append(finding(document, at, said.code, WARNING, said.message, said.hint))
+    return found
+
+
+def unclaimed_mentions(
+    inventory: Inventory, values: list[str], names: Collection[str], tree: Tree
+) -> list[Mention]:
+    """Each unclaimed value that is one of ``names`` or holds one as a list item, path segment,
+    scope or side of a remap rule; ``values`` are all of ``slot_values``. Values with a ``keep``
+    site are no mention."""
+    if not names:
+        return []
+    telling = _telling(values, frozenset(names))
+    count = Counter(filter(telling.__contains__, values))
+    claimed = Counter([claim.value for claim in inventory.claims])
+    suspects = {value for value in telling if count[value] > claimed[value]}
+    if not suspects:
+        return []
+    return [
+        Mention(*slot, telling[slot[3]])
+        for slot in _unclaimed(inventory, suspects)
+        if not kept(slot[0], slot[2], tree)
+    ]
+
+
+def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
+    """The values that are names or hold one, and the name."""
+    different = set(values)
+    telling = {value: value for value in names & different}
+    others = [value for value in different - names if not _NUMBERS.match(value)]
+    # One look at all of them: mostly none holds a name.
+    if not names.isdisjoint(_BETWEEN.split(" ".join(others))):
+        telling |= {value: name for value in others if (name := mentioned(value, names))}
+    return telling
+
+
+def mentioned(value: str, names: frozenset[str]) -> str:
+    """The name that a value is, or that it holds; empty where there is none."""
+    if value in names:
+        return value
+    if _NUMBERS.match(value):
+        return ""
+    return next((word for word in _BETWEEN.split(value) if word in names), "")
+
+
+def _unclaimed(
+    inventory: Inventory, suspects: set[str]
+) -> Iterator[tuple[etree._Element, int, str, str]]:
+    """(element, start, attribute or "", value) of the suspect slots without a site, in order."""
+    claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
+    document = inventory.document
+    for element, start in zip(document.elements, document.starts, strict=True):
+        slots = [(str(key), str(value)) for key, value in element.items()]
+        slots.append(("", (element.text or "").strip()))
+        slots = [slot for slot in slots if (start, slot[0]) not in claimed]
+        # Text behind a child or comment is never what a site claims.
+        slots += [("", (child.tail or "").strip()) for child in element]
+        for attribute, value in slots:
+            if value in suspects:
+                yield element, start, attribute, value
+
+
+def kept(element: etree._Element, attribute: str, tree: Tree) -> Site | None:
+    """The ``keep`` site for a value, if the vocabulary has one."""
+    node = node_of(element, tree)
+    return node.keeps.get(attribute) if node else None
+
+
+def node_of(element: etree._Element, tree: Tree) -> Node | None:
+    """The node of the tree that serves an element."""
+    parent = element.getparent()
+    if parent is None:
+        return tree.formats.get(tree.format_of(element))
+    above = node_of(parent, tree)
+    node = above.children.get(str(element.tag)) if above else None
+    return node.select(element) if node is not None and node.select is not None else node
+
+
+def remark(mention: Mention) -> Remark:
+    """What to say about one."""
+    element, start, attribute, value, name = mention
+    where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
+    text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
+    message = f"unclaimed mention: {text}, and nothing known says what it means: it stays as it is"
+    hint = "add a line to a vocabulary file: a uses/declares site, or keep"
+    return Remark(element, start, attribute, "MB901", message, hint)

@@ -1,0 +1,312 @@
+"""MoveIt's YAML files for any number of robots: which kind a file is, its names, what they become.
+
+They are read by MoveItConfigsBuilder (PyYAML) and given to move_group as parameters, so nothing gets
+a section of a node, anchors are legal, and of a key that is there twice the last one counts.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.context import Companion, Context
+from multibot_rewrite.companions.moveit.sites import (
+    Kind,
+    Site,
+    Sites,
+    entries,
+    find_sites,
+    kinds,
+)
+from multibot_rewrite.companions.params.sections import PARAMETERS, finding
+from multibot_rewrite.companions.params.spelled import SPELLERS, expressible, is_plain
+from multibot_rewrite.companions.params.spelled import node as node_name
+from multibot_rewrite.companions.params.topics import FROM_NODE, Facts, facts_by_name, topic
+from multibot_rewrite.companions.params.undeclared import lacks, mentions, renamed, said_of
+from multibot_rewrite.companions.respell import respell
+from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
+from multibot_rewrite.model import WARNING, Finding, InputError
+from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rosnames import check_topic_name
+
+EMPTY = "empty"
+# The nodes that these files are for, as the stacks call them.
+MOVE_GROUP, SERVO = "move_group", "servo_node"
+_CLOSED = ("joint", "link", "frame", "group")
+_GRAPH_WORDS = ("topic", "service")
+# An anchor or a tag in front of what is the value.
+_MARKS = re.compile(r"(?:[&!][^\s,\[\]{}]*\s+)*")
+_EVALUATOR = re.compile(r"\s*(joint|link)s?\s*\(([^()]*)\)\s*")
+# moveit_ros_control_interface asks below the root where nothing else is said.
+_MANAGER = "moveit_controller_manager"
+_ROS_CONTROL, _CONTROL_NAMESPACE = "moveit_ros_control_interface/", "ros_control_namespace"
+_DEPTH = 4
+
+
+class _Desk(NamedTuple):
+    """What every step about one file needs; ``node`` is the stack's name of the one it is for."""
+
+    document: YamlText
+    context: Context
+    node: str
+    facts: Facts
+
+
+def moveit(document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()) -> Companion:
+    """A file of MoveIt with holes for a robot, and what a person should know about it.
+
+    What an SRDF declares is known where ``with_semantics`` has added it; ``facts`` are those of the
+    robot's nodes, whose remap rules move topics too. Raises InputError for a file that is none of
+    MoveIt's, and for a name shared by an alias that would need two spellings.
+    """
+    try:
+        return _moveit(document, context, facts_by_name(facts))
+    except RecursionError:
+        raise InputError(f"{document.file}:1: nested too deep; MoveIt's files never are") from None
+
+
+def with_semantics(context: Context, declared: Declared) -> Context:
+    """The context with the groups and virtual joints that an SRDF declares (not rewritten)."""
+    both = dict(context.names.declared)
+    for kind in ("group", "joint"):
+        both[kind] = {**both.get(kind, {}), **declared.get(kind, {})}
+    names, topics = (it._replace(declared=both) for it in (context.names, context.topics))
+    return context._replace(names=names, topics=topics)
+
+
+def kind_of(document: YamlText) -> str:
+    """Which kind of MoveIt's files this is, by what is in it; its name decides where that does not.
+
+    ``empty`` where nothing is in it. Raises InputError, with the reason, where it is none.
+    """
+    kind = _kind(document)
+    return kind.name if kind else EMPTY
+
+
+def _kind(document: YamlText) -> Kind | None:
+    root = document.root
+    if root is None or root.tag == "tag:yaml.org,2002:null":
+        return None
+    if not isinstance(root, yaml.MappingNode):
+        place = f"{document.file}:{line_of(root)}"
+        raise InputError(f"{place}: no file of MoveIt's: it is not a map; write key: value")
+    _refuse_params(document, root, _DEPTH)
+    paths = set(_paths(root))
+    told = (kind for kind in kinds() if not paths.isdisjoint(kind.tells))
+    if kind := next(told, None) or _by_values(root) or _by_name(document.file):
+        return kind
+    words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
+    raise InputError(
+        f"{document.file}:{line_of(root)}: no file of MoveIt's that is known: it starts with"
+        f" {words or 'nothing'}; leave it out, or give a parameter file under params"
+    )
+
+
+def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:
+    for key, value in entries(node) if depth else ():
+        if key.value == PARAMETERS:
+            place = f"{document.file}:{line_of(key)}"
+            raise InputError(f"{place}: it has {PARAMETERS}: a parameter file, put it under params")
+        _refuse_params(document, value, depth - 1)
+
+
+def _paths(root: yaml.Node) -> Iterator[str]:
+    """The keys of the first two levels, the second with ``*`` for the first as well."""
+    for key, value in entries(root):
+        first, _, rest = str(key.value).partition(".")
+        yield from (str(key.value), first)
+        for word in (rest.partition(".")[0], *(str(below.value) for below, _ in entries(value))):
+            yield from (f"{first}.{word}", f"*.{word}")
+
+
+def _by_values(root: yaml.Node) -> Kind | None:
+    """Numbers and nothing else are positions of joints."""
+    values = [value for _, value in entries(root)]
+    if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
+        return next(kind for kind in kinds() if kind.name == "initial_positions")
+    return None
+
+
+def _by_name(file: str) -> Kind | None:
+    name = file.replace("\\", "/").rpartition("/")[2].lower()
+    return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)
+
+
+def _moveit(document: YamlText, context: Context, facts: Facts) -> Companion:
+    for hole in (GRAPH, SPELLED):
+        if hole in document.text:
+            raise InputError(f"{document.file}: the word {hole} is this tool's own; write another")
+    kind = _kind(document)
+    sites = find_sites(document.root, kind.names if kind else {}, context.names)
+    node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
+    desk = _Desk(document, context, node, facts)
+    splices = [*_spliced(desk, sites.names), *_inserted(document, context)]
+    shift = [Splice(0, 0, document.bom)] if document.bom else []
+    found = sorted(set(_findings(document, context, sites)), key=lambda it: it[5:])
+    return Companion(cut(document.text, [*shift, *splices]), tuple(found))
+
+
+def _spliced(desk: _Desk, sites: Iterable[Site]) -> Iterator[Splice]:
+    """One splice for each scalar; a key may hold several names, an alias may reach one twice."""
+    texts: dict[int, dict[int, tuple[Site, str]]] = {}
+    for site in sites:
+        new = _respelled(desk, site.word, site.text)
+        _, other = texts.setdefault(id(site.scalar), {}).setdefault(site.at, (site, new))
+        if other != new:
+            place = f"{desk.document.file}:{line_of(site.scalar)}"
+            raise InputError(
+                f"{place}: an alias uses {site.text!r} as two kinds of name, which become {other!r}"
+                f" and {new!r}; write it out at both places".replace(SPELLED, "ROBOT")
+            )
+    for parts in texts.values():
+        scalar, value = next(iter(parts.values()))[0].scalar, ""
+        value = str(scalar.value)
+        for at, (site, new) in sorted(parts.items(), reverse=True):
+            value = value[:at] + new + value[at + len(site.text) :]
+        if value != scalar.value:
+            yield _replaced(desk.document, scalar, value)
+
+
+def _replaced(document: YamlText, scalar: yaml.ScalarNode, new: str) -> Splice:
+    """The splice for a scalar's value; its anchor and tag stay."""
+    start, end = scalar.start_mark.index, scalar.end_mark.index
+    if scalar.style in ("|", ">"):
+        place = f"{document.file}:{line_of(scalar)}"
+        raise InputError(f"{place}: a name is a block of text; write it behind its key")
+    marks = _MARKS.match(document.text, start, end)
+    return Splice(marks.end() if marks else start, end, quoted(new, scalar.style or ""))
+
+
+def _respelled(desk: _Desk, word: str, value: str) -> str:
+    if word == "id":
+        return value
+    if word in _GRAPH_WORDS:
+        return topic(desk.context, desk.node, word, value, FROM_NODE, desk.facts).text
+    if word == "controller_topic":
+        return _controller_topic(desk, value)
+    if word == "controller":
+        return node_name(desk.context, value) if is_plain(value) else value
+    return SPELLERS[word](desk.context, value)
+
+
+def _controller_topic(desk: _Desk, value: str) -> str:
+    """``/arm_controller/joint_trajectory``: below a node, whose name it follows."""
+    head, slash, rest = value.rpartition("/")
+    if not is_plain(value) or not head or value.startswith("~"):
+        return topic(desk.context, desk.node, "topic", value, FROM_NODE, desk.facts).text
+    if desk.context.topics.naming.topics == NAMESPACE:
+        return respell(desk.context.topics, "topic", value)
+    return node_name(desk.context, head) + slash + rest
+
+
+def _asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
+    """The key that has MoveIt ask a controller manager, if the file does not say where that is."""
+    keys = {str(key.value): (key, value) for key, value in entries(document.root)}
+    if _MANAGER not in keys or _CONTROL_NAMESPACE in keys:
+        return None
+    key, value = keys[_MANAGER]
+    return key if str(value.value).startswith(_ROS_CONTROL) else None
+
+
+def _inserted(document: YamlText, context: Context) -> Iterator[Splice]:
+    """The namespace of the controller manager, where the default is the root's."""
+    key = _asks_below_root(document)
+    default = SPELLERS["namespace"](context, "/")
+    flow = isinstance(document.root, yaml.MappingNode) and document.root.flow_style
+    if key is None or default == "/":
+        return
+    if flow:
+        at = key.start_mark.index
+        yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}, ")
+        return
+    end = "\r\n" if "\r\n" in document.text else "\n"
+    at = key.start_mark.index
+    yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}{end}{' ' * key.start_mark.column}")
+
+
+def _findings(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
+    for key in sites.twice:
+        message = f"{key.value!r} stands here twice, and PyYAML takes the last one"
+        yield finding(document, key, "MF303", WARNING, message, "delete one of them")
+    yield from _unreachable(document, context, sites)
+    told: set[tuple[str, str]] = set()
+    for site in sites.names:
+        for word, text in _named(site):
+            if (word, text) not in told:
+                told.add((word, text))
+                yield from _about(document, context, site, (word, text))
+    yield from _mentions(document, context, sites.unclaimed)
+
+
+def _unreachable(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
+    """Without namespaces each robot's manager has a name of its own."""
+    asked = [
+        _asks_below_root(document),
+        *(it.scalar for it in sites.names if it.word == "namespace"),
+    ]
+    for key in asked if context.names.naming.topics != NAMESPACE else ():
+        if key is not None:
+            message = "MoveIt asks for /controller_manager, and each robot's has a name of its own"
+            hint = "use moveit_simple_controller_manager, or a layout with namespaces"
+            yield finding(document, key, "MF308", WARNING, message, hint)
+
+
+def _named(site: Site) -> Iterator[tuple[str, str]]:
+    """The names that are looked for in the description."""
+    found = _EVALUATOR.fullmatch(site.text) if site.word == "words" else None
+    if found:
+        yield from ((found[1], word.strip()) for word in found[2].split(","))
+    else:
+        yield site.word, site.text
+
+
+def _about(
+    document: YamlText, context: Context, site: Site, name: tuple[str, str]
+) -> Iterator[Finding]:
+    word, text = name
+    naming = context.names.naming
+    if word in _CLOSED and lacks(context, word, text):
+        yield finding(document, site.scalar, "MF301", WARNING, *said_of(context, word, text))
+    elif text and not is_plain(text) and _matters(context, word):
+        message = f"{word} {text!r} holds a substitution, and stays as it is"
+        hint = "see that what it is filled with is the robot's own name of it"
+        yield finding(document, site.scalar, "MF304", WARNING, message, hint)
+    elif word == "group" and "group" in naming.separators and not _has_groups(context):
+        message = f"groups are renamed, but the SRDF that has {text!r} is not known: it stays"
+        yield finding(document, site.scalar, "MF305", WARNING, message, "give the SRDF: srdf:")
+    elif not expressible(context, word):
+        message = f"{word} can only stand before names, and the naming is a postfix"
+        yield finding(document, site.scalar, "MF306", WARNING, message, "use affix: prefix")
+    elif word in _GRAPH_WORDS and is_plain(text) and (fault := check_topic_name(text)):
+        message = f"{word} {text!r} is none: {fault.reason}"
+        yield finding(document, site.scalar, "MF307", WARNING, message, "correct it")
+
+
+def _has_groups(context: Context) -> bool:
+    """Are the groups of an SRDF known?"""
+    return bool(context.names.declared.get("group"))
+
+
+def _matters(context: Context, word: str) -> bool:
+    """Would a name of this kind be spelled for the robot?"""
+    if word in _CLOSED:
+        return word in context.names.naming.separators
+    return word in _GRAPH_WORDS or word == "controller"
+
+
+def _mentions(
+    document: YamlText, context: Context, unclaimed: Iterable[yaml.ScalarNode]
+) -> Iterator[Finding]:
+    names = renamed(context)
+    for scalar in unclaimed:
+        text = str(scalar.value)
+        if is_text(scalar) and mentions(text, names):
+            message = f"unclaimed mention: {text!r}, and nothing known says what it means"
+            hint = "it stays as it is: see whether it has to name one robot's"
+            yield finding(document, scalar, "MF302", WARNING, message, hint)

@@ -1,0 +1,219 @@
+"""Where the names are in MoveIt's YAML files: read from ``moveit.yaml``, which says its form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any, NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.respell import KINDS, Names, is_declared
+from multibot_rewrite.companions.yaml_text import is_text, pairs
+
+KEEP = "keep"
+# A word for names, or keys with what stands below them.
+Rule = Any
+Rules = Mapping[str, Rule]
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_MERGE = "<<"
+
+
+class Kind(NamedTuple):
+    """A kind of file: what tells it, words in its file's name, and its names."""
+
+    name: str
+    tells: tuple[str, ...]
+    files: tuple[str, ...]
+    names: Rules
+
+
+class Site(NamedTuple):
+    """A name: the scalar it stands in, where in its value, and what it is."""
+
+    scalar: yaml.ScalarNode
+    at: int
+    text: str
+    word: str
+
+
+class Sites(NamedTuple):
+    """The names of a file, the scalars that nothing is known of, and keys that stand twice."""
+
+    names: list[Site]
+    unclaimed: list[yaml.ScalarNode]
+    twice: list[yaml.ScalarNode]
+
+
+class _Walk(NamedTuple):
+    names: Names
+    found: list[Site]
+    claimed: set[int]
+    seen: set[tuple[int, int]]
+
+
+# The names in a key, and the rule for what is below it.
+_Match = tuple[tuple[tuple[int, str, str], ...], Rule]
+
+
+@cache
+def kinds() -> tuple[Kind, ...]:
+    """All kinds of files, in the order in which they are tried."""
+    text = (
+        files("multibot_rewrite.companions.moveit")
+        .joinpath("moveit.yaml")
+        .read_text(encoding="utf-8")
+    )
+    data = yaml.load(text, Loader=_LOADER)
+    return tuple(
+        Kind(name, tuple(it["tells"]), tuple(it["files"]), {**data["common"], **it["names"]})
+        for name, it in data["kinds"].items()
+    )
+
+
+def find_sites(root: yaml.Node | None, rules: Rules, names: Names) -> Sites:
+    """Every name below ``root``; an aliased value is looked at under every rule that reaches it."""
+    walk = _Walk(names, [], set(), set())
+    if root is not None:
+        _below(root, rules, walk)
+    scalars = list(_scalars(root))
+    unclaimed = [it for it in scalars if id(it) not in walk.claimed]
+    return Sites(walk.found, unclaimed, list(_twice(root)))
+
+
+def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
+    """Keys and values of a map, merged ones included."""
+    for key, value in pairs(node):
+        if not is_merge(key):
+            yield key, value
+            continue
+        for merged in value.value if isinstance(value, yaml.SequenceNode) else [value]:
+            if merged is not node:
+                yield from pairs(merged)
+
+
+def is_merge(key: yaml.Node) -> bool:
+    """YAML's ``<<``, which is no key."""
+    return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
+
+
+def _below(node: yaml.Node, rule: Rule, walk: _Walk) -> None:
+    if (id(node), id(rule)) in walk.seen:
+        return
+    walk.seen.add((id(node), id(rule)))
+    if rule == KEEP:
+        walk.claimed.update(id(it) for it in _scalars(node))
+    elif isinstance(node, yaml.SequenceNode):
+        for item in node.value:
+            _below(item, rule, walk)
+    elif isinstance(node, yaml.ScalarNode):
+        _value(node, rule, walk)
+    elif isinstance(rule, Mapping):
+        for key, value in entries(node):
+            _entry(key, value, rule, walk)
+
+
+def _value(node: yaml.ScalarNode, rule: Rule, walk: _Walk) -> None:
+    if isinstance(rule, str) and is_text(node):
+        walk.claimed.add(id(node))
+        walk.found.append(Site(node, 0, str(node.value), rule))
+
+
+def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Rules, walk: _Walk) -> None:
+    match = _resolved(str(key.value), 0, value, rules, walk.names)
+    if match is None:
+        return
+    marks, rule = match
+    walk.claimed.add(id(key))
+    walk.found.extend(Site(key, at, text, word) for at, text, word in marks)
+    _below(value, rule, walk)
+
+
+def _resolved(word: str, at: int, value: yaml.Node, rules: Rules, names: Names) -> _Match | None:
+    """What a key says: nested maps and keys with dots are the same parameter."""
+    found = _exact(word, at, value, rules, names)
+    if found:
+        return found
+    for dot in (at_ for at_, letter in enumerate(word) if letter == "."):
+        head = _exact(word[:dot], at, None, rules, names) or _open(word[:dot], at, None, rules)
+        below = _rest(head, word[dot + 1 :], at + dot + 1, value, names) if head else None
+        if below:
+            return below
+    return _open(word, at, value, rules)
+
+
+def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: Names) -> _Match | None:
+    marks, rule = head
+    if rule == KEEP:
+        known = all(is_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
+        return head if known else None
+    below = _resolved(word, at, value, rule, names) if isinstance(rule, Mapping) else None
+    return ((*marks, *below[0]), below[1]) if below else None
+
+
+def _exact(
+    word: str, at: int, value: yaml.Node | None, rules: Rules, names: Names
+) -> _Match | None:
+    """A literal key, a declared name, or one that what is below it tells."""
+    if word in rules and word[:1] not in ("<", "*"):
+        return (), rules[word]
+    for kind, telling, rule in _wild(rules):
+        if kind in KINDS and is_declared(names, kind, word):
+            return ((at, word, kind),), rule
+        if telling and value is not None and _tells(value, telling):
+            return ((at, word, kind),), rule
+    return None
+
+
+def _open(word: str, at: int, value: yaml.Node | None, rules: Rules) -> _Match | None:
+    """A key of which nothing is asked."""
+    for kind, telling, rule in _wild(rules):
+        if not telling or (value is None and "declared" not in telling):
+            return ((at, word, kind),), rule
+    return ((), rules["*"]) if "*" in rules else None
+
+
+def _wild(rules: Rules) -> Iterator[tuple[str, tuple[str, ...], Rule]]:
+    for key, rule in rules.items():
+        if key.startswith("<"):
+            kind, _, telling = key[1:-1].partition(" if ")
+            yield kind, tuple(telling.split()), rule
+
+
+def _tells(value: yaml.Node, telling: Iterable[str]) -> bool:
+    if "map" in telling:
+        return isinstance(value, yaml.MappingNode) or value.tag == "tag:yaml.org,2002:null"
+    words = {str(key.value).partition(".")[0] for key, _ in entries(value)}
+    return not words.isdisjoint(telling)
+
+
+def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    """Every scalar once, keys included."""
+    for node in _nodes(root):
+        if isinstance(node, yaml.ScalarNode) and not is_merge(node):
+            yield node
+
+
+def _nodes(root: yaml.Node | None) -> Iterator[yaml.Node]:
+    seen: set[int] = set()
+    waiting = [root] if root is not None else []
+    while waiting:
+        node = waiting.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        yield node
+        if isinstance(node, yaml.MappingNode):
+            waiting += [it for pair in node.value for it in pair]
+        elif isinstance(node, yaml.SequenceNode):
+            waiting += node.value
+
+
+def _twice(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    for node in _nodes(root):
+        seen: set[str] = set()
+        for key, _ in pairs(node):
+            if key.value in seen and not is_merge(key):
+                yield key
+            seen.add(key.value)

@@ -1,0 +1,1 @@
+"""ROS parameter files."""

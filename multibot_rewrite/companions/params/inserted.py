@@ -1,0 +1,183 @@
+"""Parameters that a file does not set and whose default is every robot's: lines to insert."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.params.known import KnownNode, Param, in_release
+from multibot_rewrite.companions.params.sections import (
+    Found,
+    Section,
+    finding,
+    flattened,
+    pattern_of,
+)
+from multibot_rewrite.companions.params.spelled import SPELLERS, expressible
+from multibot_rewrite.companions.params.uses import Uses
+from multibot_rewrite.companions.params.values import Desk
+from multibot_rewrite.companions.template import GRAPH
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted
+from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.naming import NAMESPACE
+
+DEFAULT = "# multibot: the default is every robot's"
+OFF = "# multibot: the default puts the namespace before frames"
+_FRAMES = ("frame", "link", "stem", "joint_prefix")
+
+
+class Line(NamedTuple):
+    """A parameter to insert: its comment, path and value as YAML."""
+
+    comment: str
+    path: str
+    value: str
+
+
+def inserted(
+    desk: Desk, pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
+) -> Iterator[Splice | Finding]:
+    """Lines for the first section of each known node; what ``beside`` sets is set as well."""
+    everywhere = _everywhere(pages, beside)
+    done: set[str] = set()
+    for section, _ in pages:
+        if section.node is None or section.shared or section.inner or section.full in done:
+            continue
+        done.add(section.full)
+        same = [uses.known for other, uses in pages if other.full == section.full]
+        here = set().union(*same) | _set_for(section, everywhere)
+        lines = list(missing(desk.context, section.node, here))
+        if lines:
+            yield _insert(desk.document, section.body, lines)
+        yield from _inexpressible(desk, section, section.node, here)
+
+
+def _inexpressible(
+    desk: Desk, section: Section, node: KnownNode, here: set[str]
+) -> Iterator[Finding]:
+    for param in node.defaults:
+        if param.path not in here and not expressible(desk.context, param.kind):
+            message = (
+                f"{param.path} can only put something before names, and the naming is a postfix"
+            )
+            key = section.keys[-1]
+            yield finding(desk.document, key, "MF117", WARNING, message, "use affix: prefix")
+
+
+def missing(context: Context, node: KnownNode, here: set[str]) -> Iterator[Line]:
+    """What a node takes by default and no two robots may share."""
+    for param in node.defaults:
+        if param.path in here or not _has(param, context):
+            continue
+        if param.kind == "off":
+            yield Line(OFF, param.path, "false")
+        elif param.kind in _FRAMES and expressible(context, param.kind):
+            text = SPELLERS[param.kind](context, param.default)
+            if text != param.default:
+                yield Line(DEFAULT, param.path, quoted(text))
+
+
+def _has(param: Param, context: Context) -> bool:
+    return not param.distros or in_release(param.distros, context.distro)
+
+
+def _everywhere(
+    pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
+) -> list[tuple[str, set[str]]]:
+    """What is set for which nodes, where patterns or other files make that more than the section."""
+    if not beside and not any(it.wild for it, _ in pages):
+        return []
+    bodies = [(it.full, it.body) for it, _ in pages]
+    bodies += [(f"/{it.path}", it.body) for it in beside]
+    return [(full, {name for name, _ in flattened(body)}) for full, body in bodies]
+
+
+def _set_for(section: Section, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
+    """What any section sets that is for the same node, or may be."""
+    found: set[str] = set()
+    for full, names in everywhere:
+        if f"/{section.path}" == full or _meet(full, section.full) or _meet(section.full, full):
+            found |= names
+    return found
+
+
+def _meet(pattern: str, full: str) -> bool:
+    return "*" in pattern and re.fullmatch(pattern_of(pattern), full) is not None
+
+
+def _insert(document: YamlText, body: yaml.MappingNode, lines: Sequence[Line]) -> Splice | Finding:
+    """The lines before the first parameter, as far in as it is."""
+    if not body.value:
+        text = ", ".join(f"{line.path}: {line.value}" for line in lines)
+        at = body.start_mark.index + 1
+        return Splice(at, at, text)
+    at = body.value[0][0].start_mark.index
+    before = document.text[document.text.rfind("\n", 0, at) + 1 : at]
+    if body.flow_style:
+        text = "".join(f"{line.path}: {line.value}, " for line in lines)
+        return Splice(at, at, text)
+    if before.strip():
+        names = ", ".join(line.path for line in lines)
+        message = f"{names}: the default is every robot's, and here is no place for a line"
+        hint = "put each parameter on a line of its own"
+        return finding(document, body, "MF124", WARNING, message, hint)
+    end = ("\r\n" if "\r\n" in document.text else "\n") + before
+    return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
+
+
+def _texts(lines: Sequence[Line]) -> Iterator[str]:
+    for comment in dict.fromkeys(line.comment for line in lines):
+        yield comment
+        yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
+
+
+def sources_without_topic(desk: Desk, section: Section) -> Iterator[Finding]:
+    """Sources of a costmap's layer that take their own id for the topic, below the costmap."""
+    top = "observation_sources"
+    param = section.node.params.get("<id>.<id>.topic") if section.node else None
+    namespaced = desk.context.topics.naming.topics == NAMESPACE
+    if param is None or (namespaced and not in_release(param.absolute, desk.context.distro)):
+        return
+    names = dict(flattened(section.body))
+    values = {id(key): value for key, value in _scalars(section.body)}
+    for name, key in names.items():
+        layer, _, last = name.rpartition(".")
+        if last != top or not layer:
+            continue
+        for source in values.get(id(key), "").split():
+            if f"{layer}.{source}.topic" not in names:
+                message = f"source {source} of {layer} has no topic, so that it is {source!r}"
+                hint = f"write {layer}.{source}.topic: /{source}, which is then each robot's own"
+                yield finding(desk.document, key, "MF127", WARNING, message, hint)
+
+
+def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
+    for key, value in pairs(node):
+        if isinstance(value, yaml.ScalarNode):
+            yield key, str(value.value)
+        else:
+            yield from _scalars(value)
+
+
+def without_section(
+    document: YamlText, sections: Iterable[str], context: Context, nodes: Mapping[str, KnownNode]
+) -> Iterator[Finding]:
+    """Nodes of the stack that no section is for, though their defaults are every robot's.
+
+    ``nodes`` are the known ones by the stack's name, ``sections`` the full names that have one.
+    """
+    patterns = [re.compile(pattern_of(full)) for full in sections]
+    for name, node in nodes.items():
+        place = context.nodes[name]
+        if GRAPH not in place or any(it.fullmatch(place) for it in patterns):
+            continue
+        lines = list(missing(context, node, set()))
+        if lines:
+            words = ", ".join(it.path for it in lines)
+            message = f"{name} has no section, and what it takes then is every robot's: {words}"
+            hint = "write a section for it, if only with use_sim_time: the lines are put there"
+            yield Finding("MF125", WARNING, message, hint, document.file, 1, 1)

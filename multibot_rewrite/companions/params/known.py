@@ -1,0 +1,281 @@
+"""What is known of nodes' parameters: which hold names, of what, and what is taken where none is set.
+
+From ``params.yaml`` and files of the same shape.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
+from typing import NamedTuple
+
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.marked import (
+    Item,
+    flag_of,
+    read_marked,
+    table,
+    table_of,
+    unknown,
+    word,
+    word_of,
+    words_of,
+    wrong,
+)
+
+RELEASES = ("humble", "iron", "jazzy", "kilted", "lyrical", "rolling")
+NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "interface")
+GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
+OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
+KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, "off", "exclusive", "keep")
+# What may stand for a segment of a path; no name of a robot is in an id.
+SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
+NODE_KEYS = ("package", "aliases", "types", "known_by", "absolute", "note", "params")
+PARAM_KEYS = ("kind", "default", "list", "distros", "absolute", "note")
+# Undeclared names of these kinds stay as they are, so that a wrong guess does no harm.
+SAFE_KINDS = ("link", "joint")
+_INDEX = "<index>"
+
+
+class Param(NamedTuple):
+    """A parameter by its flattened path: what its value is, and what the node takes without one.
+
+    ``distros`` are the only releases that have it, ``absolute`` those in which a relative topic of
+    it does not fall below the robot's namespace; both empty for none.
+    """
+
+    path: str
+    kind: str
+    default: str = ""
+    is_list: bool = False
+    distros: str = ""
+    absolute: str = ""
+    note: str = ""
+
+
+class Branch(NamedTuple):
+    """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
+    segment is, where any will do); ``params`` are those whose path ends here."""
+
+    exact: dict[str, Branch]
+    numbered: dict[str, Branch]
+    wild: dict[str, Branch]
+    params: list[Param]
+
+
+class KnownNode(NamedTuple):
+    """A node's parameters; ``types`` are those of controllers, ``known_by`` parameters that tell
+    the node where its section has another name, ``defaults`` parameters of one name each that the
+    node takes for granted."""
+
+    name: str
+    package: str
+    params: Mapping[str, Param]
+    aliases: tuple[str, ...]
+    types: tuple[str, ...]
+    known_by: tuple[str, ...]
+    note: str
+    tree: Branch
+    defaults: tuple[Param, ...]
+
+
+class Known(NamedTuple):
+    """All known nodes; ``names`` and ``types`` lead to them. ``anywhere`` holds what is the same in
+    every node that has it, ``guesses`` last words of other paths (``guessing`` as one expression),
+    ``sent`` frames that nodes send.
+    """
+
+    nodes: Mapping[str, KnownNode]
+    names: Mapping[str, str]
+    types: Mapping[str, str]
+    anywhere: Branch
+    guesses: Mapping[str, tuple[str, ...]]
+    guessing: re.Pattern[str]
+    sent: frozenset[str]
+
+
+@lru_cache
+def built_in_params() -> Known:
+    """What this package knows."""
+    text = (
+        files("multibot_rewrite.companions.params")
+        .joinpath("params.yaml")
+        .read_text(encoding="utf-8")
+    )
+    return _known({}, {}, frozenset(), text, "params.yaml")
+
+
+def known_params(path: str = "") -> Known:
+    """The built-in knowledge and what a file of the same shape adds to it or says anew.
+
+    Raises UsageError, with file and line, for whatever is wrong in it.
+    """
+    if not path:
+        return built_in_params()
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            text = file.read()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
+    base = built_in_params()
+    return _known(base.nodes, base.guesses, base.sent, text, path)
+
+
+def in_release(words: str, distro: str) -> bool:
+    """Is this release among ``jazzy``, ``<=jazzy`` or ``kilted+``? An unknown one is the newest."""
+    if not words:
+        return False
+    last = len(RELEASES) - 1
+    at = RELEASES.index(distro) if distro in RELEASES else last
+    bound = RELEASES.index(words.strip("<=+"))
+    if words.startswith("<="):
+        return at <= bound
+    return at >= bound if words.endswith("+") else at == bound
+
+
+def guess(known: Known, path: str) -> str:
+    """The kind that the last word of a path makes likely; empty for none."""
+    found = known.guessing.fullmatch(path, path.rfind(".") + 1)
+    return (found.lastgroup or "") if found else ""
+
+
+def _guessing(guesses: Mapping[str, tuple[str, ...]]) -> re.Pattern[str]:
+    """One expression for all guesses, with a group for each kind."""
+    every = {
+        kind: "|".join(re.escape(it).replace(r"\*", ".*") for it in words)
+        for kind, words in guesses.items()
+    }
+    return re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
+
+
+def _known(
+    nodes: Mapping[str, KnownNode],
+    guesses: Mapping[str, tuple[str, ...]],
+    sent: frozenset[str],
+    text: str,
+    file: str,
+) -> Known:
+    top = table(read_marked(text, file), "the file", ("sent", "guesses", "nodes"))
+    given = table_of(top, "guesses")
+    for key, item in given.items():
+        _one_of(item, "kind", key, KINDS)
+    guesses = {**guesses, **{key: words_of(given, key) for key in given}}
+    nodes = dict(nodes)
+    for name, item in table_of(top, "nodes").items():
+        nodes[name] = _node(name, item, nodes.get(name))
+    names = {alias: it.name for it in nodes.values() for alias in (*it.aliases, it.name)}
+    types = {type_: it.name for it in nodes.values() for type_ in it.types}
+    names |= {name: name for name in nodes}
+    sent |= frozenset(words_of(top, "sent"))
+    guessing = _guessing(guesses)
+    return Known(nodes, names, types, _tree(_anywhere(nodes, guessing)), guesses, guessing, sent)
+
+
+def _node(name: str, item: Item, old: KnownNode | None) -> KnownNode:
+    """A node as a file has it; what it says of a node that is known is added to that."""
+    keys = table(item, f"node {name!r}", NODE_KEYS)
+    absolute = _releases(keys, "absolute")
+    params = dict(old.params) if old else {}
+    for path, entry in table_of(keys, "params").items():
+        params[path] = _param(path, entry, absolute)
+    return KnownNode(
+        name,
+        word_of(keys, "package", old.package if old else ""),
+        params,
+        (*(old.aliases if old else ()), *words_of(keys, "aliases")),
+        (*(old.types if old else ()), *words_of(keys, "types")),
+        words_of(keys, "known_by") or (old.known_by if old else ()),
+        word_of(keys, "note", old.note if old else ""),
+        _tree(params.values()),
+        tuple(it for it in params.values() if _has_default(it)),
+    )
+
+
+def _has_default(param: Param) -> bool:
+    """Does the node take something for granted that has to be there once, under this very path?"""
+    return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
+
+
+def _param(path: str, item: Item, absolute: str) -> Param:
+    _check_path(path, item)
+    if isinstance(item.value, str):
+        kind = _one_of(item, "kind", item.value, KINDS)
+        return Param(path, kind, absolute=absolute if kind == "topic" else "")
+    keys = table(item, f"parameter {path!r}", PARAM_KEYS)
+    if "kind" not in keys:
+        wrong(item, f"parameter {path!r} has no kind; write one of {', '.join(KINDS)}")
+    kind = _one_of(keys["kind"], "kind", word(keys["kind"], "kind"), KINDS)
+    return Param(
+        path,
+        kind,
+        word_of(keys, "default"),
+        flag_of(keys, "list"),
+        _releases(keys, "distros"),
+        _releases(keys, "absolute") or (absolute if kind == "topic" else ""),
+        word_of(keys, "note"),
+    )
+
+
+def _check_path(path: str, item: Item) -> None:
+    for segment in path.split("."):
+        if not segment:
+            wrong(item, f"parameter {path!r} has an empty segment; write names with dots between")
+        if segment.startswith("<"):
+            _one_of(item, "segment", segment[1:-1], SEGMENTS)
+
+
+def _one_of(item: Item, what: str, value: str, allowed: tuple[str, ...]) -> str:
+    if value not in allowed:
+        wrong(item, unknown(what, value, allowed))
+    return value
+
+
+def _releases(keys: Mapping[str, Item], key: str) -> str:
+    words = word_of(keys, key)
+    if words:
+        _one_of(keys[key], "release", words.removeprefix("<=").removesuffix("+"), RELEASES)
+    return words
+
+
+def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:
+    """Parameters that are likely the same in a node nobody knows: several nodes have them, all with
+    one meaning, or their name says as much."""
+    found: dict[str, list[Param]] = {}
+    for node in nodes.values():
+        for param in node.params.values():
+            if "*" not in param.path and "<" not in param.path.replace(_INDEX, ""):
+                found.setdefault(param.path, []).append(param)
+    for path, params in found.items():
+        kind = params[0].kind
+        sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
+        said = guessing.fullmatch(path.rpartition(".")[2])
+        if (
+            kind != "exclusive"
+            and len({it.kind for it in params}) == 1
+            and (sure or (said and said.lastgroup == kind))
+        ):
+            yield params[0]._replace(default="", absolute="")
+
+
+def _tree(params: Iterable[Param]) -> Branch:
+    root = Branch({}, {}, {}, [])
+    for param in params:
+        branch = root
+        for segment in param.path.split("."):
+            branch = _below(branch, segment)
+        branch.params.append(param)
+    return root
+
+
+def _below(branch: Branch, segment: str) -> Branch:
+    if segment.endswith(_INDEX):
+        where, key = branch.numbered, segment.removesuffix(_INDEX)
+    elif segment == "*" or segment.startswith("<"):
+        where, key = branch.wild, segment.strip("<>")
+    else:
+        where, key = branch.exact, segment
+    return where.setdefault(key, Branch({}, {}, {}, []))

@@ -1,0 +1,49 @@
+"""The table of known parameters: ``python -m multibot_rewrite.companions.params.page`` prints it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+
+from multibot_rewrite.companions.params.known import Known, KnownNode, Param, built_in_params
+
+START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
+HEAD = """
+| node | parameters that hold names | inserted where absent |
+|---|---|---|
+"""
+
+
+def page(known: Known) -> str:
+    """The table as Markdown, a row for each node that has names in its parameters."""
+    return START + HEAD + "".join(_rows(known))
+
+
+def _rows(known: Known) -> Iterator[str]:
+    for node in sorted(known.nodes.values(), key=lambda it: it.name):
+        names = [it for it in node.params.values() if it.kind != "keep"]
+        if names:
+            yield f"| {_title(node)} | {_listed(names)} | {_inserted(node)} |\n"
+
+
+def _title(node: KnownNode) -> str:
+    also = f"<br>also {', '.join(f'`{it}`' for it in node.aliases)}" if node.aliases else ""
+    return f"`{node.name}` ({node.package}){also}"
+
+
+def _listed(params: list[Param]) -> str:
+    kinds = dict.fromkeys(it.kind for it in params)
+    groups = (
+        f"{kind}: " + ", ".join(f"`{it.path}`" for it in params if it.kind == kind)
+        for kind in kinds
+    )
+    return "; ".join(groups)
+
+
+def _inserted(node: KnownNode) -> str:
+    kinds = ("frame", "link", "stem", "off", "joint_prefix")
+    return ", ".join(f"`{it.path}`" for it in node.defaults if it.kind in kinds)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(page(built_in_params()))

@@ -1,0 +1,126 @@
+"""Topics that parameters hold: what each becomes, proved by resolving it as the node does.
+
+A name read from a parameter is remapped like any other, so the rules of the remap table can move it
+as well: what a value becomes has to lead, with them, where the one robot's name led without them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.params.spelled import is_plain
+from multibot_rewrite.companions.respell import respell
+from multibot_rewrite.companions.template import GRAPH
+from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.remap.records import Endpoint, NodeFacts
+from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.table import node_table, parsed, placed, target_of
+from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound
+
+Facts = Mapping[str, NodeFacts]
+# How a relative name is taken: in the node's namespace, in the one above it (the node joins the two
+# itself), or in one that is not the robot's, so that it has to be written in full.
+FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
+
+
+class Landing(NamedTuple):
+    """What is written for a topic; ``astray`` is where it leads if not where it should, and
+    ``moved`` tells that a relative name had to be written in full."""
+
+    text: str
+    astray: str = ""
+    moved: bool = False
+
+
+@lru_cache
+def built_in_facts() -> Facts:
+    """Node -> facts, as the stacks have them; those of nodes with rules of their own first."""
+    library = built_in()
+    facts = [node for stack in library.stacks.values() for node in stack.nodes]
+    facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
+    found: dict[str, NodeFacts] = {}
+    for node in (*facts, *library.nodes.values()):
+        found.setdefault(node.name, node)
+    return found
+
+
+def facts_by_name(facts: Iterable[NodeFacts]) -> Facts:
+    """The facts of the robots' nodes; the built-in ones where none are given."""
+    return {it.name: it for it in facts} or built_in_facts()
+
+
+def topic(context: Context, node: str, kind: str, value: str, reach: str, facts: Facts) -> Landing:
+    """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
+    if not is_plain(value) or value.startswith("~") or check_topic_name(value):
+        return Landing(value)
+    text = _spelled(context, kind, value, reach == IN_FULL)
+    moved = reach == IN_FULL and not value.startswith("/")
+    ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
+    if not ruled:
+        return Landing(text, moved=moved)
+    return _landing(context, kind, (text, value), reach, ruled)._replace(moved=moved)
+
+
+def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
+    """The name for a robot; ``absolute`` where it does not fall below the robot's namespace."""
+    naming = context.topics.naming
+    lead = "" if value.startswith("/") else "/"
+    if value.strip("/") in naming.shared_topics:
+        return lead + value if absolute or naming.topics == NAMESPACE else value
+    full = lead + value if absolute else value
+    return _below_node(context, full) or respell(context.topics, kind, full)
+
+
+def _below_node(context: Context, value: str) -> str:
+    """A name below another node's, such as its private services, follows the node's name."""
+    head, slash, rest = value.strip("/").partition("/")
+    place = context.nodes.get(head, "")
+    if not slash or not place or context.topics.naming.topics == NAMESPACE:
+        return ""
+    lead = "/" if value.startswith("/") else ""
+    return f"{lead}{place.strip('/')}/{rest}"
+
+
+def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFacts | None:
+    """The node with those of its endpoints whose rules could match the name."""
+    if node is None or node.shared:
+        return None
+    bare = value.strip("/")
+    found = [it for it in node.endpoints if it.name.strip("/") == bare and _ruled(it, context)]
+    return node._replace(endpoints=tuple(found)) if found else None
+
+
+def _ruled(endpoint: Endpoint, context: Context) -> bool:
+    if endpoint.fixed:
+        return False
+    naming = context.topics.naming
+    return bool(endpoint.remapped or target_of(endpoint.name, endpoint.kind, GRAPH, naming))
+
+
+def _landing(
+    context: Context, kind: str, texts: tuple[str, str], reach: str, node: NodeFacts
+) -> Landing:
+    """The spelled name if it leads to the right place, else the old one if a rule moves that."""
+    naming = context.topics.naming
+    table = node_table(GRAPH, node, naming, frozenset(context.nodes))
+    bound = bind(table.name, table.namespace, parsed(table.rules))
+    wanted = _wanted(context, kind, texts[1], node)
+    root = placed(GRAPH, "node", naming)[0] if reach == FROM_PARENT else table.namespace
+    led = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
+    good = [text for text, full in zip(texts, led, strict=True) if full == wanted]
+    if not good:
+        return Landing(texts[0], led[0])
+    # A rule moves what the node makes of the name as well: <costmap>_updates, <image>/compressed.
+    ruled = naming.topics != NAMESPACE and reach == FROM_NODE
+    return Landing(good[-1] if ruled else good[0])
+
+
+def _wanted(context: Context, kind: str, value: str, node: NodeFacts) -> str:
+    """The robot's name for what the value means in a system of one robot, with the stack's rules."""
+    meant = expand(value, "/", "")
+    said = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
+    full = _spelled(context, kind, expand(said or meant, "/", ""), True)
+    return full if full.startswith("/") else f"/{full}"

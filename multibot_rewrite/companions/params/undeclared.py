@@ -1,0 +1,63 @@
+"""Names of companion files against those of the description: what it lacks, what stays unclaimed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from multibot_rewrite.checks.mentions import mentioned
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.params.spelled import is_plain, is_shared_frame
+from multibot_rewrite.companions.respell import is_declared, respell
+from multibot_rewrite.rosnames import check_topic_name
+
+# Frames that nodes send and no description declares (REP 105, navsat_transform_node).
+SENT = frozenset({"map", "odom", "world", "earth", "utm", "local_enu"})
+# What a word of the description may be, where a mention of it matters.
+_MENTIONED = ("link", "joint", "frame", "group")
+
+
+def lacks(context: Context, word: str, value: str) -> bool:
+    """Is this plain name one that the description should have and does not?
+
+    False where it has none of the kind at all: then nothing is known of them.
+    """
+    declared = context.names.declared.get("link" if word == "frame" else word)
+    bare = value[1:] if word == "frame" and value.startswith("/") else value
+    if not declared or not is_plain(value) or is_declared(context.names, word, bare):
+        return False
+    return word != "frame" or not (bare in SENT or is_shared_frame(context, bare))
+
+
+def said_of(context: Context, word: str, value: str) -> tuple[str, str]:
+    """Message and hint about a name that the description lacks."""
+    known = context.names.declared["link" if word == "frame" else word]
+    other = "it stays as it is"
+    if word == "frame":
+        other = "a node or driver must send it under the robot's name"
+    return f"{word} {value!r} is not in the description", nearest(value, known) or other
+
+
+def nearest(value: str, known: Iterable[str]) -> str:
+    """The known name most like this one, as a question; empty for none."""
+    from difflib import get_close_matches  # only a message needs it
+
+    near = get_close_matches(value, list(known), 1, 0.6)
+    return f"did you mean {near[0]!r}?" if near else ""
+
+
+def renamed(context: Context) -> frozenset[str]:
+    """The names that the description declares and that each robot spells in its own way."""
+    return frozenset(
+        name
+        for word in _MENTIONED
+        for name in context.names.declared.get(word, ())
+        if respell(context.names, word, name) != name
+    )
+
+
+def mentions(text: str, names: frozenset[str]) -> bool:
+    """Does a text that nothing is known of hold one of these names, or an absolute name of the
+    graph?"""
+    if mentioned(text, names):
+        return True
+    return text[:1] == "/" and is_plain(text) and check_topic_name(text) is None

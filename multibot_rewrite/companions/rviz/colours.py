@@ -1,0 +1,49 @@
+"""Colours of robots: as people write them, and a palette for those without one."""
+
+from __future__ import annotations
+
+from colorsys import hls_to_rgb
+
+from multibot_rewrite.companions.rviz.read import rviz_data
+from multibot_rewrite.model import InputError
+
+Colour = tuple[int, int, int]
+# Steps of the golden angle never come back near a hue that was there.
+_STEP = 0.618034
+
+
+def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
+    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else, which names
+    the robot."""
+    if not isinstance(given, str):
+        red, green, blue = given
+        return red, green, blue
+    known = rviz_data()["colours"]
+    if given.lower() in known:
+        red, green, blue = known[given.lower()]
+        return red, green, blue
+    digits = given[1:] if given.startswith("#") else ""
+    try:
+        if len(digits) == 6:
+            red, green, blue = bytes.fromhex(digits)
+            return red, green, blue
+    except ValueError:
+        pass
+    from difflib import get_close_matches
+
+    near = get_close_matches(given, known, 1, 0.5)
+    hint = f"did you mean {near[0]!r}?" if near else "write #rrggbb or [r, g, b]"
+    whose = f"robot {robot!r}: " if robot else ""
+    raise InputError(f"{whose}colour {given!r} is not known; {hint}")
+
+
+def palette(at: int) -> Colour:
+    """The colour of the robot at this place, told apart from those of all the others."""
+    first = rviz_data()["palette"]
+    if at < len(first):
+        red, green, blue = first[at]
+        return red, green, blue
+    turns = at - len(first)
+    lightness = (0.45, 0.6, 0.75)[turns % 3]
+    red, green, blue = hls_to_rgb(turns * _STEP % 1, lightness, 0.85)
+    return round(red * 255), round(green * 255), round(blue * 255)

@@ -1,0 +1,102 @@
+"""What each place of an RViz config says for a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.graph_names import NOTHING, robot_topic
+from multibot_rewrite.companions.respell import Names, respell
+from multibot_rewrite.companions.rviz.colours import Colour
+from multibot_rewrite.companions.rviz.read import Place, Shown, rviz_data, text_of
+from multibot_rewrite.companions.yaml_text import Splice, replaced
+from multibot_rewrite.naming import NAMESPACE
+
+TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT = "topic", "namespace", "frame", "link", "joint"
+COLOUR, FLAT_COLOUR, TF_PREFIX = "colour", "flat_colour", "tf_prefix"
+NAMED = frozenset({TOPIC, GRAPH_NAMESPACE, FRAME, LINK, JOINT, TF_PREFIX})
+_NULL = "tag:yaml.org,2002:null"
+
+
+class RvizRobot(NamedTuple):
+    """A robot to be shown. ``names`` spells its frames, ``topics`` its ROS names, for the robot itself.
+
+    ``name`` is the title of its group. ``colour`` is a name, ``#rrggbb`` or three numbers, empty for
+    one of the palette. ``known`` is ``graph_names.known_topics`` of it. ``tf_prefix`` is for a
+    description whose links are bare while its frames are not (robot_state_publisher's
+    ``frame_prefix``); a rewritten one has its names in the links, so it stays empty.
+    """
+
+    name: str
+    names: Names
+    topics: Names
+    colour: str | tuple[int, ...] = ""
+    known: Mapping[str, str] = NOTHING
+    tf_prefix: str = ""
+
+
+def is_name(place: Place) -> bool:
+    """A place of a name that may be the robot's; nothing, null and blocks of text are none."""
+    node = place.node
+    return place.word in NAMED and node.tag != _NULL and node.style not in ("|", ">")
+
+
+def spelled(place: Place, robot: RvizRobot) -> str:
+    """The value of a place as the robot has it."""
+    value = str(place.node.value)
+    if place.word == TF_PREFIX:
+        return robot.tf_prefix if robot.names.naming.layout.frames else value
+    if place.word == TOPIC:
+        return robot_topic(robot.topics, without_placeholder(value, "/"), robot.known)
+    if place.word == GRAPH_NAMESPACE:
+        reached = robot.topics.naming.topics == NAMESPACE
+        return robot_topic(robot.topics, without_placeholder(value, "/")) if reached else value
+    return respell(robot.names, place.word, without_placeholder(value, ""))
+
+
+def without_placeholder(value: str, lead: str) -> str:
+    """A name without what a launch file would have replaced by the robot's namespace.
+
+    It stays where that is all of it, or where another placeholder is left.
+    """
+    for word in rviz_data()["placeholders"]:
+        bare = value.lstrip("/").removeprefix(word).lstrip("/")
+        if value.lstrip("/").startswith(word) and bare and "<" not in bare:
+            return lead + bare
+    return value
+
+
+def changed(one: Shown, robot: RvizRobot) -> Iterator[tuple[Place, str]]:
+    """The places of a display or tool that say something else for the robot, and what."""
+    for place in filter(is_name, one.places):
+        new = spelled(place, robot)
+        if new != place.node.value:
+            yield place, new
+
+
+def edits(one: Shown, robot: RvizRobot, colour: Colour | None) -> list[Splice]:
+    """The splices that make a display or tool the robot's."""
+    made = [replaced(place.node, new) for place, new in changed(one, robot)]
+    return made + ([*_painted(one, colour)] if colour else [])
+
+
+def _painted(one: Shown, colour: Colour) -> Iterator[Splice]:
+    """A colour that shows whose data it is, where the display has one colour for all of it."""
+    flat = text_of(one.node, "Color Transformer") == "FlatColor"
+    for place in one.places:
+        if place.word == COLOUR or (place.word == FLAT_COLOUR and flat):
+            yield painted(place.node, colour)
+
+
+def painted(node: yaml.ScalarNode, colour: Colour) -> Splice:
+    """The splice of a colour as RViz writes it."""
+    text = "; ".join(map(str, colour))
+    return Splice(node.start_mark.index, node.end_mark.index, text)
+
+
+def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:
+    """The frame that a scalar names, as the robot has it; empty for any other node."""
+    given = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
+    return respell(robot.names, FRAME, without_placeholder(given, ""))

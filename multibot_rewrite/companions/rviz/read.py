@@ -1,0 +1,158 @@
+"""An RViz config as what it shows: displays, tools and panels, and where each says a name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any, NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.rviz.blocks import Block, blocks, is_block
+from multibot_rewrite.companions.yaml_text import YamlText, anchors, line_of, pairs
+from multibot_rewrite.model import InputError
+
+MANAGER = "Visualization Manager"
+GROUP = "rviz_common/Group"
+DOCK, SHARED, PROCESS, ABSOLUTE = "dock", "shared", "process", "absolute"
+# Classes of ROS 1, which pluginlib of ROS 2 does not find.
+ROS1 = "rviz/"
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+class Place(NamedTuple):
+    """A scalar (a value or a key) that says something of the kind ``word``."""
+
+    node: yaml.ScalarNode
+    word: str
+    path: str
+
+
+class Shown(NamedTuple):
+    """A display, tool or panel: its lines, class and name, the places in it, and what is below it.
+
+    ``flag`` is what the data says of its class; ``known`` tells that the data has it.
+    """
+
+    block: Block
+    node: yaml.Node
+    cls: str
+    name: str
+    flag: str
+    known: bool
+    places: tuple[Place, ...]
+    children: tuple[Shown, ...] = ()
+
+
+class Config(NamedTuple):
+    """An RViz 2 config; ``manager`` is its map ``Visualization Manager``."""
+
+    document: YamlText
+    manager: yaml.Node
+    displays: tuple[Shown, ...]
+    tools: tuple[Shown, ...]
+    panels: tuple[Shown, ...]
+
+
+@lru_cache(maxsize=1)
+def rviz_data() -> Mapping[str, Any]:
+    """The data of ``rviz.yaml``."""
+    text = files("multibot_rewrite.companions.rviz").joinpath("rviz.yaml").read_text()
+    data: Mapping[str, Any] = yaml.load(text, Loader=_LOADER)
+    return data
+
+
+def read_config(document: YamlText) -> Config:
+    """The config in a YAML text; InputError where it is none of RViz 2, with place and remedy."""
+    manager = value(document.root, MANAGER)
+    if not isinstance(manager, yaml.MappingNode):
+        raise InputError(
+            f"{document.file}: no RViz config: it has no {MANAGER!r}; save it in rviz2"
+        )
+    _refuse(document)
+    displays = value(manager, "Displays")
+    return Config(
+        document,
+        manager,
+        tuple(_shown(document, displays, "displays")),
+        tuple(_shown(document, value(manager, "Tools"), "tools")),
+        tuple(_shown(document, value(document.root, "Panels"), "panels")),
+    )
+
+
+def _refuse(document: YamlText) -> None:
+    for node in _maps(document.root):
+        cls = text_of(node, "Class")
+        if cls.startswith(ROS1):
+            place = f"{document.file}:{line_of(node)}"
+            raise InputError(
+                f"{place}: a config of ROS 1 ({cls}), which rviz2 cannot load; make it anew in rviz2"
+            )
+    for line, anchor in anchors(document):
+        place = f"{document.file}:{line}"
+        raise InputError(f"{place}: the anchor or alias {anchor}; write the value out")
+
+
+def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
+    if isinstance(node, yaml.MappingNode):
+        yield node
+    for item in node.value if isinstance(node, yaml.CollectionNode) else ():
+        yield from _maps(item[1] if isinstance(item, tuple) else item)
+
+
+def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Shown]:
+    if not isinstance(node, yaml.SequenceNode) or not node.value:
+        return
+    if not is_block(node):
+        place = f"{document.file}:{line_of(node)}"
+        raise InputError(f"{place}: {what} in brackets, which cannot be copied; save it in rviz2")
+    data = rviz_data()
+    for block, item in zip(blocks(document, node), node.value, strict=True):
+        cls = text_of(item, "Class")
+        below = _shown(document, value(item, "Displays"), what) if cls == GROUP else ()
+        names = data["displays"].get(cls, data["any"])
+        places = () if what == "panels" or cls == GROUP else tuple(_places(item, names))
+        known = what != "displays" or cls == GROUP or cls in data["displays"]
+        flag = data["flags"].get(cls, "")
+        yield Shown(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))
+
+
+def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[Place]:
+    for path, word in names.items():
+        for node in _found(item, path.split(".")):
+            yield Place(node, word, path)
+
+
+def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
+    """The scalars at a path; ``*`` gives keys."""
+    if not path:
+        node = value(node, "Value") if isinstance(node, yaml.MappingNode) else node
+        if isinstance(node, yaml.ScalarNode):
+            yield node
+    elif path[0] in ("*", "**"):
+        for key, below in pairs(node):
+            if key.value not in rviz_data()["fixed_keys"]:
+                yield key
+            if path[0] == "**":
+                yield from _found(below, path)
+    else:
+        yield from _found(value(node, path[0]), path[1:])
+
+
+def value(node: yaml.Node | None, key: str) -> yaml.Node | None:
+    """The value of a key of a map, the last where it is there twice; None where there is none."""
+    return next((there for name, there in reversed(pairs(node)) if name.value == key), None)
+
+
+def text_of(node: yaml.Node | None, key: str) -> str:
+    """The same of a scalar, as text; empty where there is none."""
+    there = value(node, key)
+    return str(there.value) if isinstance(there, yaml.ScalarNode) else ""
+
+
+def every(shown: Sequence[Shown]) -> Iterator[Shown]:
+    """Displays and those in groups."""
+    for one in shown:
+        yield one
+        yield from every(one.children)

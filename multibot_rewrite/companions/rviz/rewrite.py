@@ -1,0 +1,243 @@
+"""An RViz config for one robot -> one for all robots, or one for each where a window sees one tf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.rviz.blocks import as_item, blocks, cut_out, is_block, newline
+from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
+from multibot_rewrite.companions.rviz.groups import (
+    grouped,
+    inserted,
+    leaves,
+    make_job,
+    panels,
+    remark,
+    tool_edits,
+    tools,
+    windows,
+)
+from multibot_rewrite.companions.rviz.names import RvizRobot, edits, frame_of
+from multibot_rewrite.companions.rviz.notes import notes
+from multibot_rewrite.companions.rviz.read import ABSOLUTE, PROCESS, Config, read_config, value
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
+from multibot_rewrite.model import Finding, ProofError, UsageError
+from multibot_rewrite.naming import TF_TOPICS, Naming
+from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.remap.table import target_of
+
+__all__ = ["RvizRobot", "RvizText", "rviz", "start_command", "world_frame"]
+
+
+# Robots whose result is parsed again.
+PROVED = 4
+
+
+class RvizText(NamedTuple):
+    """A config. ``robot`` is empty where it shows all robots; ``namespace`` and ``remaps`` are what
+    rviz2 has to be started with; ``relays`` are topics that must be forwarded (from, to) first."""
+
+    robot: str
+    text: str
+    namespace: str = ""
+    remaps: tuple[tuple[str, str], ...] = ()
+    relays: tuple[tuple[str, str], ...] = ()
+
+
+def rviz(
+    document: YamlText, robots: Sequence[RvizRobot], *, world: str = "", relayed: bool = False
+) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
+    """The configs of a fleet, and what a person should know about them.
+
+    One window hears one tf topic: a layout with a tf topic for each robot gives a config for each,
+    unless its frames differ and the topics are ``relayed`` to ``/tf``. ``world`` is the frame that
+    all robots are in (default: ``world_frame``). Raises InputError for a file that is no config of
+    RViz 2 or a colour that is none, UsageError where there is no robot.
+    """
+    if not robots:
+        raise UsageError("no robot to show; name one")
+    config = read_config(document)
+    naming = robots[0].names.naming
+    together = not naming.layout.tf_per_robot or (relayed and naming.layout.frames)
+    colours = tuple(_colour(robot, at, len(robots)) for at, robot in enumerate(robots))
+    world = world or world_frame(naming)
+
+    def make(upto: int) -> tuple[RvizText, ...]:
+        if together:
+            return (_for_all(config, robots[:upto], colours[:upto], world),)
+        return tuple(map(lambda *it: _for_one(config, *it), robots[:upto], colours))
+
+    made = make(len(robots))
+    # All others differ from these in words alone.
+    for text in made[:PROVED] if len(robots) <= PROVED else make(PROVED):
+        _prove(text.text, document.file)
+    return made, tuple(notes(config, robots, world, together))
+
+
+def world_frame(naming: Naming) -> str:
+    """The frame that robots of this policy share: the map, else the world, else any."""
+    shared = sorted(naming.shared_frames)
+    return next((frame for frame in ("map", "world", *shared) if frame in shared), "")
+
+
+def start_command(made: RvizText, file: str) -> list[str]:
+    """The words that start rviz2 with a config written to ``file``."""
+    words = [f"__ns:={made.namespace}"] if made.namespace else []
+    words += [f"{source}:={target}" for source, target in made.remaps]
+    given = [text for word in words for text in ("-r", word)]
+    return ["rviz2", "-d", file, *(["--ros-args", *given] if given else [])]
+
+
+def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
+    """The colour asked for; one robot among others gets one of its own anyway."""
+    if robot.colour:
+        return read_colour(robot.colour, robot.name)
+    return palette(at) if count > 1 else None
+
+
+def _prove(text: str, file: str) -> None:
+    try:
+        yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    except yaml.YAMLError as error:
+        raise ProofError(f"{file}: what was made of it is no YAML: {error}") from None
+
+
+def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
+    """Where the robot's tf goes, in full."""
+    name, naming = robot.topics.robot, robot.topics.naming
+    found = []
+    for topic in TF_TOPICS:
+        target = target_of(f"/{topic}", TOPIC, name, naming)
+        full = target if target.startswith("/") or not target else f"/{name}/{target}"
+        found += [(f"/{topic}", full)] if full else []
+    return tuple(found)
+
+
+def _for_all(
+    config: Config, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
+) -> RvizText:
+    job = make_job(config, robots, colours)
+    splices = [
+        *grouped(job),
+        *tools(job),
+        *panels(job),
+        *windows(job),
+        *_fixed_frame(config, robots, world),
+        *_views(config, robots),
+    ]
+    relays = [(target, topic) for robot in robots for topic, target in _tf_topics(robot)]
+    return RvizText("", spliced(config.document, splices), relays=tuple(relays))
+
+
+def _for_one(config: Config, robot: RvizRobot, colour: Colour | None) -> RvizText:
+    """The config of a window that sees one robot; it runs in the robot's namespace if there is one."""
+    document = config.document
+    namespaced = robot.names.naming.layout.namespaced
+    gone = (ABSOLUTE,) if namespaced else (ABSOLUTE, PROCESS)
+    splices: list[Splice] = []
+    for one in (*leaves(config.displays), *config.panels):
+        if one.flag in gone:
+            splices.append(Splice(one.block.start, one.block.end, remark(document, one)))
+        else:
+            splices += edits(one, robot, colour if robot.colour else None)
+    for tool in config.tools:
+        if tool.flag in gone:
+            splices.append(Splice(tool.block.start, tool.block.end, remark(document, tool)))
+        else:
+            splices += tool_edits(document, tool, robot)
+    for node in (fixed_frame(config), *_targets(config)):
+        splices += _respelled(node, robot)
+    namespace = f"/{robot.topics.robot}" if namespaced else ""
+    return RvizText(robot.name, spliced(document, splices), namespace, _tf_topics(robot))
+
+
+def fixed_frame(config: Config) -> yaml.Node | None:
+    """The frame that everything is shown in."""
+    return value(value(config.manager, "Global Options"), "Fixed Frame")
+
+
+def _respelled(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
+    new = frame_of(node, robot)
+    return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
+
+
+def _fixed_frame(config: Config, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
+    """One frame serves all robots only if none of them has it for itself."""
+    node = fixed_frame(config)
+    if not isinstance(node, yaml.ScalarNode) or not world:
+        return []
+    own = any(frame_of(node, robot) != node.value for robot in robots)
+    return [replaced(node, world)] if own else []
+
+
+def _views_of(config: Config) -> tuple[yaml.Node | None, yaml.Node | None]:
+    views = value(config.manager, "Views")
+    return value(views, "Current"), value(views, "Saved")
+
+
+def _targets(config: Config) -> Iterator[yaml.Node]:
+    current, saved = _views_of(config)
+    listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
+    for view in (current, *listed):
+        target = value(view, "Target Frame")
+        if isinstance(target, yaml.ScalarNode):
+            yield target
+
+
+def _views(config: Config, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
+    """The present view follows the first robot; each robot has a saved one that follows it."""
+    document = config.document
+    current, saved = _views_of(config)
+    copies = ""
+    if _follows(current, robots):
+        yield from _respelled(value(current, "Target Frame"), robots[0])
+        listed = isinstance(saved, yaml.SequenceNode)
+        column = saved.start_mark.column if saved and listed else _column(config) + 2
+        copies = "".join(_saved(document, current, robot, column) for robot in robots)
+    if isinstance(saved, yaml.SequenceNode) and saved.value and is_block(saved):
+        yield from _saved_views(document, saved, robots)
+        yield inserted(document, blocks(document, saved)[-1].end, copies)
+    elif copies and isinstance(saved, yaml.ScalarNode):
+        end = newline(document)
+        yield Splice(saved.start_mark.index, saved.end_mark.index, f"{end}{copies}".rstrip())
+
+
+def _saved_views(
+    document: YamlText, saved: yaml.SequenceNode, robots: Sequence[RvizRobot]
+) -> Iterator[Splice]:
+    for view, (start, end, _) in zip(saved.value, blocks(document, saved), strict=True):
+        if _follows(view, robots):
+            made = [_named(document, view, robot, start, end) for robot in robots]
+            yield Splice(start, end, "".join(made))
+
+
+def _column(config: Config) -> int:
+    """Where the keys of ``Views`` start."""
+    views = value(config.manager, "Views")
+    return int(views.start_mark.column) if views is not None else 0
+
+
+def _follows(view: yaml.Node | None, robots: Sequence[RvizRobot]) -> bool:
+    target = value(view, "Target Frame")
+    if not isinstance(target, yaml.ScalarNode) or not is_block(view):
+        return False
+    return any(frame_of(target, robot) != target.value for robot in robots)
+
+
+def _saved(document: YamlText, view: yaml.Node | None, robot: RvizRobot, column: int) -> str:
+    """A view as an entry of the saved ones, with the robot's name and frame."""
+    assert view is not None
+    lines = blocks(document, view)
+    text = _named(document, view, robot, lines[0].start, lines[-1].end)
+    return as_item(text, lines[0].column, column)
+
+
+def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
+    splices = _respelled(value(view, "Target Frame"), robot)
+    name = value(view, "Name")
+    if isinstance(name, yaml.ScalarNode):
+        splices.append(replaced(name, f"{robot.name} {name.value}"))
+    return cut_out(document, start, end, splices)

@@ -1,0 +1,145 @@
+"""A description, its robots and the stacks they run -> their remap table and what to expect."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
+from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
+from multibot_rewrite.library import Rewrite, rewrite_all
+from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
+from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
+from multibot_rewrite.remap.stacks import built_in, user_stack
+from multibot_rewrite.remap.table import build_table, joined
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.read import Source
+from multibot_rewrite.steps.collect import Inventory, collect
+from multibot_rewrite.steps.document import read_document
+
+Plugins = dict[str, list[tuple[NodeFacts, NodeTable]]]
+NOTHING: Mapping[str, str] = {}
+
+
+class Member(NamedTuple):
+    """A robot of a fleet: its name in the ROS graph, what stands for it in frames, and what its
+    rewritten description holds; ``places`` are where in the source (``file:line``) its plugins are.
+    """
+
+    robot: str
+    spelled: str
+    inventory: Inventory
+    places: tuple[str, ...]
+
+
+class Fleet(NamedTuple):
+    """A fleet's table, what each robot's rewritten description holds, and the transforms that each
+    robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
+    (``file:line``) a plugin's node comes from. ``words`` are what stands for a robot in its frames,
+    where that is not its name."""
+
+    table: Table
+    inventories: dict[str, Inventory]
+    naming: Naming
+    edges: Edges
+    facts: tuple[NodeFacts, ...]
+    sources: dict[str, str]
+    words: dict[str, str]
+
+
+def make_fleet(
+    source: Source,
+    robots: Sequence[str],
+    stacks: Sequence[str],
+    *,
+    nodes: str | None = None,
+    vocabulary: Sequence[str] = (),
+    xacro_args: Mapping[str, str] = NOTHING,
+    **policy: Any,
+) -> Fleet:
+    """Rewrite a description for every robot and make the fleet's table.
+
+    ``nodes`` is a file of nodes and stacks beside the known ones; ``policy`` is that of
+    ``make_naming``. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    """
+    facts = facts_of(stacks, nodes)
+    more: dict[str, Any] = {"vocabulary": vocabulary, "xacro_args": xacro_args}
+    rewritten = list(rewrite_all(source, robots, **more, **policy))
+    tree = builtin_tree(tuple(vocabulary))
+    return assemble([member(it, it.data, it.robot, tree) for it in rewritten], facts, policy)
+
+
+def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
+    """What is known of the nodes of these stacks, each once; UsageError for an unknown one."""
+    library = user_stack(nodes) if nodes else built_in()
+    return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
+
+
+def member(source: Rewrite, data: bytes, spelled: str, tree: Tree) -> Member:
+    """The robot of a rewrite; ``data`` is its description as it is in the end."""
+    document = source.template.inventory.document
+    # Lines of the source: those of a rewritten text are moved by what was inserted.
+    places = tuple(plugin_places(source.template.inventory))
+    return Member(source.robot, spelled, collect(read_document(data, document.file), tree), places)
+
+
+def assemble(
+    members: Sequence[Member], facts: tuple[NodeFacts, ...], policy: Mapping[str, Any]
+) -> Fleet:
+    """The fleet of robots that run the same nodes."""
+    naming = make_naming(**policy)
+    inventories = {it.robot: it.inventory for it in members}
+    plugins = {it.robot: list(plugin_nodes(it.inventory, it.robot)) for it in members}
+    edges: dict[tuple[str, str], list[Edge]] = {}
+    for it in members:
+        own = [node for node, _ in plugins[it.robot]]
+        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.spelled)
+    return Fleet(
+        build_table([it.robot for it in members], facts, naming, plugins),
+        inventories,
+        naming,
+        edges,
+        facts,
+        _sources(members, plugins),
+        {it.robot: it.spelled for it in members if it.spelled != it.robot},
+    )
+
+
+def _sources(members: Sequence[Member], plugins: Plugins) -> dict[str, str]:
+    return {
+        f"{node.namespace.rstrip('/')}/{node.name}": place
+        for it in members
+        for (_, node), place in zip(plugins[it.robot], it.places, strict=True)
+    }
+
+
+def merge(fleets: Sequence[Fleet]) -> Fleet:
+    """Robots of different kinds as one fleet, whose names may not meet either."""
+    first, *others = fleets
+    for other in others:
+        first = Fleet(
+            joined(first.table, other.table, first.naming),
+            {**first.inventories, **other.inventories},
+            first.naming,
+            {**first.edges, **other.edges},
+            tuple(dict.fromkeys((*first.facts, *other.facts))),
+            {**first.sources, **other.sources},
+            {**first.words, **other.words},
+        )
+    return first
+
+
+def expected(fleet: Fleet) -> Expectation:
+    """What the graph of the fleet is to look like."""
+    sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
+    for (robot, _), edges in fleet.edges.items():
+        sent[robot] += edges
+    frames = {
+        robot: frames_of(found, sent[robot], fleet.naming)
+        for robot, found in fleet.inventories.items()
+    }
+    named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
+    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.words)

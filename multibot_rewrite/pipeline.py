@@ -1,0 +1,118 @@
+"""The order of the steps, and nothing else: this file is the program in short."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.checks import audit
+from multibot_rewrite.checks import robots as checks
+from multibot_rewrite.checks.mentions import find_mentions
+from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
+from multibot_rewrite.naming import Naming, affix, overlap
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import respelled_names, stripped_names
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.steps.apply import cut, fill
+from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
+from multibot_rewrite.steps.document import read_document, slot_values
+from multibot_rewrite.steps.plan import Plan, make_plan
+from multibot_rewrite.steps.strip import strip_edits
+from multibot_rewrite.steps.verify import verify
+
+# Kinds whose names are telling enough to be looked for where no site is.
+MENTIONED = ("link", "joint")
+
+
+class Template(NamedTuple):
+    """A description ready for any number of robots: one parse, one plan, one cut."""
+
+    inventory: Inventory
+    plan: Plan
+    values: list[str]
+    pieces: list[bytes]
+    findings: list[Finding]
+    naming: Naming
+    tree: Tree
+    outside: Declared
+
+
+def prepare(
+    source: bytes, file: str, naming: Naming, tree: Tree, outside: Declared = NOTHING
+) -> Template:
+    """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
+
+    ``outside`` is what the URDF beside an SRDF declares.
+    """
+    inventory = collect(read_document(source, file), tree, outside)
+    check_outside(inventory, outside)
+    plan = make_plan(inventory, naming)
+    findings = [*audit.audit(inventory, naming, tree), *plan.findings]
+    _stop_on_errors(findings)
+    values = slot_values(inventory.document.root)
+    findings += find_mentions(inventory, values, _renamed(inventory, naming), tree)
+    pieces = cut(source, plan.edits)
+    return Template(inventory, plan, values, pieces, findings, naming, tree, outside)
+
+
+def declarations(source: bytes, file: str, tree: Tree) -> Declared:
+    """What a description declares, by kind and name."""
+    return collect(read_document(source, file), tree).declared
+
+
+def check_outside(inventory: Inventory, outside: Declared) -> None:
+    """An SRDF names what its URDF declares: neither makes sense without the other."""
+    file = inventory.document.file
+    if inventory.format == SRDF and not outside:
+        raise InputError(f"{file}: an SRDF is rewritten beside its URDF: add --urdf robot.urdf")
+    if inventory.format != SRDF and outside:
+        raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
+
+
+def render(template: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
+    """The text for each robot in turn, the first one proved.
+
+    The others differ from it in nothing but the robot's name in the same holes; that no two names
+    meet is checked for all of them before the first is returned.
+    """
+    inventory, naming = template.inventory, template.naming
+    found = checks.collisions(inventory, naming, robots)
+    found += checks.meeting(inventory, naming, overlap(naming, robots))
+    found += checks.already_rewritten(inventory, naming, robots, again)
+    _stop_on_errors(found)
+    for number, robot in enumerate(robots):
+        output = fill(template.pieces, robot)
+        if number == 0:
+            _, plan, values, *_ = template
+            outside = respelled_names(template.outside, naming, robot)
+            verify(inventory, plan, values, output, robot, naming, template.tree, outside)
+        yield output
+
+
+def strip(
+    source: bytes, file: str, robot: str, naming: Naming, tree: Tree, outside: Declared = NOTHING
+) -> bytes:
+    """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
+
+    ``outside`` is what the rewritten URDF beside a rewritten SRDF declares.
+    """
+    inventory = collect(read_document(source, file), tree, outside)
+    check_outside(inventory, outside)
+    found = checks.not_rewritten(inventory, naming, robot)
+    found += checks.other_urdf(inventory, naming, robot, outside)
+    _stop_on_errors(found)
+    stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
+    again = prepare(stripped, file, naming, tree, stripped_names(outside, naming, robot))
+    if fill(again.pieces, robot) != source:
+        _stop_on_errors([checks.other_options(inventory, robot)])
+    return stripped
+
+
+def _renamed(inventory: Inventory, naming: Naming) -> set[str]:
+    names = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
+    return {name for kind, name in names if affix(naming, kind, name)}
+
+
+def _stop_on_errors(findings: Sequence[Finding]) -> None:
+    if any(finding.level == ERROR for finding in findings):
+        raise RewriteRefused(tuple(findings))

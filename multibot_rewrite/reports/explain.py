@@ -1,0 +1,136 @@
+"""What is known about the values on one line of a document, and what becomes of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.checks.mentions import kept, mentioned
+from multibot_rewrite.model import Claim, Site
+from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
+from multibot_rewrite.reports.paths import tag_path
+from multibot_rewrite.rewriters.spelling import HOLE, kind_of, names_in, respelled
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.document import locate, value_slot
+from multibot_rewrite.steps.plan import Plan, make_plan
+
+
+class Explanation(NamedTuple):
+    """One value: its place, the site that claims or keeps it if any, and in words what follows.
+
+    ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
+    """
+
+    line: int
+    column: int
+    path: str
+    value: str
+    site: Site | None
+    reason: str
+    new: str
+    inserted: tuple[str, ...] = ()
+
+
+def explain_line(
+    inventory: Inventory, naming: Naming, tree: Tree, robot: str, line: int
+) -> list[Explanation]:
+    """Everything that starts on ``line``, in source order; empty where nothing does."""
+    plan = make_plan(inventory, naming)
+    found = [*_claimed(inventory, plan, naming, robot, line), *_others(inventory, tree, line)]
+    found += _inserted(inventory, plan, robot, line)
+    return sorted(found, key=lambda item: (item.column, item.path))
+
+
+def _claimed(
+    inventory: Inventory, plan: Plan, naming: Naming, robot: str, line: int
+) -> Iterator[Explanation]:
+    recomputed = {claim.start: new.replace(HOLE, robot) for claim, new in plan.collisions}
+    for claim, spelling in zip(inventory.claims, plan.spellings, strict=True):
+        place = _place(inventory, claim.start, claim.attribute, claim.value)
+        if place[0] != line:
+            continue
+        new = respelled(claim.value, spelling, robot)
+        if claim.site.form == "collision":
+            new = recomputed.get(claim.start, claim.value)
+        reason = "; ".join(_reasons(inventory, claim, naming)) or "it holds no name"
+        path = tag_path(claim.element, claim.attribute)
+        yield Explanation(*place, path, claim.value, claim.site, reason, new)
+
+
+def _reasons(inventory: Inventory, claim: Claim, naming: Naming) -> Iterator[str]:
+    """What each name in the value is, and why it stays where it does."""
+    declared = inventory.declared
+    if claim.site.form == "collision":
+        yield "a collision, named after its link by the conversion to SDF"
+    if claim.site.form == "prefix" and naming.affix != PREFIX:
+        yield "it stands in front of names that code makes: a postfix cannot reach them"
+        return
+    for part in names_in(claim, declared):
+        kind = kind_of(part, claim.site.role, declared)
+        where = declared.get(kind, {}).get(part.text)
+        known = f", declared at {_line_of(inventory, where)}" if where not in (None, claim) else ""
+        stays = _stays(naming, kind, part.text, claim.site.namespaced)
+        yield f"{kind or ' or '.join(part.kinds)} {part.text!r}{known}{stays and ': '}{stays}"
+
+
+def _line_of(inventory: Inventory, claim: Claim | None) -> str:
+    assert claim is not None
+    here = claim.element.getroottree().getroot() is inventory.document.root
+    return f"line {claim.element.sourceline}{'' if here else ' of the URDF'}"
+
+
+def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
+    """Why a name is not spelled; empty where it is, or where only its look forbids it."""
+    bare = name.strip("/")
+    reasons = (
+        (not kind, "not declared, it stays"),
+        (kind not in naming.separators, f"layout {naming.layout.name} leaves {kind} names alone"),
+        (kind in FRAME_KINDS and bare in naming.shared_frames, "a shared frame (--shared-frames)"),
+        (kind in TOPIC_KINDS and bare in naming.shared_topics, "a shared topic (--shared-topics)"),
+        (kind in TOPIC_KINDS and name.startswith("~"), "private to its node"),
+        (kind in TOPIC_KINDS and namespaced and name[:1] != "/" and naming.topics == "namespace",
+         "the namespace reaches it"),
+    )  # fmt: skip
+    return next((words for holds, words in reasons if holds), "")
+
+
+def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation]:
+    """Values on the line that no site claims."""
+    document = inventory.document
+    claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
+    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+        slots = [(str(key), str(value)) for key, value in element.items()]
+        slots.append(("", (element.text or "").strip()))
+        for attribute, value in slots:
+            place = _place(inventory, start, attribute, value)
+            if value and place[0] == line and (start, attribute) not in claimed:
+                site = kept(element, attribute, tree)
+                reason = site.note if site else _unclaimed(inventory, value)
+                path = tag_path(element, attribute)
+                yield Explanation(*place, path, value, site, reason, value)
+
+
+def _unclaimed(inventory: Inventory, value: str) -> str:
+    names = frozenset([*inventory.declared["link"], *inventory.declared["joint"]])
+    name = mentioned(value, names)
+    return f"it holds the name {name!r}" if name else "it holds no declared name"
+
+
+def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterator[Explanation]:
+    """Plugins on the line that get elements of their own."""
+    for host in inventory.hosts:
+        place = locate(inventory.document.source, host.start)
+        inside = {host.element, *host.element.iterchildren("ros")}
+        mine = [item for item in plan.insertions if item.parent in inside]
+        if place[0] == line and mine:
+            added = tuple(item.xml.replace(HOLE, robot) for item in mine)
+            name = host.node.rewriter.name if host.node.rewriter else ""
+            reason = "the same for every robot otherwise"
+            yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
+
+
+def _place(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:
+    source = inventory.document.source
+    slot = value_slot(source, start, attribute, value) if value else None
+    return locate(source, slot[0] if slot else start)

@@ -1,0 +1,209 @@
+"""How much of a set of descriptions is known: plugins, claims, and mentions that nobody claims."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from fnmatch import fnmatchcase
+from typing import NamedTuple, TypeVar
+
+from multibot_rewrite.checks.audit import is_unknown
+from multibot_rewrite.checks.mentions import unclaimed_mentions
+from multibot_rewrite.model import Claim, InputError
+from multibot_rewrite.naming import DECLARED_KINDS
+from multibot_rewrite.pipeline import MENTIONED
+from multibot_rewrite.reports.paths import plugin_name, tag_path
+from multibot_rewrite.rewriters.spelling import kind_of, names_in
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.steps.collect import Host, Inventory
+from multibot_rewrite.steps.document import Document, locate, slot_values
+
+# Stands for the kind of a name that this file would have to declare.
+UNRESOLVED = "unresolved"
+
+
+class Tally(NamedTuple):
+    """How often, in how many files, and where first: ``file:line``, with the value in question."""
+
+    times: int
+    files: int
+    place: str
+    value: str
+
+
+class Loaded(NamedTuple):
+    """What an element loads: the library (or class) of a plugin, the class of a hardware."""
+
+    type: str
+    name: str
+    known: bool
+
+
+class Mention(NamedTuple):
+    """A place where a link's or joint's name stands unclaimed; ``exact`` if it is all of the value.
+
+    ``path`` is ``robot/gazebo/plugin[libfoo.so]/frameName`` or ``robot/joint@type``; a ``param``
+    has its name in brackets.
+    """
+
+    path: str
+    exact: bool
+
+
+_Thing = TypeVar("_Thing", Loaded, Mention)
+
+
+class Survey(NamedTuple):
+    """What is known of one file or, added up, of many."""
+
+    files: int
+    loaded: Mapping[Loaded, Tally]
+    claims: Mapping[str, int]
+    mentions: Mapping[Mention, Tally]
+
+
+class Reason(NamedTuple):
+    """A line of a list of explained mentions: ``path`` may hold ``*`` for any text."""
+
+    path: str
+    text: str
+    line: int
+
+
+class Explained(NamedTuple):
+    """The exact mentions of a survey, sorted by whether a reason holds for them.
+
+    ``stale`` are the reasons that hold for none.
+    """
+
+    explained: Sequence[tuple[Mention, Tally, Reason]]
+    left: Sequence[tuple[Mention, Tally]]
+    stale: Sequence[Reason]
+
+
+def survey(inventory: Inventory, tree: Tree) -> Survey:
+    """What is known of one file."""
+    claims = Counter(_kind(claim, inventory) for claim in inventory.claims)
+    return Survey(1, _loaded(inventory), claims, _mentions(inventory, tree))
+
+
+def add(surveys: Iterable[Survey]) -> Survey:
+    """The sum of surveys; the first place of each thing is the one that is kept."""
+    files = 0
+    loaded: dict[Loaded, Tally] = {}
+    claims: Counter[str] = Counter()
+    mentions: dict[Mention, Tally] = {}
+    for one in surveys:
+        files += one.files
+        claims.update(one.claims)
+        for thing, tally in one.loaded.items():
+            loaded[thing] = _sum(loaded.get(thing), tally)
+        for mention, tally in one.mentions.items():
+            mentions[mention] = _sum(mentions.get(mention), tally)
+    return Survey(files, loaded, claims, mentions)
+
+
+def _sum(first: Tally | None, second: Tally) -> Tally:
+    if first is None:
+        return second
+    return first._replace(times=first.times + second.times, files=first.files + second.files)
+
+
+def _kind(claim: Claim, inventory: Inventory) -> str:
+    """The kind of a claimed value, which is that of the first name in it."""
+    declared = inventory.declared
+    parts = names_in(claim, declared)
+    return kind_of(parts[0], claim.site.role, declared) or UNRESOLVED if parts else _first(claim)
+
+
+def _first(claim: Claim) -> str:
+    """The kind of a value without a name: what it would be, or nothing of this file."""
+    kind = claim.site.kinds[0]
+    return UNRESOLVED if kind in DECLARED_KINDS else kind
+
+
+def _loaded(inventory: Inventory) -> dict[Loaded, Tally]:
+    found: dict[Loaded, Tally] = {}
+    for host in inventory.hosts:
+        thing = loaded_by(host)
+        if thing is None:
+            continue
+        tally = _first_or(found.get(thing), inventory.document, host.start, thing.name)
+        found[thing] = tally
+    return found
+
+
+def loaded_by(host: Host) -> Loaded | None:
+    """What an element loads; None where it loads nothing (a sensor is no plugin)."""
+    rewriter = host.node.rewriter
+    assert rewriter is not None
+    type_ = rewriter.select or rewriter.type
+    if type_ == "plugin":
+        return Loaded(type_, plugin_name(host.element), not is_unknown(rewriter))
+    class_ = host.element.findtext("hardware/plugin", "").strip() if type_ == "hardware" else ""
+    return Loaded(type_, class_, not rewriter.select) if class_ else None
+
+
+def _mentions(inventory: Inventory, tree: Tree) -> dict[Mention, Tally]:
+    names = {name for kind in MENTIONED for name in inventory.declared[kind]}
+    values = slot_values(inventory.document.root)
+    found: dict[Mention, Tally] = {}
+    for slot in unclaimed_mentions(inventory, values, names, tree):
+        mention = Mention(tag_path(slot.element, slot.attribute), slot.value == slot.name)
+        tally = _first_or(found.get(mention), inventory.document, slot.start, slot.value)
+        found[mention] = tally
+    return found
+
+
+def _first_or(tally: Tally | None, document: Document, start: int, value: str) -> Tally:
+    """One more of what was tallied, or the first of it."""
+    if tally is not None:
+        return tally._replace(times=tally.times + 1)
+    line, _ = locate(document.source, start)
+    return Tally(1, 1, f"{document.file}:{line}", value)
+
+
+def ranked(tallies: Iterable[tuple[_Thing, Tally]]) -> list[tuple[_Thing, Tally]]:
+    """The most frequent first, those of one frequency by name."""
+    return sorted(tallies, key=lambda pair: (-pair[1].times, pair[0]))
+
+
+def share(total: Survey, type_: str) -> tuple[int, int]:
+    """How many occurrences of that type there are, and how many of them are known."""
+    counts = [(tally.times, it.known) for it, tally in total.loaded.items() if it.type == type_]
+    return sum(count for count, _ in counts), sum(count for count, known in counts if known)
+
+
+def read_reasons(text: str, file: str) -> list[Reason]:
+    """Lines of ``tag path TAB reason``; empty ones and those starting with ``#`` are skipped.
+
+    Raises InputError naming file and line.
+    """
+    reasons = []
+    for number, row in enumerate(text.splitlines(), 1):
+        if not row.strip() or row.startswith("#"):
+            continue
+        path, _, reason = (word.strip() for word in row.partition("\t"))
+        if not path or not reason:
+            raise InputError(f"{file}:{number}: write the tag path, a tab, and the reason")
+        reasons.append(Reason(path, reason, number))
+    return reasons
+
+
+def explain(total: Survey, reasons: Sequence[Reason]) -> Explained:
+    """Sort the exact mentions by the first reason that holds for each."""
+    explained, left = [], []
+    used: set[Reason] = set()
+    for mention, tally in total.mentions.items():
+        holding = [it for it in reasons if mention.exact and _holds(it, mention)]
+        used.update(holding)
+        if holding:
+            explained.append((mention, tally, holding[0]))
+        elif mention.exact:
+            left.append((mention, tally))
+    return Explained(explained, left, [it for it in reasons if it not in used])
+
+
+def _holds(reason: Reason, mention: Mention) -> bool:
+    # Only * is a wildcard: brackets are part of a path.
+    return fnmatchcase(mention.path, reason.path.replace("[", "[[]").replace("?", "[?]"))

@@ -1,0 +1,247 @@
+"""The vocabulary: which tag of which plugin holds which name. Data in ``*.vocab``, read lazily.
+
+A file is a list of sections. The whole grammar:
+
+    # a comment
+    [element sensor]                     an XML element; names after the first are aliases
+    at: gazebo link                      the elements it may stand in ("/" is the document)
+    @name        declares sensor         the value at this path declares a name of this kind
+    plugin/frame uses frame              the value refers to one (kinds are tried in order)
+    @type        keep an enumeration     the value is never renamed, and why
+
+A section is one of
+
+    [element NAME]     an XML element by its tag; ``[element srdf.group]`` is about ``<group>`` too,
+                       where it stands elsewhere and means something else
+    [plugin NAME]      a plugin by its library, without ``lib`` and ``.so``, or by its class
+    [hardware NAME]    a ros2_control hardware class, as in ``<plugin>``
+    [sensor TYPE]      a ``<sensor>`` by its type
+    [block NAME]       lines that several sections share by ``with: NAME``
+
+A path is child steps, then ``@attribute`` for an attribute; a step may ask for an attribute:
+``param[@name=mimic]``. After the kinds may stand, in this order or another, then ``# a note``:
+
+    form=NAME          where in the value the names are
+    default=TEXT       the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
+                       with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
+                       these texts
+    when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
+
+Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
+URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
+file declares it; a frame that is the name of a link is spelled like the link. A ``stem`` is a word
+that topics are made of, a ``subtopic`` stands below a stem or namespace.
+
+    form=whole       the value is one name (where no form is given)
+    form=list        names separated by commas or white space
+    form=scoped      ``model::link``: models, then the name
+    form=words       any text, ``(key value ...)``: those of its words that this file declares
+    form=suffixed    ``link/light``, ``link::visual``: a declared name and what is none behind it
+    form=member      ``link::sensor``, ``world::model::link::sensor``, ``link/sensor``: below a link
+    form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
+    form=regex       a regular expression for whole names, alternatives affixed one by one
+    form=prefix      put in front of names in code: a postfix cannot reach them (MB422)
+    form=remap       a ROS remap rule ``from:=to``: ``to`` is the name
+    form=argument    the same as an argument, ``__ns:=`` and ``__node:=`` among them
+    form=collision   a collision, scoped or not, recomputed when its link is renamed
+
+A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
+
+    at: ELEMENT...         elements only: where it may stand
+    select: TYPE           elements only: what it loads decides its section (plugin, hardware, sensor)
+    with: BLOCK...         the lines of these blocks too; an own line at the same path wins
+    ros: 1 | 2             for that ROS alone, where both have a plugin of this name
+    publishes: TOPIC...    topics that no parameter moves, where ``ros/remapping`` is read: remapped
+    subscribes: TOPIC...   the same
+    serves: SERVICE...     the same
+    switches: P=TOPIC...   parameter P turns that topic on, P=TOPIC=on: it is on unless P says false;
+                           of several for /tf the first is that of odometry
+    insert: yes | no       no where the consumer throws on children it does not know (default: yes)
+    unique: KIND           bare names of this kind are looked up in the whole world
+    hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them
+    process_wide: yes | no its remap rules hold for every node of the process (default: no)
+    about: TEXT            what it is
+    source: TEXT           where in which source that can be read
+
+A section may be given again, in another file too: it adds lines and topics to the first one. Two
+lines at one path are refused. Files are the built-in ones, those of installed packages (see
+``installed``) and those a call or a command names, in this order.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Container, Iterable, Mapping, Sequence
+from functools import lru_cache
+
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.model import Site, VocabularyError
+from multibot_rewrite.rewriters.vocabulary.grammar import (
+    FORMS,
+    KINDS,
+    TYPES,
+    Rewriter,
+    assemble,
+    merge,
+    read_header,
+    read_section,
+    split_path,
+    split_step,
+)
+from multibot_rewrite.rewriters.vocabulary.installed import advice, installed
+
+HERE = os.path.dirname(__file__)
+Raw = tuple[str, int, str]
+_AT = regex(r"^at:(.*)", re.MULTILINE)
+
+__all__ = [
+    "FORMS",
+    "KINDS",
+    "TYPES",
+    "Rewriter",
+    "Vocabulary",
+    "advice",
+    "check_vocabulary",
+    "load_vocabulary",
+    "split_path",
+    "split_step",
+]
+
+
+class Vocabulary:
+    """The sections of several files, parsed on demand; build with ``load_vocabulary``.
+
+    ``extended`` tells that some of them are not built in.
+    """
+
+    def __init__(self, texts: Mapping[str, str], extended: bool = False) -> None:
+        self.extended = extended
+        self._raw: dict[tuple[str, str], list[Raw]] = {}
+        self._found: dict[tuple[str, str], list[Rewriter]] = {}
+        for file, text in texts.items():
+            self._index(file, text)
+
+    def _index(self, file: str, text: str) -> None:
+        preamble, *chunks = ("\n" + text).split("\n[")
+        line = 0
+        for line, row in enumerate(preamble.split("\n")):
+            if row.strip() and not row.startswith("#"):
+                raise VocabularyError(f"{file}:{line}: text before the first [section]")
+        for chunk in chunks:
+            line += 1
+            type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
+            for name in names:
+                self._raw.setdefault((type_, name), []).append((file, line, chunk))
+            line += chunk.count("\n")
+
+    def find(self, type_: str, name: str) -> list[Rewriter]:
+        """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.
+
+        Sections of one flavour are one; a later one without ``ros:`` adds to every flavour.
+        """
+        key = (type_, name)
+        if key not in self._found:
+            self._found[key] = []
+            for raw in self._raw.get(key, ()):
+                self._add(self._found[key], self._read(*raw))
+        return self._found[key]
+
+    def _add(self, found: list[Rewriter], new: Rewriter) -> None:
+        same = [at for at, old in enumerate(found) if new.ros in ("", old.ros)]
+        for at in same:
+            found[at] = merge(found[at], new)
+        if not same:
+            found.append(new)
+
+    def names(self, type_: str) -> list[str]:
+        """Every name and alias of that type."""
+        return [name for kind, name in self._raw if kind == type_]
+
+    def places(self) -> dict[str, list[str]]:
+        """Each element with a section and the elements it may stand in, without reading more."""
+        found: dict[str, list[str]] = {}
+        for (type_, name), raws in self._raw.items():
+            if type_ == "element":
+                parents = [
+                    word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()
+                ]
+                found[name] = list(dict.fromkeys(parents))
+        return found
+
+    def rewriters(self, *types: str) -> list[Rewriter]:
+        """All rewriters of these types, parsed and checked, in file order."""
+        return self._parsed(key for key in self._raw if key[0] in types)
+
+    def rewriters_in(self, files: Container[str]) -> list[Rewriter]:
+        """All rewriters that these files have a part in, parsed and checked."""
+        raws = self._raw.items()
+        return self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
+
+    def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[Rewriter]:
+        found = [rewriter for key in keys for rewriter in self.find(*key)]
+        return list({(rewriter.file, rewriter.line): rewriter for rewriter in found}.values())
+
+    def _read(self, file: str, line: int, chunk: str) -> Rewriter:
+        rows = chunk.split("\n")
+        settings, own = read_section(file, line, rows)
+        sites: dict[str, Site] = {}
+        for name in settings.get("with", "").split():
+            sites |= {site.path: site for site in self._block(f"{file}:{line}", name).sites}
+        header = read_header(f"{file}:{line}", rows[0])
+        return assemble(file, line, header, settings, list((sites | own).values()))
+
+    def _block(self, place: str, name: str) -> Rewriter:
+        found = self.find("block", name)
+        if not found:
+            known = ("block", name) in self._raw
+            wrong = f"[block {name}] stands in a circle" if known else f"there is no [block {name}]"
+            raise VocabularyError(f"{place}: with: {name}: {wrong}")
+        return found[0]
+
+
+@lru_cache(maxsize=8)
+def load_vocabulary(extra: tuple[str, ...] = (), *, packages: bool = True) -> Vocabulary:
+    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``.
+
+    Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
+    else in a section that is used.
+    """
+    builtin = sorted(name for name in os.listdir(HERE) if name.endswith(".vocab"))
+    more = _more(extra, packages, builtin)
+    texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
+    try:
+        texts |= {name: _text(name, path) for name, path in more.items()}
+        vocabulary = Vocabulary(texts, extended=bool(more))
+        vocabulary.rewriters_in(more)
+    except VocabularyError as error:
+        raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None
+    return vocabulary
+
+
+def _more(extra: tuple[str, ...], packages: bool, builtin: Sequence[str]) -> dict[str, str]:
+    """Name in messages -> path of the files beside the built-in ones, each file once."""
+    named = {file.name: file.path for file in (installed() if packages else ())}
+    # A user's file may be called like a built-in one.
+    named |= {os.path.join(".", path) if path in builtin else path: path for path in extra}
+    first: dict[str, str] = {}
+    for name, path in named.items():
+        first.setdefault(os.path.realpath(path), name)
+    return {name: named[name] for name in first.values()}
+
+
+def _text(name: str, path: str) -> str:
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            return file.read()
+    except OSError as error:
+        raise VocabularyError(f"{name}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise VocabularyError(
+            f"{name}: cannot be read: it is not UTF-8; save it as UTF-8"
+        ) from None
+
+
+def check_vocabulary(vocabulary: Vocabulary) -> list[Rewriter]:
+    """Parse every section; raises VocabularyError for the first mistake."""
+    return vocabulary.rewriters(*TYPES)

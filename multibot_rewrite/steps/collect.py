@@ -1,0 +1,110 @@
+"""Document -> inventory: every value a site claims, every symbol declared, every plugin met."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.model import Claim, InputError, Site
+from multibot_rewrite.naming import DECLARED_KINDS
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import takes_empty
+from multibot_rewrite.rewriters.tree import Node, Tree
+from multibot_rewrite.steps.document import Document, locate
+
+NOTHING: Declared = {}
+SRDF = "srdf.robot"
+
+
+class Host(NamedTuple):
+    """An element whose rewriter was chosen by what it loads: a plugin or a ros2_control system."""
+
+    element: etree._Element
+    start: int
+    node: Node
+
+
+class Inventory(NamedTuple):
+    """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
+    URDF beside an SRDF included; ``format`` is the section of the root element."""
+
+    document: Document
+    claims: list[Claim]
+    hosts: list[Host]
+    declared: dict[str, dict[str, Claim]]
+    format: str
+
+
+def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inventory:
+    """Walk the document in order beside the tree of rewriters; ``outside`` is declared elsewhere."""
+    claims: list[Claim] = []
+    hosts: list[Host] = []
+    walk = zip(document.elements, document.starts, strict=True)
+    root, _ = next(walk)
+    format_ = _format(document, tree, SRDF if outside else "")
+    node = tree.formats[format_]
+    nothing: dict[str, Node] = {}
+    below: dict[etree._Element, dict[str, Node]] = {root: node.active}
+    _claim(claims, node, root, document.starts[0])
+    known = tree.tags
+    for element, start in walk:
+        tag = element.tag
+        # Most elements hold numbers: one look decides that nothing anywhere asks for them.
+        if tag not in known:
+            continue
+        found = below.get(element.getparent(), nothing).get(tag)  # type: ignore[arg-type]
+        if found is None:
+            continue
+        if found.select is not None:
+            found = found.select(element)
+            if found.rewriter is not None:
+                hosts.append(Host(element, start, found))
+        if found.active:
+            below[element] = found.active
+        if found.attributes or found.text is not None:
+            _claim(claims, found, element, start)
+    return Inventory(document, claims, hosts, _declared(claims, outside), format_)
+
+
+def _format(document: Document, tree: Tree, likely: str) -> str:
+    found = tree.format_of(document.root, likely)
+    if not found:
+        known = " or ".join(f"<{name}>" for name in sorted(tree.formats) if "." not in name)
+        line, column = locate(document.source, document.starts[0])
+        tag = etree.QName(document.root)
+        where = f" in the namespace {tag.namespace!r}" if tag.namespace else ""
+        hint = "take out its xmlns" if where else "give a robot description"
+        raise InputError(
+            f"{document.file}:{line}:{column}: the root element is <{tag.localname}>{where}, "
+            f"expected {known}; {hint}"
+        )
+    return found
+
+
+def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int) -> None:
+    for attribute, site in node.attributes:
+        value = element.get(attribute)
+        if value is not None:
+            claims.append(Claim(site, element, start, attribute, value))
+    text = node.text
+    if text is not None and (element.text or takes_empty(text)) and _applies(text, element):
+        claims.append(Claim(text, element, start, "", (element.text or "").strip()))
+
+
+def _applies(site: Site, element: etree._Element) -> bool:
+    if not site.when:
+        return True
+    sibling, _, text = site.when.partition("=")
+    parent = element.getparent()
+    return parent is not None and parent.findtext(sibling, "").strip() == text
+
+
+def _declared(claims: list[Claim], outside: Declared) -> dict[str, dict[str, Claim]]:
+    declared = {kind: dict(outside.get(kind, {})) for kind in DECLARED_KINDS}
+    for claim in claims:
+        site = claim.site
+        name = claim.value.strip()
+        if name and site.role == "declares" and site.kinds[0] in declared:
+            declared[site.kinds[0]].setdefault(name, claim)
+    return declared

@@ -1,0 +1,207 @@
+"""Source bytes -> lxml tree and byte positions. Everything later decides on the tree and edits the
+bytes, so whatever is not edited stays as it was.
+
+A position is found by scanning one start tag; a value is editable only if what stands there reads
+back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.model import Edit, Finding, InputError
+
+MAX_BYTES = 16 * 1024 * 1024
+# Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
+# stays on: without it lxml makes libxml2 load external DTDs.) Blanks between elements are most of a
+# tree, and mean nothing.
+_PARSER = etree.XMLParser(
+    resolve_entities=False, no_network=True, load_dtd=False, remove_blank_text=True
+)
+_OPENING = regex(rb"<[A-Za-z_:\x80-\xff]")
+_SILENT = regex(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
+_TAG = regex(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_ATTRIBUTE = regex(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+_ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
+_TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
+_HINTS = (
+    ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
+    ("Excessive depth", "a robot description is never nested this deep"),
+    ("declaration allowed only at the start", "delete what stands before <?xml ...?>"),
+    ("Invalid bytes in character encoding", "the text is not UTF-8; convert it: iconv -t UTF-8"),
+    ("not proper UTF-8", "convert it: iconv -f LATIN1 -t UTF-8"),
+    ("XML or text declaration not at start", "delete what stands before <?xml ...?>"),
+    ("Namespace prefix", 'declare it on the root element: xmlns:prefix="..."'),
+    ("Unsupported version", 'write <?xml version="1.0"?>'),
+    ("Document is empty", "the file holds no XML"),
+    ("Start tag expected", "the file is not XML"),
+    ("Premature end", "the file is cut short"),
+)
+
+
+class Document(NamedTuple):
+    """One parsed file. ``elements`` are all of the tree in document order, ``starts`` the byte
+    offsets of their start tags. ``file`` is the name used in messages."""
+
+    source: bytes
+    file: str
+    root: etree._Element
+    elements: list[etree._Element]
+    starts: list[int]
+
+
+def read_document(source: bytes, file: str) -> Document:
+    """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done."""
+    _refuse_bytes(source, file)
+    try:
+        root = etree.fromstring(source, _PARSER)
+    except etree.XMLSyntaxError as error:
+        raise InputError(_syntax_message(error, file)) from None
+    document = Document(source, file, root, list(root.iter("*")), start_offsets(source))
+    _refuse_tree(document)
+    return document
+
+
+def _refuse_bytes(source: bytes, file: str) -> None:
+    if not source.strip():
+        raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
+    if len(source) > MAX_BYTES:
+        sizes = f"{len(source):,} bytes, over the limit of {MAX_BYTES:,}"
+        raise InputError(f"{file}: {sizes}; is this a mesh?")
+    if source.startswith((b"\xff\xfe", b"\xfe\xff", b"<\0", b"\0<", b"\0\0\xfe\xff", b"\0\0\0<")):
+        width = 32 if b"\0\0" in source[:8] else 16
+        name = f"UTF-{width}"
+        raise InputError(f"{file}: the text is {name}; convert it: iconv -f {name} -t UTF-8")
+
+
+def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
+    message = " ".join(str(error.msg).split()).partition(", line ")[0]
+    message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
+    hint = next((hint for start, hint in _HINTS if start in message), "mend the XML and try again")
+    line, column = error.position
+    return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
+
+
+def _refuse_tree(document: Document) -> None:
+    source, file, root, *_ = document
+    info = root.getroottree().docinfo
+    if info.internalDTD is not None:
+        raise InputError(f"{file}: DOCTYPE and entities are not accepted; expand them first")
+    encoding = (info.encoding or "UTF-8").upper()
+    if encoding not in ("UTF-8", "UTF8", "ASCII", "US-ASCII") and not source.isascii():
+        raise InputError(
+            f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8"
+        )
+
+
+def start_offsets(source: bytes) -> list[int]:
+    """The byte offsets of the start tags of a well-formed text, in document order."""
+    after_declaration = 5 if source.startswith(b"<?xml ") else 0
+    if b"<!--" in source or b"<![CDATA[" in source or source.find(b"<?", after_declaration) >= 0:
+        # Blanks of the same length, so that every offset still holds.
+        source = _SILENT.sub(lambda found: b" " * len(found[0]), source)
+    return [found.start() for found in _OPENING.finditer(source)]
+
+
+def slot_values(root: etree._Element) -> list[str]:
+    """The value of every attribute and of every text that is more than white space."""
+    texts: list[str] = _TEXTS(root)  # type: ignore[assignment]
+    attributes: list[str] = _ATTRIBUTES(root)  # type: ignore[assignment]
+    return attributes + [text.strip() for text in texts]
+
+
+def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[int, int] | None:
+    """Where a value of the element at ``start`` stands: of an attribute, or its text if that is
+    empty. None if what stands there does not read back as ``value``."""
+    if not attribute:
+        return text_slot(source, start, value)
+    # The common spelling, inside this tag and not inside another value; else the exact way.
+    written = f' {attribute}="{value}"'.encode()
+    begin = source.find(written, start)
+    if begin < 0 or source.find(b">", start, begin) >= 0:
+        return attribute_slot(source, start, attribute, value)
+    earlier = source.find(b"=", start, begin) >= 0
+    if earlier and (b"'" in source[start:begin] or source.count(b'"', start, begin) % 2):
+        return attribute_slot(source, start, attribute, value)
+    return begin + len(attribute) + 3, begin + len(written) - 1
+
+
+def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
+    """Where the value of an attribute stands, however it is quoted, spaced and escaped.
+
+    A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
+    """
+    uri, _, local = name.encode().rpartition(b"}")
+    for found in _ATTRIBUTE.finditer(source, start, tag_end(source, start)):
+        prefix, _, written = found[1].rpartition(b":")
+        if (written == local and prefix) if uri else found[1] == local:
+            begin, end = found.start(2) + 1, found.end(2) - 1
+            return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
+    return None
+
+
+def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
+    """Where the text right after a start tag stands, white space around it aside; None if it does
+    not read back as ``value``."""
+    raw = value.encode()
+    begin = source.find(b">", start) + 1
+    end = begin + len(raw)
+    if source.startswith(raw, begin) and source[end : end + 1] == b"<":
+        return begin, end
+    begin = tag_end(source, start)
+    text = source[begin : source.find(b"<", begin)]
+    begin += len(text) - len(text.lstrip())
+    text = text.strip()
+    return (begin, begin + len(text)) if _reads_as(b"<a>%s</a>", text, value) else None
+
+
+def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes] | None:
+    """The end of an empty element, and what stands around a text in it; None if it is not empty.
+
+    A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
+    """
+    end = tag_end(source, start)
+    name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")
+    if source[end - 2 : end] == b"/>":
+        return end - 2, end, b">", b"</%s>" % name
+    close = b"</%s>" % name
+    return (end, end + len(close), b"", b"</%s >" % name) if source.startswith(close, end) else None
+
+
+def emptied(source: bytes, slot: tuple[int, int]) -> Edit:
+    """The edit that takes the text of a filled element out again."""
+    end = source.index(b">", slot[1]) + 1
+    close = source[slot[1] : end]
+    if close.endswith(b" >"):
+        return Edit(slot[0], end, close[:-2] + b">", None)
+    return Edit(slot[0] - 1, end, b"/>", None)
+
+
+def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:
+    element = etree.fromstring(frame % raw.replace(b'"', b"&quot;"))
+    return (element.get("b") if b"b=" in frame else element.text or "") == value
+
+
+def tag_end(source: bytes, start: int) -> int:
+    """The offset right after the ``>`` of the start tag at ``start``."""
+    tag = _TAG.match(source, start)
+    assert tag is not None, "lxml read a start tag here"
+    return tag.end()
+
+
+def locate(source: bytes, offset: int) -> tuple[int, int]:
+    """Line and column, from 1, of a byte offset; the column counts characters."""
+    line_start = source.rfind(b"\n", 0, offset) + 1
+    column = len(source[line_start:offset].decode("utf-8", "replace")) + 1
+    return source.count(b"\n", 0, offset) + 1, column
+
+
+def finding(
+    document: Document, offset: int, code: str, level: str, message: str, hint: str = ""
+) -> Finding:
+    """A finding at a byte offset of the document."""
+    return Finding(code, level, message, hint, document.file, *locate(document.source, offset))

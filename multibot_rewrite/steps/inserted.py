@@ -1,0 +1,140 @@
+"""Inserted text in the bytes: how it is written, and how it is found again.
+
+It is the first thing in its parent element and starts with a marker:
+
+    <!--multibot robot1 +2: odom, cmd_vel: the same for every robot otherwise-->
+
+The number counts the inserted elements that follow; ``expanded`` behind it says that the parent was
+``<a/>`` before. ``--strip`` takes out exactly that. The marker is a comment because TinyXML-2, which
+urdfdom and sdformat read with, refuses processing instructions inside the root element.
+"""
+
+from __future__ import annotations
+
+from itertools import groupby
+from typing import NamedTuple
+
+from lxml import etree
+
+from multibot_rewrite.model import Edit, InputError
+from multibot_rewrite.rewriters.insert import Insertion
+from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.steps.document import Document, tag_end
+
+MARKER = b"<!--multibot "
+WHY = "the same for every robot otherwise"
+
+
+class Marker(NamedTuple):
+    """A marker comment read back."""
+
+    comment: etree._Element
+    robot: str
+    elements: int
+    expanded: bool
+
+
+def insertion_edits(document: Document, items: list[Insertion]) -> list[Edit]:
+    """One edit group per parent element, right after its start tag."""
+    if not items:
+        return []
+    starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
+    edits = []
+    for parent, group in groupby(sorted(items, key=lambda i: starts[i.parent]), lambda i: i.parent):
+        edits += _parent_edits(document.source, parent, starts[parent], list(group))
+    return edits
+
+
+def _parent_edits(
+    source: bytes, parent: etree._Element, start: int, items: list[Insertion]
+) -> list[Edit]:
+    end = tag_end(source, start)
+    expanded = source[end - 2 : end] == b"/>"
+    lead = _lead(source, start, end)
+    elements = _elements(items, lead)
+    old = ("no namespace" if item.kind == "namespace" else item.old for item in items)
+    about = ", ".join(dict.fromkeys(old)).replace("--", "- -")
+    word = " expanded" if expanded else ""
+    marker = f"<!--multibot {HOLE} +{len(elements)}{word}: {about}: {WHY}-->"
+    text = "".join(lead + part for part in (marker, *elements))
+    if expanded:
+        name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
+        return hole_edits(end - 2, end, f">{text}{lead}</{name}>")
+    return hole_edits(end, end, text)
+
+
+def _lead(source: bytes, start: int, end: int) -> str:
+    """Line break and indentation of the parent's first child, as the file writes them."""
+    space = source[end : len(source) - len(source[end:].lstrip())].decode()
+    if "\n" in space and source[end + len(space) : end + len(space) + 2] != b"</":
+        return space[space.rindex("\n") - space.count("\r\n", space.rindex("\n") - 1) :]
+    return ""
+
+
+def _elements(items: list[Insertion], lead: str) -> list[str]:
+    plain = [item.xml for item in items if not item.wrap]
+    for wrap in dict.fromkeys(item.wrap for item in items if item.wrap):
+        inner = "".join(f"{lead}{lead and '  '}{item.xml}" for item in items if item.wrap == wrap)
+        plain.append(f"<{wrap}>{inner}{lead}</{wrap}>")
+    return plain
+
+
+def hole_edits(start: int, end: int, text: str) -> list[Edit]:
+    """Replace ``start:end`` by ``text``, in which ``HOLE`` stands for the robot's name."""
+    first, *rest = (piece.encode() for piece in text.split(HOLE))
+    if not rest:
+        return [Edit(start, end, first, None)]
+    return [Edit(start, end, first, rest[0])] + [Edit(end, end, b"", piece) for piece in rest[1:]]
+
+
+def markers(document: Document) -> list[Marker]:
+    """All markers of a document; raises InputError for one that was edited by hand."""
+    if MARKER not in document.source:
+        return []
+    found = []
+    for comment in document.root.iter(etree.Comment):
+        words = (comment.text or "").partition(":")[0].split()
+        if words[:1] == ["multibot"]:
+            found.append(_read_marker(document, comment, words))
+    return found
+
+
+def _read_marker(document: Document, comment: etree._Element, words: list[str]) -> Marker:
+    plain = len(words) in (3, 4) and words[2][:1] == "+" and words[2][1:].isdigit()
+    if not plain or (len(words) == 4 and words[3] != "expanded"):
+        raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
+    return Marker(comment, words[1], int(words[2][1:]), len(words) == 4)
+
+
+def removals(document: Document, robot: str) -> list[Edit]:
+    """Edits that take out what was inserted for ``robot``."""
+    mine = [marker for marker in markers(document) if marker.robot == robot]
+    if not mine:
+        return []
+    starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
+    return [_removal(document, marker, starts) for marker in mine]
+
+
+def _removal(document: Document, marker: Marker, starts: dict[etree._Element, int]) -> Edit:
+    source = document.source
+    parent = marker.comment.getparent()
+    inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
+    if parent is None or len(inserted) != marker.elements or not inserted:
+        place = f"{document.file}:{marker.comment.sourceline}:1"
+        raise InputError(f"{place}: the elements this marker counts were edited by hand")
+    before = next(iter(marker.comment.itersiblings("*", preceding=True)), None)
+    begin = tag_end(source, starts[parent]) if before is None else _end(source, starts[before])
+    end = _end(source, starts[inserted[-1]])
+    if not marker.expanded:
+        return Edit(begin, end, b"", None)
+    return Edit(begin - 1, source.index(b">", source.index(b"</", end)) + 1, b"/>", None)
+
+
+def _end(source: bytes, start: int) -> int:
+    """The end of an element that this module wrote: no child has its tag."""
+    end = tag_end(source, start)
+    if source[end - 2 : end] == b"/>":
+        return end
+    name = source[start + 1 : end - 1].split(None, 1)[0]
+    close = b"</" + name + b">"
+    return source.index(close, end) + len(close)

@@ -1,0 +1,98 @@
+"""The proof that runs on every rewrite. It trusts the output bytes only, not the plan's word."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from lxml import etree
+
+from multibot_rewrite.model import Claim, InputError, ProofError
+from multibot_rewrite.naming import Naming
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import HOLE, respelled
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.steps.apply import cut, invert
+from multibot_rewrite.steps.collect import Inventory, collect
+from multibot_rewrite.steps.document import read_document, slot_values
+from multibot_rewrite.steps.inserted import removals
+from multibot_rewrite.steps.plan import Plan
+from multibot_rewrite.steps.strip import outside_of, strip_edits
+
+
+def verify(
+    inventory: Inventory,
+    plan: Plan,
+    values: list[str],
+    output: bytes,
+    robot: str,
+    naming: Naming,
+    tree: Tree,
+    outside: Declared,
+) -> None:
+    """Raise ProofError unless ``output`` is the input with its names respelled and nothing else.
+
+    ``values`` are the input's ``slot_values``; ``outside`` is what the robot's URDF declares beside
+    an SRDF.
+    """
+    source, file = inventory.document.source, inventory.document.file
+    try:
+        result = collect(read_document(output, f"{file} for {robot}"), tree, outside)
+    except InputError as error:
+        raise ProofError(f"the output does not parse: {error}") from None
+    expected = _expected(inventory, plan, robot)
+    inserted = removals(result.document, robot)
+    _same_names(inventory, outside_of(result.claims, inserted), expected)
+    _same_symbols(inventory, result, robot)
+    come = Counter(expected)
+    for item in plan.insertions:
+        come.update(slot_values(etree.fromstring(item.xml.replace(HOLE, robot))))
+    _nothing_left(inventory, values, slot_values(result.document.root), come)
+    if b"".join(cut(output, invert(plan.edits, source, robot))) != source:
+        raise ProofError(f"{file}: undoing the edits does not give the input back")
+    if b"".join(cut(output, strip_edits(result, naming, robot))) != source:
+        raise ProofError(f"{file}: stripping {robot} from the output does not give the input back")
+
+
+def _same_names(inventory: Inventory, found: list[Claim], expected: list[str]) -> None:
+    """The same sites in the same order, each with the planned value."""
+    file = inventory.document.file
+    if len(found) != len(inventory.claims):
+        raise ProofError(f"{file}: {len(inventory.claims)} names went in, {len(found)} came out")
+    for claim, new, value in zip(inventory.claims, found, expected, strict=True):
+        if new.site is not claim.site or new.value != value:
+            raise ProofError(f"{file}: {claim.value!r} became {new.value!r}, expected {value!r}")
+
+
+def _same_symbols(inventory: Inventory, result: Inventory, robot: str) -> None:
+    """No two symbols became one: what was declared under so many names still is."""
+    for kind, symbols in inventory.declared.items():
+        if len(symbols) != len(result.declared[kind]):
+            file = inventory.document.file
+            raise ProofError(f"{file}: two {kind}s have one name for {robot}")
+
+
+def _expected(inventory: Inventory, plan: Plan, robot: str) -> list[str]:
+    values = [
+        respelled(claim.value, spelling, robot) if spelling else claim.value
+        for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
+    ]
+    if plan.collisions:
+        by_place = {claim.start: new for claim, new in plan.collisions}
+        for index, claim in enumerate(inventory.claims):
+            if claim.site.form == "collision" and claim.start in by_place:
+                values[index] = by_place[claim.start].replace(HOLE, robot)
+    return values
+
+
+def _nothing_left(
+    inventory: Inventory, before: list[str], after: list[str], come: Counter[str]
+) -> None:
+    """Each claimed value stands in the output as often as the plan says, claimed slots or not.
+
+    ``before`` and ``after`` are the values of all slots, ``come`` counts those the claims are to have.
+    """
+    claimed = Counter([claim.value for claim in inventory.claims])
+    was = Counter(filter(claimed.__contains__, before))
+    for name, count in Counter(filter(claimed.__contains__, after)).items():
+        if count > was[name] - claimed[name] + come[name]:
+            raise ProofError(f"{inventory.document.file}: the old name {name!r} is still there")

@@ -1,0 +1,672 @@
+"""``multibot`` as a person meets it: what it prints, writes and returns."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from robots import CORPUS
+
+import multibot_rewrite
+from multibot_rewrite.cli.multibot import COMMANDS, main
+from multibot_rewrite.cli.tables import Grid, render
+from multibot_rewrite.library import rewrite
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.lookup import look_up
+from multibot_rewrite.rewriters.vocabulary import TYPES, load_vocabulary
+
+COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
+ROOT = Path(__file__).parents[2]
+ROBOTS = ROOT / "fixtures" / "robots"
+PAGE = ROOT / "docs" / "coverage.md"
+UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
+PATIENCE = 60
+# Percent of the occurrences of hardware classes over the corpus.
+LEAST_HARDWARE = 95
+
+
+class Result(NamedTuple):
+    """What one run left behind."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """An empty working directory; files of one name differ from test to test."""
+    monkeypatch.chdir(tmp_path)
+    builtin_tree.cache_clear()
+    load_vocabulary.cache_clear()
+    return tmp_path
+
+
+class Multibot:
+    """Runs the command inside this process, which is quicker."""
+
+    def __init__(self, capture: pytest.CaptureFixture[str]) -> None:
+        self.capture = capture
+
+    def __call__(self, *words: str) -> Result:
+        try:
+            code = main(words)
+        except SystemExit as end:
+            code = int(str(end.code))
+        return Result(code, *self.capture.readouterr())
+
+    def json(self, *words: str) -> Any:
+        result = self(*words, "--json", "-")
+        return json.loads(result.out)
+
+
+@pytest.fixture
+def multibot(folder: Path, capsys: pytest.CaptureFixture[str]) -> Multibot:
+    return Multibot(capsys)
+
+
+def robot(body: str) -> str:
+    joint = '<joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>'
+    return f'<robot name="r"><link name="base"/><link name="arm"/>{joint}{body}</robot>'
+
+
+def plugin(library: str, body: str = "") -> str:
+    return f'<gazebo><plugin name="p" filename="{library}">{body}</plugin></gazebo>'
+
+
+KNOWN = plugin("libgazebo_ros_diff_drive.so")
+ACME = plugin("libacme.so", "<x>hip</x><x>arm</x><list>hip arm</list>")
+
+
+def write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+
+
+# ---------------------------------------------------------------- the command itself
+
+
+def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
+    result = multibot("--help")
+    assert result.code == 0
+    assert [name for name in COMMANDS if name not in result.out] == []
+    for name in COMMANDS:
+        assert f"usage: multibot {name}" in multibot(name, "--help").out
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((), "multibot: the following arguments are required: COMMAND"),
+        (("dance",), "multibot: argument COMMAND: invalid choice: 'dance'"),
+        (("coverage",), "multibot coverage: the following arguments are required: PATH"),
+        (("coverage", "a", "--top", "many"), "argument --top: 'many' is not a number of rows"),
+        (("coverage", "a", "--top", "-1"), "argument --top"),
+        (("coverage", "a", "--min-known", "101"), "'101' is not a percentage"),
+        (("coverage", "a", "--min-known", "nan"), "'nan' is not a percentage"),
+        (("coverage", "a", "--min-known", "x"), "'x' is not a percentage"),
+        (("coverage", "a", "--vocab", "x"), "unrecognized arguments"),
+        (("vocabulary", "--type", "car"), "argument --type: invalid choice: 'car'"),
+        (("vocabulary", "x", "--suggest", "a"), "--suggest goes with --vocabulary only"),
+        (("vocabulary", "--json", "-", "--suggest", "a"), "--suggest goes with"),
+        (("vocabulary", "--suggest", "no.urdf"), "no.urdf: cannot be read: No such file"),
+        (("vocabulary", "--vocabulary", "no"), "no: cannot be read: No such file"),
+        (("coverage", "no"), "no: there is no such file or folder"),
+        (("coverage", "."), ".: no *.urdf or *.sdf there; name a file or another folder"),
+    ],
+)
+def test_wrong_use_is_one_line(multibot: Multibot, words: tuple[str, ...], said: str) -> None:
+    result = multibot(*words)
+    assert (result.code, result.out) == (2, "")
+    assert result.err.startswith("multibot")
+    assert said in result.err
+    assert result.err.count("\n") == 1
+
+
+def test_the_version(multibot: Multibot) -> None:
+    assert multibot("--version").out == f"multibot {multibot_rewrite.__version__}\n"
+
+
+def test_a_closed_pipe_is_one_line(folder: Path) -> None:
+    with subprocess.Popen(
+        [*COMMAND, "vocabulary"], stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None and process.stderr is not None
+        process.stdout.close()
+        err = process.stderr.read().decode()
+    assert process.returncode == 1
+    assert err == "multibot: standard output was closed before everything was written\n"
+
+
+@pytest.mark.parametrize(
+    ("redirection", "code", "said"),
+    [
+        (">&-", 2, "multibot: standard output is closed; name a file with --json\n"),
+        (
+            ">/dev/full",
+            2,
+            "multibot: standard output: cannot be written: No space left on device\n",
+        ),
+        ("2>&-", 0, ""),
+    ],
+)
+def test_missing_streams(folder: Path, redirection: str, code: int, said: str) -> None:
+    line = ["sh", "-c", f'"$@" {redirection}', "sh", *COMMAND, "vocabulary", "--type", "block"]
+    done = subprocess.run(line, capture_output=True, text=True, check=False, timeout=PATIENCE)
+    assert (done.returncode, done.stderr) == (code, said)
+
+
+def test_urdf_postfix_does_not_pay_for_it() -> None:
+    code = "import sys, multibot_rewrite.cli.urdf_postfix; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    there = {name for name in done.stdout.split() if name.startswith("multibot_rewrite")}
+    assert "multibot_rewrite.cli.urdf_postfix" in there
+    late = (".survey", ".suggest", ".multibot", ".coverage", ".tables", ".lookup")
+    assert not {name for name in there if name.endswith(late)}
+    assert "rich" not in done.stdout.split()
+
+
+# ---------------------------------------------------------------- coverage: which files
+
+
+def files_read(multibot: Multibot, *words: str) -> tuple[int, list[str]]:
+    files = multibot.json("coverage", *words)["files"]
+    return files["read"], [item["file"] for item in files["unreadable"]]
+
+
+def test_folders_are_searched_for_urdf_and_sdf_only(multibot: Multibot, folder: Path) -> None:
+    for name in ("a.urdf", "b/c.URDF", "b/d.sdf", "b/e.srdf", "b/f.xacro", "b/g.xml", "h.urdf.x"):
+        write(folder / name, robot("") if "sdf" not in name else "<sdf><model name='m'/></sdf>")
+    assert files_read(multibot, ".") == (3, [])
+    assert files_read(multibot, "b/f.xacro") == (1, [])
+    assert files_read(multibot, "b/g.xml", ".") == (4, [])
+
+
+def test_a_file_counts_once_however_it_is_reached(multibot: Multibot, folder: Path) -> None:
+    write(folder / "x" / "a.urdf", robot(""))
+    (folder / "x" / "loop").symlink_to("..")
+    (folder / "x" / "self.urdf").symlink_to("self.urdf")
+    (folder / "link.urdf").symlink_to("x/a.urdf")
+    (folder / "other").symlink_to("x")
+    read, unreadable = files_read(multibot, ".", "x/a.urdf", "x", "other")
+    assert (read, len(unreadable)) == (1, 1)
+    assert unreadable[0].endswith("self.urdf")
+
+
+def test_a_pipe_in_a_folder_is_passed_by(multibot: Multibot, folder: Path) -> None:
+    write(folder / "a.urdf", robot(""))
+    os.mkfifo(folder / "b.urdf")
+    assert files_read(multibot, ".") == (1, [])
+
+
+def test_the_order_is_that_of_names(multibot: Multibot, folder: Path) -> None:
+    names = ["b.urdf", "c.urdf", "a/z.urdf", "a/b/y.urdf", "a/c/y.urdf", "d/x.urdf", "e/x.urdf"]
+    for name in sorted(names, key=lambda name: name[::-1]):
+        write(folder / name, "no robot")
+    assert files_read(multibot, ".")[1] == [f"./{name}" for name in names]
+    assert files_read(multibot, "e", "c.urdf")[1] == ["e/x.urdf", "c.urdf"]
+
+
+def test_what_cannot_be_read_is_told_with_its_reason(multibot: Multibot, folder: Path) -> None:
+    write(folder / "a.urdf", robot(""))
+    write(folder / "b.urdf", "<robot>")
+    write(folder / "c.urdf", "<html/>")
+    (folder / "d.urdf").symlink_to("nowhere")
+    result = multibot("coverage", ".")
+    assert result.code == 0
+    assert result.out.startswith("1 files read, 3 cannot be read\n")
+    assert "\n  ./b.urdf:1:8: not well-formed XML" in result.out
+    assert "\n  ./c.urdf:1:1: the root element is <html>" in result.out
+    assert "\n  ./d.urdf: cannot be read: No such file or directory\n" in result.out
+    assert len(files_read(multibot, ".")[1]) == 3
+
+
+def test_nothing_readable_is_an_error(multibot: Multibot, folder: Path) -> None:
+    write(folder / "b.urdf", "")
+    result = multibot("coverage", "b.urdf")
+    assert result.code == 2
+    assert result.err == "multibot: none of the files can be read\n"
+    assert "b.urdf: the file is empty" in result.out
+
+
+# ---------------------------------------------------------------- coverage: what is reported
+
+
+@pytest.fixture
+def two(folder: Path) -> Path:
+    """Two robots: three plugins known, two not; four mentions exact, two inside."""
+    write(folder / "a.urdf", robot(KNOWN + KNOWN + ACME))
+    write(folder / "b.urdf", robot(KNOWN + ACME))
+    return folder
+
+
+def test_the_report(multibot: Multibot, two: Path) -> None:
+    result = multibot("coverage", ".")
+    assert (result.code, result.err) == (0, "")
+    assert "2 files read, 0 cannot be read\n" in result.out
+    assert "\n3 of 5 plugins known (60.0 %), 1 of 2 names\n" in result.out
+    assert "\n    2      2  libacme.so  ./a.urdf:1\n" in result.out
+    assert "\n4 unclaimed and exactly a link or joint\n" in result.out
+    assert "\n    4      2  robot/gazebo/plugin[libacme.so]/x  hip    ./a.urdf:1\n" in result.out
+    assert "\n2 unclaimed with a link or joint inside\n" in result.out
+    assert "robot/gazebo/plugin[libacme.so]/list  hip arm  ./a.urdf:1\n" in result.out
+    assert "\x1b" not in result.out
+
+
+def test_the_json_says_all_of_it(multibot: Multibot, two: Path) -> None:
+    x = "robot/gazebo/plugin[libacme.so]/x"
+    table = multibot.json("coverage", ".", "--top", "1")
+    kinds = table.pop("claims")
+    assert kinds["link"] == 8 and kinds["joint"] == 2
+    assert table == {
+        "files": {"read": 2, "unreadable": []},
+        "plugins": {
+            "count": 5,
+            "known": 3,
+            "percent": 60.0,
+            "names": 2,
+            "known_names": 1,
+            "unknown": [{"name": "libacme.so", "count": 2, "files": 2, "place": "./a.urdf:1"}],
+        },
+        "hardware": {
+            "count": 0,
+            "known": 0,
+            "percent": 100.0,
+            "names": 0,
+            "known_names": 0,
+            "unknown": [],
+        },
+        "mentions": {
+            "exact": [{"path": x, "count": 4, "files": 2, "place": "./a.urdf:1", "value": "hip"}],
+            "inside": [
+                {
+                    "path": "robot/gazebo/plugin[libacme.so]/list",
+                    "count": 2,
+                    "files": 2,
+                    "place": "./a.urdf:1",
+                    "value": "hip arm",
+                }
+            ],
+            "explained": [],
+            "stale": [],
+        },
+    }
+
+
+def test_the_page_describes_the_json(multibot: Multibot, two: Path) -> None:
+    """Every key of the example stands where it stands in the output, and the other way round."""
+    (block,) = re.findall(r"```json\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    write(two / "c.urdf", robot(plugin("libacme.so", "<y>hip</y>")))
+    write(two / "d.urdf", "")
+    write(two / "why.tsv", "*/y\tit is\nrobot/gone\tit was\n")
+    assert shape(json.loads(block)) == shape(
+        multibot.json("coverage", ".", "--explained", "why.tsv")
+    )
+
+
+def shape(value: Any) -> Any:
+    """The keys of a table and of the first row of its lists; counts and texts left out."""
+    if isinstance(value, list):
+        return [shape(item) for item in value[:1]]
+    if not isinstance(value, dict):
+        return type(value).__name__
+    lists = {"claims": {}, "inside": []}
+    return {key: lists.get(key, shape(item)) for key, item in value.items()}
+
+
+def test_json_into_a_file_comes_beside_the_table(multibot: Multibot, two: Path) -> None:
+    result = multibot("coverage", "a.urdf", "--json", "out.json")
+    assert "1 files read" in result.out
+    assert json.loads((two / "out.json").read_text())["files"]["read"] == 1
+
+
+@pytest.mark.parametrize("target", ["a.urdf", "./b.urdf", "more.vocab", "why.tsv"])
+def test_json_never_replaces_what_is_read(multibot: Multibot, two: Path, target: str) -> None:
+    write(two / "more.vocab", "")
+    write(two / "why.tsv", "")
+    before = (two / target).read_text()
+    words = ("--vocabulary", "more.vocab", "--explained", "why.tsv", "--json", target)
+    result = multibot("coverage", ".", *words)
+    assert result.code == 2
+    assert f"{target} is a file that is read" in result.err
+    assert (two / target).read_text() == before
+
+
+def test_a_vocabulary_makes_known(multibot: Multibot, two: Path) -> None:
+    write(two / "acme.vocab", "[plugin acme]\nx uses joint link\nlist keep a label\n")
+    table = multibot.json("coverage", ".", "--vocabulary", "acme.vocab")
+    assert table["plugins"]["percent"] == 100.0
+    assert table["mentions"]["exact"] == table["mentions"]["inside"] == []
+
+
+def test_the_vocabulary_of_the_project_counts(multibot: Multibot, two: Path) -> None:
+    write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
+    write(two / "pyproject.toml", '[tool.multibot-rewrite]\nvocabulary = ["acme.vocab"]\n')
+    assert multibot.json("coverage", ".")["plugins"]["percent"] == 100.0
+    assert "x     uses  joint link" in multibot("vocabulary", "libacme.so").out
+
+
+def test_top_cuts_the_tables_and_says_so(multibot: Multibot, folder: Path) -> None:
+    write(folder / "a.urdf", robot("".join(plugin(f"libacme{n}.so") for n in range(25))))
+    shown = multibot("coverage", "a.urdf").out
+    assert shown.count("libacme") == 20 and "and 5 more rows; --top 0 shows all" in shown
+    assert multibot("coverage", "a.urdf", "--top", "3").out.count("libacme") == 3
+    whole = multibot("coverage", "a.urdf", "--top", "0").out
+    assert whole.count("libacme") == 25 and "more rows" not in whole
+
+
+@pytest.mark.parametrize(
+    ("wanted", "code"), [("0", 0), ("60", 0), ("60%", 0), ("60.1", 1), ("100", 1)]
+)
+def test_a_minimum_of_known_plugins(multibot: Multibot, two: Path, wanted: str, code: int) -> None:
+    result = multibot("coverage", ".", "--min-known", wanted)
+    assert result.code == code
+    said = f"multibot: 60.0 % of the plugins are known, wanted {wanted} %\n"
+    assert result.err == (said if code else "")
+
+
+def test_no_plugin_is_no_unknown_plugin(multibot: Multibot, folder: Path) -> None:
+    write(folder / "a.urdf", robot(""))
+    assert multibot("coverage", "a.urdf", "--min-known", "100").code == 0
+
+
+def test_almost_all_is_not_shown_as_all(multibot: Multibot, folder: Path) -> None:
+    write(folder / "a.urdf", robot(KNOWN * 2999 + plugin("libacme.so")))
+    result = multibot("coverage", "a.urdf", "--min-known", "99.99")
+    assert result.code == 1
+    assert "(99.9 %)" in result.out
+
+
+# ---------------------------------------------------------------- coverage: explained mentions
+
+
+def test_explained_mentions_are_counted_apart(multibot: Multibot, two: Path) -> None:
+    write(two / "why.tsv", "# ours\n*/plugin[libacme.so]/x\tan old label\nrobot/gone\tit was\n")
+    result = multibot("coverage", ".", "--explained", "why.tsv")
+    assert (result.code, result.err) == (0, "")
+    assert "\n0 unclaimed and exactly a link or joint\n" in result.out
+    assert "\n4 exact mentions explained\n" in result.out
+    assert "robot/gazebo/plugin[libacme.so]/x  an old label\n" in result.out
+    assert "stale: line 3 explains nothing any more: robot/gone\n" in result.out
+    mentions = multibot.json("coverage", ".", "--explained", "why.tsv")["mentions"]
+    assert mentions["exact"] == []
+    assert [(it["count"], it["reason"]) for it in mentions["explained"]] == [(4, "an old label")]
+    assert mentions["stale"] == [{"path": "robot/gone", "line": 3}]
+
+
+def test_an_unexplained_mention_fails(multibot: Multibot, two: Path) -> None:
+    write(two / "why.tsv", "robot/other\tnot this\n")
+    result = multibot("coverage", ".", "--explained", "why.tsv")
+    assert result.code == 1
+    assert result.err == "multibot: 4 exact mentions are not explained in why.tsv\n"
+
+
+def test_an_empty_list_explains_nothing(multibot: Multibot, two: Path) -> None:
+    write(two / "why.tsv", "")
+    assert multibot("coverage", ".", "--explained", "why.tsv").code == 1
+    assert multibot("coverage", ".").code == 0
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"robot/x no tab\n", "why.tsv:1: write the tag path, a tab, and the reason"),
+        (b"\xff\xfe", "why.tsv: cannot be read: it is not UTF-8"),
+        (None, "why.tsv: cannot be read: No such file"),
+    ],
+)
+def test_a_bad_list_is_one_line(
+    multibot: Multibot, two: Path, data: bytes | None, said: str
+) -> None:
+    if data is not None:
+        (two / "why.tsv").write_bytes(data)
+    result = multibot("coverage", ".", "--explained", "why.tsv")
+    assert (result.code, result.out) == (2, "")
+    assert said in result.err and result.err.count("\n") == 1
+
+
+# ---------------------------------------------------------------- what it looks like
+
+
+def on_terminal(folder: Path, *words: str) -> tuple[int, str, str]:
+    """Exit code, standard output, and what a terminal at standard error got."""
+    ours, theirs = pty.openpty()
+    environment = {k: v for k, v in os.environ.items() if k not in ("NO_COLOR", "CI")}
+    with subprocess.Popen(
+        [*COMMAND, *words],
+        cwd=folder,
+        stdout=subprocess.PIPE,
+        stderr=theirs,
+        env={**environment, "TERM": "xterm-256color"},
+    ) as process:
+        os.close(theirs)
+        assert process.stdout is not None
+        out = process.stdout.read().decode()
+        heard = b""
+        while True:
+            try:
+                heard += os.read(ours, 65536)
+            except OSError:
+                break
+    os.close(ours)
+    return process.returncode, out, heard.decode()
+
+
+def test_many_files_have_a_progress_bar_on_a_terminal_only(folder: Path) -> None:
+    for number in range(30):
+        write(folder / f"{number}.urdf", robot(""))
+    code, out, heard = on_terminal(folder, "coverage", ".")
+    assert code == 0
+    assert "reading" in heard and "\x1b" in heard
+    assert "30 files read" in out and "\x1b" not in out
+    quiet = subprocess.run([*COMMAND, "coverage", "."], cwd=folder, capture_output=True, check=True)
+    assert quiet.stderr == b""
+
+
+def test_a_table_fits_a_narrow_terminal_and_loses_nothing() -> None:
+    path = "robot/gazebo/plugin[libfoo.so]/" + "x" * 100
+    grid = Grid(("count", "path"), [("1", path)])
+    narrow = render(["a line", grid], terminal=True, width=40)
+    assert (
+        max(len(line) for line in narrow.replace("\x1b[1m", "").replace("\x1b[0m", "").split("\n"))
+        <= 40
+    )
+    assert path in "".join(line.strip() for line in narrow.split("\n")).replace(" ", "")
+    plain = render(["a line", grid], terminal=False)
+    assert plain == f"a line\ncount  path\n    1  {path}\n"
+
+
+def test_brackets_and_colons_are_shown_as_they_are() -> None:
+    text = render(
+        ["[bold]x[/bold] :smile:", Grid(("path",), [("plugin[red]:car:",)])], terminal=False
+    )
+    assert text == "[bold]x[/bold] :smile:\npath\nplugin[red]:car:\n"
+
+
+# ---------------------------------------------------------------- vocabulary
+
+
+@pytest.mark.parametrize(
+    ("name", "heading"),
+    [
+        ("libgazebo_ros_diff_drive.so", "plugin gazebo_ros_diff_drive (ROS 2)"),
+        ("gazebo_ros_diff_drive", "plugin gazebo_ros_diff_drive (ROS 1)"),
+        ("/opt/ros/humble/lib/libgazebo_ros_diff_drive.so", "plugin gazebo_ros_diff_drive (ROS 2)"),
+        ("ignition-gazebo-imu-system", "plugin gz-sim-imu-system"),
+        ("libignition-gazebo6-imu-system.so", "plugin gz-sim-imu-system"),
+        ("gz::sim::systems::Imu", "plugin gz-sim-imu-system"),
+        ("ignition::gazebo::systems::Imu", "plugin gz-sim-imu-system"),
+        (
+            "topic_based_ros2_control/TopicBasedSystem",
+            "hardware topic_based_ros2_control/TopicBasedSystem",
+        ),
+        ("joint", "element joint"),
+        ("depth_camera", "sensor camera"),
+        ("ros_settings", "block ros_settings"),
+    ],
+)
+def test_everything_known_of_a_name_in_any_spelling(
+    multibot: Multibot, name: str, heading: str
+) -> None:
+    result = multibot("vocabulary", name)
+    assert (result.code, result.err) == (0, "")
+    assert f"{heading}  " in result.out
+
+
+def test_what_is_shown_of_a_plugin(multibot: Multibot) -> None:
+    out = multibot("vocabulary", "libgazebo_ros_diff_drive.so").out
+    assert "  only a remap moves: odom /tf cmd_vel\n" in out
+    words = [line.split() for line in out.splitlines()]
+    (row,) = (w for w in words if w[:4] == ["odometry_frame", "uses", "frame", "odom"])
+    assert row[-1].startswith("classic_ros2.vocab:")
+    (shared,) = (w for w in words if w[0:1] == ["ros/remapping"])
+    assert shared[1:4] == ["uses", "topic", "remap"]
+    assert shared[-3].startswith("urdf.vocab:") and shared[-2:] == ["[block", "ros_settings]"]
+
+
+def test_every_row_names_the_line_it_stands_in(multibot: Multibot) -> None:
+    """The file and line of each row of the whole vocabulary, held against the files."""
+    home = Path(multibot_rewrite.__file__).parent / "vocabulary"
+    rows = [row for section in multibot.json("vocabulary")["sections"] for row in section["rows"]]
+    assert len(rows) > 500
+    texts = {path.name: path.read_text().split("\n") for path in home.glob("*.vocab")}
+    wrong = [
+        row
+        for row in rows
+        if texts[row["file"]][row["line"] - 1].split()[:2] != [row["path"], row["role"]]
+    ]
+    assert wrong == []
+
+
+def test_a_row_of_a_users_file_names_that_file(multibot: Multibot, folder: Path) -> None:
+    write(folder / "my.vocab", "# mine\n[plugin gazebo_ros_diff_drive]\nnew_joint uses joint # n\n")
+    out = multibot("vocabulary", "gazebo_ros_diff_drive", "--vocabulary", "my.vocab").out
+    assert [line.split()[-1] for line in out.splitlines() if line.startswith("new_joint")] == [
+        "my.vocab:3",
+        "my.vocab:3",
+    ]
+
+
+def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: Path) -> None:
+    write(folder / "my.vocab", "[plugin acme]\ninsert: no\nx uses topic default=go\n")
+    words = ("vocabulary", "libacme.so", "--vocabulary", "my.vocab")
+    assert "go (not inserted)" in multibot(*words).out
+    (section,) = multibot.json(*words)["sections"]
+    (row,) = section["rows"]
+    assert (row["default"], row["inserted"]) == ("go", False)
+
+
+def test_the_list_has_every_section(multibot: Multibot) -> None:
+    sections = load_vocabulary().rewriters(*TYPES)
+    listed = multibot("vocabulary").out.splitlines()
+    assert len(listed) == len(sections) + 1
+    table = multibot.json("vocabulary", "--type", "hardware")["sections"]
+    assert {section["type"] for section in table} == {"hardware"}
+    assert len(table) == len(load_vocabulary().rewriters("hardware"))
+
+
+def test_the_type_narrows_a_name(multibot: Multibot) -> None:
+    assert "element ros2_control" in multibot("vocabulary", "ros2_control").out
+    assert multibot("vocabulary", "ros2_control", "--type", "plugin").code == 2
+
+
+def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
+    found = look_up(load_vocabulary(), "sensor", ["element"])
+    names = [rewriter.names[0] for rewriter in found]
+    assert names[0] == "sensor"
+    assert {"robot.sensor", "link.sensor"} <= set(names)
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("libgazebo_ros_dif_drive.so", "gazebo_ros_diff_drive"),
+        ("GAZEBO_ROS_DIFF_DRIVE", "gazebo_ros_diff_drive"),
+        ("ignition-gazebo-imu-sistem", "gz-sim-imu-system"),
+        ("TopicBasedSystem", "topic_based_ros2_control/TopicBasedSystem"),
+    ],
+)
+def test_an_unknown_name_gets_the_nearest(multibot: Multibot, name: str, near: str) -> None:
+    result = multibot("vocabulary", name)
+    assert (result.code, result.out) == (2, "")
+    assert f"{name!r} is no plugin" in result.err and near in result.err
+    assert result.err.count("\n") == 1
+
+
+def test_a_name_like_nothing_is_told_where_to_look(multibot: Multibot) -> None:
+    assert "; multibot vocabulary lists all\n" in multibot("vocabulary", "§§§§").err
+
+
+# ---------------------------------------------------------------- vocabulary --suggest
+
+
+def test_a_suggestion_can_be_used_as_it_is(multibot: Multibot, two: Path) -> None:
+    result = multibot("vocabulary", "--suggest", "a.urdf")
+    assert (result.code, result.err) == (0, "")
+    write(two / "new.vocab", result.out)
+    table = multibot.json("coverage", ".", "--vocabulary", "new.vocab")
+    assert table["plugins"]["unknown"] == []
+    assert table["mentions"]["exact"] == table["mentions"]["inside"] == []
+    done = rewrite(str(two / "a.urdf"), "r1", vocabulary=["new.vocab"])
+    assert "<x>hip_r1</x><x>arm/r1</x><list>hip_r1 arm/r1</list>" in done.text
+
+
+def test_nothing_unknown_is_only_a_comment(multibot: Multibot, two: Path) -> None:
+    write(two / "c.urdf", robot(KNOWN))
+    result = multibot("vocabulary", "--suggest", "c.urdf")
+    assert result.code == 0
+    assert (
+        result.err
+        == "multibot: c.urdf: everything it loads is known, there is nothing to suggest\n"
+    )
+    assert result.out.startswith("# ") and result.out.count("\n") == 1
+
+
+def test_a_suggestion_leaves_out_what_a_given_file_knows(multibot: Multibot, two: Path) -> None:
+    write(two / "acme.vocab", "[plugin acme]\nx uses joint link\n")
+    result = multibot("vocabulary", "--suggest", "a.urdf", "--vocabulary", "acme.vocab")
+    assert "[plugin" not in result.out
+
+
+def test_the_fixture_robots_need_no_suggestion(multibot: Multibot) -> None:
+    for path in sorted(ROBOTS.glob("*.urdf")):
+        assert "[" not in multibot("vocabulary", "--suggest", str(path)).out
+
+
+# ---------------------------------------------------------------- real files
+
+
+def test_the_corpus(multibot: Multibot, corpus: dict[str, Path]) -> None:
+    homes = sorted({str(path.parent) for path in corpus.values()})[:12]
+    table = multibot.json("coverage", *homes)
+    files = sum(path.parent.as_posix() in homes for path in corpus.values())
+    assert table["files"]["read"] + len(table["files"]["unreadable"]) == files > 12
+    assert sum(table["claims"].values()) > 1000
+    for part in ("exact", "inside"):
+        counts = [item["count"] for item in table["mentions"][part]]
+        assert counts == sorted(counts, reverse=True)
+
+
+def test_a_bad_vocabulary_stops_it(multibot: Multibot, two: Path) -> None:
+    write(two / "bad.vocab", "[plugin acme]\nx uses wheel\n")
+    result = multibot("coverage", ".", "--vocabulary", "bad.vocab")
+    assert (result.code, result.out) == (2, "")
+    assert result.err.startswith("multibot: bad.vocab:2: unknown kind 'wheel'")
+
+
+def test_the_corpus_is_known_and_its_rest_explained(
+    corpus: dict[str, Path], multibot: Multibot
+) -> None:
+    options = ("--min-known", "98", "--explained", str(UNCLAIMED))
+    report = multibot.json("coverage", str(CORPUS / "urdf"), *options)
+    assert report["files"]["read"] == len(corpus)
+    assert report["mentions"]["exact"] == []
+    assert report["mentions"]["stale"] == []
+    assert report["hardware"]["percent"] >= LEAST_HARDWARE

@@ -1,0 +1,716 @@
+"""Parameter files: sections, names, defaults, and each pitfall of such files by its name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.params.known import (
+    KINDS,
+    built_in_params,
+    in_release,
+    known_params,
+)
+from multibot_rewrite.companions.params.page import page
+from multibot_rewrite.companions.params.rewrite import params, without_sections
+from multibot_rewrite.companions.template import GRAPH, fill
+from multibot_rewrite.companions.yaml_text import quoted, read_yaml
+from multibot_rewrite.model import Finding, InputError, UsageError
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.known import extended, stack_of
+from multibot_rewrite.remap.stacks import built_in, load_stack
+
+ROOT = Path(__file__).parents[2]
+LINKS = ("base_link", "base_footprint", "laser", "tool0")
+JOINTS = ("left_wheel", "right_wheel", "shoulder", "elbow")
+SENSORS = ("imu_sensor",)
+DECLARED = {
+    "link": dict.fromkeys(LINKS),
+    "joint": dict.fromkeys(JOINTS),
+    "sensor": dict.fromkeys(SENSORS),
+    "model": {},
+    "group": {},
+    "frame": {},
+}
+L1, L2, L3, L4 = ("L1", "prefix"), ("L2", "prefix"), ("L3", "prefix"), ("L4", "postfix")
+
+
+def setting(policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object) -> Context:
+    layout, affix = policy
+    naming = make_naming(layout=layout, affix=affix, **more)  # type: ignore[arg-type]
+    facts = [*load_stack("nav2"), *load_stack("ros2_control"), *load_stack("slam_toolbox")]
+    return make_context(DECLARED, naming, dict.fromkeys(facts), distro)  # type: ignore[arg-type]
+
+
+def made(
+    text: str, policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object
+) -> tuple[str, tuple[Finding, ...]]:
+    """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
+    companion = params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
+    return fill(companion.template, "robot1", "r1"), companion.findings
+
+
+def codes(findings: Iterable[Finding]) -> list[str]:
+    return [it.code for it in findings]
+
+
+def section(node: str, *lines: str) -> str:
+    below = "".join(f"    {line}\n" for line in lines)
+    return f"{node}:\n  ros__parameters:\n{below}"
+
+
+def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jazzy") -> str:
+    """What becomes of one line of a node's section; the last line is never an inserted one."""
+    text, _ = made(section(node, line), policy, distro)
+    return text.splitlines()[-1].strip()
+
+
+# ---------------------------------------------------------------- sections
+
+
+@pytest.mark.parametrize(
+    ("policy", "old", "new"),
+    [
+        (L2, "planner_server", "/robot1/planner_server"),
+        (L2, "/planner_server", "/robot1/planner_server"),
+        (L1, "other", "/robot1/other"),
+        (L4, "planner_server", "/planner_server_robot1"),
+        (L4, "/other", "/other_robot1"),
+        (L2, "/**", "/**"),
+        (L4, "/**", "/**"),
+        (L2, "/**/planner_server", "/**/planner_server"),
+        (L4, "/**/planner_server", "/**/planner_server_robot1"),
+        (L2, "front/driver", "/robot1/front/driver"),
+        (L4, "front/driver", "/front/driver_robot1"),
+        (L2, "<robot_namespace>/amcl_x", "<robot_namespace>/amcl_x"),
+        (L2, '"planner_server"', '"/robot1/planner_server"'),
+    ],
+)
+def test_a_section_is_put_under_the_nodes_full_name(
+    policy: tuple[str, str], old: str, new: str
+) -> None:
+    text, _ = made(section(old, "x: 1"), policy)
+    assert text.splitlines()[0] == f"{new}:"
+
+
+@pytest.mark.parametrize(
+    ("policy", "first", "second"),
+    [
+        (L2, "/robot1/local_costmap", "local_costmap"),
+        (L4, "/local_costmap", "local_costmap_robot1"),
+    ],
+)
+def test_nested_sections_change_at_their_first_key_or_at_their_last(
+    policy: tuple[str, str], first: str, second: str
+) -> None:
+    source = "local_costmap:\n  local_costmap:\n    ros__parameters:\n      robot_base_frame: map\n"
+    lines = made(source, policy)[0].splitlines()
+    assert lines[:2] == [f"{first}:", f"  {second}:"]
+
+
+def test_one_key_may_hold_several_sections() -> None:
+    inner = "    ros__parameters: {use_sim_time: true}\n"
+    source = (
+        f"local_costmap:\n  local_costmap_client:\n{inner}  local_costmap_rclcpp_node:\n{inner}"
+    )
+    assert made(source)[0] == source.replace("local_costmap:", "/robot1/local_costmap:", 1)
+
+
+def test_rcl_would_find_every_section() -> None:
+    """The keys joined as rcl joins them are the full names that the nodes run under."""
+    context = setting(L2)
+    for name, full in context.nodes.items():
+        first, _, rest = name.partition("/")
+        keys = f"{first}:\n  {rest}:\n" if rest else f"{first}:\n"
+        indent = "    " if rest else "  "
+        text, _ = made(f"{keys}{indent}ros__parameters:\n{indent}  x: 1\n")
+        joined = "/".join(line.strip(" :/") for line in text.splitlines() if line.endswith(":"))
+        expected = full.replace(GRAPH, "robot1").strip("/")
+        assert joined.removesuffix("/ros__parameters") == expected
+
+
+def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> None:
+    text, _ = made(section("diff_drive_controller", "publish_rate: 1.0"))
+    assert "/robot1/diff_drive_controller" in yaml.safe_load(text)
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("robot7/amcl", "MF104"),
+        ("/robot7/local_costmap/local_costmap", "MF104"),
+        ("/robot7/**", "MF104"),
+        ("abb/driver", "MF105"),
+        ("bad-name", "MF106"),
+        ("1node", "MF106"),
+        ("robot*", "MF106"),
+        ("<robot_namespace>", "MF110"),
+    ],
+)
+def test_a_section_with_a_doubtful_name_is_told(name: str, code: str) -> None:
+    assert code in codes(made(section(name, "x: 1"))[1])
+
+
+def test_a_robots_name_in_a_file_is_an_error() -> None:
+    source = section("amcl", "scan_topic: /robot2/scan")
+    found = made(source, robots=["robot1", "robot2"])[1]
+    assert [(it.level, it.line) for it in found if it.code == "MF126"] == [("error", 3)]
+    assert "MF126" not in codes(made(source)[1])
+
+
+def test_a_node_for_all_robots_keeps_its_section() -> None:
+    library = extended(built_in(), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n")
+    context = make_context(DECLARED, make_naming(layout="L2"), stack_of(library, "s"))  # type: ignore[arg-type]
+    source = section("map_server", "topic_name: /map", "frame_id: base_link")
+    companion = params(read_yaml((source * 2).encode(), "p"), context)
+    assert fill(companion.template, "robot1", "r1") == source * 2
+    assert codes(companion.findings).count("MF103") == 1
+
+
+def test_a_wildcard_behind_an_exact_section_wins() -> None:
+    exact, wild = section("amcl", "alpha1: 0.1"), section("/**", "alpha1: 0.2")
+    assert "MF107" in codes(made(exact + wild)[1])
+    assert "MF107" not in codes(made(wild + exact)[1])
+    assert "MF107" not in codes(made(exact + section("/**/other", "alpha1: 0.2"))[1])
+
+
+def test_a_section_that_stands_twice_is_rewritten_twice() -> None:
+    text, findings = made(section("amcl", "scan_topic: /a") + section("amcl", "map_topic: /m"))
+    assert text.count("/robot1/amcl:") == 2
+    assert "scan_topic: /robot1/a" in text
+    assert "map_topic: /robot1/m" in text
+    assert "MF102" in codes(findings)
+    assert text.count("odom_frame_id") == 1
+
+
+def test_a_key_that_stands_twice_is_rewritten_twice() -> None:
+    text, findings = made(section("amcl", "scan_topic: /a", "scan_topic: /b"))
+    assert "scan_topic: /robot1/a" in text
+    assert "scan_topic: /robot1/b" in text
+    assert "MF108" in codes(findings)
+
+
+# ---------------------------------------------------------------- names
+
+
+@pytest.mark.parametrize(
+    ("policy", "node", "old", "new"),
+    [
+        (L2, "amcl", "base_frame_id: base_link", "base_frame_id: r1/base_link"),
+        (L1, "amcl", "base_frame_id: base_link", "base_frame_id: base_link"),
+        (L4, "amcl", "base_frame_id: 'base_link'", "base_frame_id: 'base_link/r1'"),
+        (L2, "amcl", "global_frame_id: map", "global_frame_id: map"),
+        (L2, "amcl", "base_frame_id: /base_link", "base_frame_id: /r1/base_link"),
+        (L2, "amcl", "scan_topic: scan", "scan_topic: scan"),
+        (L2, "amcl", "scan_topic: /scan", "scan_topic: /robot1/scan"),
+        (L2, "amcl", "scan_topic: ~/scan", "scan_topic: ~/scan"),
+        (L1, "amcl", "scan_topic: /scan", "scan_topic: /robot1/scan"),
+        (L4, "amcl", "scan_topic: front/scan", "scan_topic: front/scan/robot1"),
+        (L2, "other", "scan_topic: /clock", "scan_topic: /clock"),
+        (L2, "other", "x_topic: $(var scan)", "x_topic: $(var scan)"),
+        (L2, "other", "x_topic: <robot_namespace>/scan", "x_topic: <robot_namespace>/scan"),
+        (L2, "other", 'x_topic: ""', 'x_topic: ""'),
+        (L2, "ekf_filter_node", "odom0: /wheel/odom", "odom0: /robot1/wheel/odom"),
+        (L2, "ekf_filter_node", "odom0_config: [true]", "odom0_config: [true]"),
+        (L2, "ekf_filter_node", "odom12: /o", "odom12: /robot1/o"),
+        (L2, "imu_filter_madgwick", "world_frame: enu", "world_frame: enu"),
+        (L2, "other", "world_frame: enu", "world_frame: enu"),
+        (L2, "other", "sensor_frame: laser", "sensor_frame: r1/laser"),
+        (L2, "other", "joints: [shoulder, 'elbow']", "joints: [r1_shoulder, 'r1_elbow']"),
+        (L2, "imu_sensor_broadcaster", "sensor_name: imu_sensor", "sensor_name: r1_imu_sensor"),
+        (L2, "gpio_command_controller", "gpios: [io]", "gpios: [r1_io]"),
+        (L2, "gpio_command_controller", "state_interfaces.io.interfaces: [a]",
+         "state_interfaces.r1_io.interfaces: [a]"),
+        (L2, "controller_manager", "hardware_components_initial_state.inactive: [arm]",
+         "hardware_components_initial_state.inactive: [r1_arm]"),
+        (L2, "move_group", "ompl.g.projection_evaluator: joints(shoulder,elbow)",
+         'ompl.g.projection_evaluator: "joints(r1_shoulder,r1_elbow)"'),
+        (L2, "lifecycle_manager", "node_names: [amcl]", "node_names: [amcl]"),
+        (L4, "lifecycle_manager", "node_names: [amcl]", "node_names: [amcl_robot1]"),
+        (L2, "state_interfaces_broadcaster", "interfaces: [elbow/position, io/a]",
+         "interfaces: [r1_elbow/position, r1_io/a]"),
+        (L2, "camera", "camera_name: front", "camera_name: r1/front"),
+        (L2, "motion_primitives_forward_controller", 'tf_prefix: ""', 'tf_prefix: "r1_"'),
+        (L2, "move_group", "ros_control_namespace: /", "ros_control_namespace: /robot1"),
+    ],
+)  # fmt: skip
+def test_a_name_is_spelled_by_its_kind(
+    policy: tuple[str, str], node: str, old: str, new: str
+) -> None:
+    assert value(node, old, policy) == new
+
+
+@pytest.mark.parametrize(
+    ("lines", "new"),
+    [
+        (
+            ("gains:", "  elbow:", "    p: 1.0", "    i: 0.0"),
+            ["  r1_elbow:", "    p: 1.0", "    i: 0.0"],
+        ),
+        (("gains.elbow.p: 1.0",), ["gains.r1_elbow.p: 1.0"]),
+        (("gains:", "  elbow.p: 1.0"), ["gains:", "  r1_elbow.p: 1.0"]),
+        (("gains.elbow:", "  {p: 1.0}"), ["gains.r1_elbow:", "  {p: 1.0}"]),
+        (("constraints:", "  goal_time: 0.5"), ["constraints:", "  goal_time: 0.5"]),
+        (("constraints: {elbow: {goal: 0.1}}",), ["constraints: {r1_elbow: {goal: 0.1}}"]),
+    ],
+)
+def test_keys_that_are_joints_are_spelled_nested_and_dotted(
+    lines: tuple[str, ...], new: list[str]
+) -> None:
+    text, findings = made(section("joint_trajectory_controller", *lines))
+    assert [line[4:] for line in text.splitlines()][-len(new) :] == new
+    assert not codes(findings)
+
+
+@pytest.mark.parametrize(
+    ("policy", "new"),
+    [
+        (L2, "[pid/r1_elbow, a/b/r1_elbow]"),
+        (L4, "[pid_robot1/elbow_r1, a_robot1/b_robot1/elbow_r1]"),
+    ],
+)
+def test_chained_controllers_keep_their_names_in_a_namespace(
+    policy: tuple[str, str], new: str
+) -> None:
+    line = "command_joints: [pid/elbow, a/b/elbow]"
+    assert value("joint_trajectory_controller", line, policy) == f"command_joints: {new}"
+
+
+def test_a_controllers_type_tells_what_it_is() -> None:
+    manager = section(
+        "controller_manager", "wheels:", "  type: diff_drive_controller/DiffDriveController"
+    )
+    text, _ = made(manager + section("wheels", "left_wheel_names: [left_wheel]"))
+    assert "left_wheel_names: [r1_left_wheel]" in text
+    assert "tf_frame_prefix_enable: false" in text
+
+
+def test_what_a_section_sets_tells_what_it_is() -> None:
+    lines = ("left_wheel_names: [left_wheel]", "right_wheel_names: [right_wheel]")
+    assert "tf_frame_prefix_enable: false" in made(section("rover_base", *lines))[0]
+
+
+@pytest.mark.parametrize("word", ["y", "n", "Y", "N", "yes", "on", "1", "1e-9", "1.0", "~", "null"])
+def test_what_rcl_reads_as_no_string_is_no_name(word: str) -> None:
+    source = section("joint_trajectory_controller", f"joints: [{word}]")
+    assert made(source)[0].endswith(f"joints: [{word}]\n")
+
+
+@pytest.mark.parametrize("word", ["y", "no", "1", "1e3"])
+def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
+    declared = {**DECLARED, "joint": {word: None}}
+    context = make_context(declared, make_naming(layout="L2", affix="prefix"), ())  # type: ignore[arg-type]
+    source = section("joint_trajectory_controller", f"joints: ['{word}']")
+    companion = params(read_yaml(source.encode(), "p"), context)
+    assert f"joints: ['r1_{word}']" in fill(companion.template, "robot1", "r1")
+    assert yaml.safe_load(quoted(word)) == word
+
+
+# ---------------------------------------------------------------- topics
+
+
+@pytest.mark.parametrize("written", ["scan", "/scan"])
+@pytest.mark.parametrize(
+    ("policy", "distro", "new"),
+    [
+        (L2, "jazzy", "/robot1/scan"),
+        (L1, "humble", "/robot1/scan"),
+        (L2, "kilted", "scan"),
+        (L4, "jazzy", "/scan/robot1"),
+        (L4, "kilted", "scan/robot1"),
+    ],
+)
+def test_topics_of_costmap_layers_leave_the_costmaps_namespace(
+    written: str, policy: tuple[str, str], distro: str, new: str
+) -> None:
+    """nav2 #1433, #3772: below /robot1/local_costmap nobody publishes."""
+    line = f"layer: {{scan: {{topic: {written}}}}}"
+    source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {line}\n"
+    text, findings = made(source, policy, distro)
+    got = re.findall(r"topic: ([^}]*)}", text)[0]
+    lead = "/" if written.startswith("/") and not new.startswith("/") else ""
+    assert got == ("/robot1/scan" if lead and policy == L2 else lead + new)
+    assert ("MF121" in codes(findings)) == (written == "scan" and distro != "kilted")
+
+
+def test_the_binary_filter_does_not_join_its_names_on_kilted_either() -> None:
+    layer = "plugin: nav2_costmap_2d::{}, filter_info_topic: info"
+    for plugin, new in (("BinaryFilter", "/robot1/info"), ("KeepoutFilter", "info")):
+        inner = f"      f: {{{layer.format(plugin)}}}\n"
+        source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n{inner}"
+        assert f"filter_info_topic: {new}}}" in made(source, L2, "kilted")[0]
+
+
+@pytest.mark.parametrize(
+    ("policy", "distro", "told"),
+    [(L2, "jazzy", True), (L2, "kilted", False), (L4, "kilted", True)],
+)
+def test_a_source_without_a_topic_is_told(policy: tuple[str, str], distro: str, told: bool) -> None:
+    layer = "layer: {observation_sources: scan tof, scan: {topic: /scan}, tof: {clearing: true}}"
+    source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {layer}\n"
+    found = [it for it in made(source, policy, distro)[1] if it.code == "MF127"]
+    assert [it.message for it in found if "source tof of layer" in it.message] == [
+        it.message for it in found
+    ]
+    assert bool(found) is told
+
+
+def test_the_mask_topic_is_resolved_by_whoever_reads_it() -> None:
+    line = "mask_topic: keepout_mask"
+    assert value("costmap_filter_info_server", line) == "mask_topic: /robot1/keepout_mask"
+
+
+def test_a_topic_that_a_rule_moves_is_not_moved_twice() -> None:
+    """In L4 the table's rules move the default names, and all that nodes make of them."""
+    assert value("amcl", "scan_topic: scan", L4) == "scan_topic: scan"
+    line = "costmap_topic: global_costmap/costmap_raw"
+    assert value("smoother_server", line, L4) == line
+    assert value("slam_toolbox", "scan_topic: /scan", L4) == "scan_topic: /scan"
+
+
+def test_a_name_below_another_node_follows_that_node() -> None:
+    assert value("other", "map_topic: map_server/x", L4) == "map_topic: map_server_robot1/x"
+    assert value("other", "map_topic: map_server/x", L2) == "map_topic: map_server/x"
+
+
+def test_a_shared_topic_is_written_from_the_root() -> None:
+    context = setting(L2, shared_topics=["/map"])
+    source = section("amcl", "map_topic: map")
+    companion = params(read_yaml(source.encode(), "p"), context)
+    assert "map_topic: /map\n" in fill(companion.template, "robot1", "r1")
+
+
+def test_what_is_no_topic_stays_and_is_told() -> None:
+    text, findings = made(section("amcl", "scan_topic: 1st/scan"))
+    assert "scan_topic: 1st/scan" in text
+    assert "MF113" in codes(findings)
+
+
+# ---------------------------------------------------------------- lines that are missing
+
+
+def test_a_default_that_is_every_robots_is_inserted() -> None:
+    text, _ = made(section("amcl", "# first", "alpha1: 0.2"))
+    assert text == (
+        "/robot1/amcl:\n  ros__parameters:\n    # first\n"
+        "    # multibot: the default is every robot's\n"
+        "    base_frame_id: r1/base_footprint\n    odom_frame_id: r1/odom\n    alpha1: 0.2\n"
+    )
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        section("/**", "base_frame_id: base_link", "odom_frame_id: odom") + section("amcl", "a: 1"),
+        section("amcl", "base_frame_id: base_link") + section("amcl", "odom_frame_id: odom"),
+        section("amcl", "base_frame_id: base_link", "odom_frame_id: odom")
+        + section("/**/amcl", "a: 1"),
+        section("amcl_rclcpp_node", "use_sim_time: true"),
+    ],
+)
+def test_what_is_set_elsewhere_is_not_inserted(source: str) -> None:
+    assert "multibot:" not in made(source)[0]
+
+
+def test_what_another_file_sets_is_not_inserted() -> None:
+    other = read_yaml(section("amcl", "base_frame_id: base_link").encode(), "o.yaml")
+    text, _ = made(section("amcl", "alpha1: 0.2"), beside=[other])
+    assert "odom_frame_id: r1/odom" in text
+    assert "base_frame_id" not in text
+
+
+def test_bare_frames_need_no_defaults() -> None:
+    assert "multibot:" not in made(section("amcl", "alpha1: 0.2"), L1)[0]
+
+
+@pytest.mark.parametrize("policy", [L1, L2, L3, L4])
+@pytest.mark.parametrize("line", ["publish_rate: 1.0", "tf_frame_prefix_enable: true"])
+def test_no_controller_puts_its_namespace_before_frames(policy: tuple[str, str], line: str) -> None:
+    """ros2_controllers #482, #1048: the default prefix is the namespace."""
+    text, _ = made(section("diff_drive_controller", line), policy)
+    assert text.count("tf_frame_prefix_enable: false") == 1
+    assert "tf_frame_prefix_enable: true" not in text
+
+
+def test_lines_are_inserted_as_the_file_is_written() -> None:
+    crlf = section("smoother_server", "x: 1").replace("\n", "\r\n")
+    assert "\r\n    robot_base_frame: r1/base_link\r\n    x: 1\r\n" in made(crlf)[0]
+    flow = "smoother_server: {ros__parameters: {x: 1}}\n"
+    assert yaml.safe_load(made(flow)[0]) == {
+        "/robot1/smoother_server": {"ros__parameters": {"robot_base_frame": "r1/base_link", "x": 1}}
+    }
+    empty = "smoother_server: {ros__parameters: {}}\n"
+    assert "{robot_base_frame: r1/base_link}" in made(empty)[0]
+
+
+def test_a_node_without_any_section_is_told() -> None:
+    document = read_yaml(section("amcl", "x: 1").encode(), "p.yaml")
+    found = without_sections([document], setting(L2))
+    assert {it.code for it in found} == {"MF125"}
+    told = " ".join(it.message for it in found)
+    assert "collision_monitor" in told
+    assert "amcl" not in told.split()
+    wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
+    assert "collision_monitor" not in str(without_sections([document, wild], setting(L2)))
+    assert without_sections([document], setting(L1)) == tuple(
+        it for it in without_sections([document], setting(L1)) if "tf_frame_prefix" in it.message
+    )
+
+
+# ---------------------------------------------------------------- what is told
+
+
+@pytest.mark.parametrize(
+    ("node", "line", "code", "words"),
+    [
+        ("joint_trajectory_controller", "joints: [elbov]", "MF111", "did you mean 'elbow'"),
+        ("amcl", "base_frame_id: base_lnk", "MF112", "did you mean 'base_link'"),
+        ("imu_sensor_broadcaster", "sensor_name: imu", "MF111", "not in the description"),
+        ("other", "what: elbow", "MF123", "is a joint of the robot"),
+        ("other", "elbow: 1.0", "MF123", "is a joint of the robot"),
+        ("other", "what: [1st, base_link]", "MF123", "is a link of the robot"),
+        ("other", "x_topic: /x", "MF114", "guessed from x_topic"),
+        ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MF122", "not rewritten"),
+        ("robot_state_publisher", "frame_prefix: a/", "MF115", "once more"),
+        ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "every robot's"),
+        ("amcl", "scan_topic: $(var s)", "MF110", "a launch file has to fill it"),
+        ("amcl", "scan_topic:", "MF109", "rcl refuses"),
+        ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
+    ],
+)
+def test_what_a_person_should_know_is_told(node: str, line: str, code: str, words: str) -> None:
+    _, findings = made(section(node, line))
+    found = [str(it) for it in findings if it.code == code]
+    assert found
+    assert words in found[0]
+    assert found[0].startswith("p.yaml:3:")
+
+
+def test_one_key_cannot_be_two() -> None:
+    text = "stacks: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
+    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
+    inner = "    ros__parameters: {use_sim_time: true}\n"
+    source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
+    found = params(read_yaml(source.encode(), "p"), context).findings
+    assert ("MF101", "error") in [(it.code, it.level) for it in found]
+
+
+def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
+    """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
+    text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
+    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
+    document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
+    found = params(document, context, facts=nodes).findings
+    assert [it.message for it in found if it.code == "MF120"] == [
+        "scan_topic: scan leads to /<robot>/scan by the robot's rules"
+    ]
+
+
+@pytest.mark.parametrize(
+    ("source", "code"),
+    [
+        (section("diff_drive_controller", "tf_frame_prefix_enable: $(var p)"), "MF116"),
+        ("smoother_server:\n  ros__parameters: !!map\n    x: 1\n", ""),
+        ("smoother_server:\n  ros__parameters:\n    ? x\n    : 1\n", "MF124"),
+    ],
+)
+def test_what_cannot_be_made_sure_of_is_told(source: str, code: str) -> None:
+    found = codes(made(source)[1])
+    assert code in found if code else not found
+
+
+def test_a_prefix_cannot_be_a_postfix() -> None:
+    assert "MF117" in codes(made(section("camera", "x: 1"), L4)[1])
+    text, findings = made(section("camera", "camera_name: front"), L4)
+    assert "camera_name: front" in text
+    assert "MF117" in codes(findings)
+
+
+def test_an_ordinary_file_has_nothing_told() -> None:
+    source = section("amcl", "base_frame_id: base_link", "odom_frame_id: odom", "scan_topic: scan")
+    assert made(source)[1] == ()
+
+
+# ---------------------------------------------------------------- files that are refused
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "nothing is in it"),
+        ("a: 1\n", "ROS 1's or read by a node itself"),
+        ("- {topic_name: x}\n", "goes under bridge"),
+        ("Panels: []\n", "an RViz configuration"),
+        ("image: m.pgm\nresolution: 0.1\n", "a map"),
+        ("joint_limits: {a: {}}\n", "go under moveit"),
+        ("arm: {kinematics_solver: x}\n", "go under moveit"),
+        ("word\n", "one word"),
+        ("ros__parameters: {a: 1}\n", "below no node's name"),
+        ("a: {ros__parameters: 1}\n", "holds no mapping"),
+        ("a: &x {ros__parameters: {b: 1}}\n", "anchors"),
+        ("a:\n  ros__parameters:\n    b: &x 1\n    c: *x\n", "anchors"),
+        ("a:\n\tros__parameters: {}\n", "a tab"),
+        ("a: {ros__parameters: {[1]: 2}}\n", "a key is a mapping or a list"),
+        ("[1]: {ros__parameters: {a: 2}}\n", "a key is a mapping or a list"),
+        ("a: {ros__parameters: {b: 1}}\n---\nc: 1\n", "more than one document"),
+        (f"a: {{ros__parameters: {{b: {GRAPH}}}}}\n", "this tool's own"),
+    ],
+)
+def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> None:
+    with pytest.raises(InputError, match=r"^p\.yaml") as error:
+        made(text)
+    assert words in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+# ---------------------------------------------------------------- the data
+
+
+def test_the_data_is_what_it_seems() -> None:
+    known = built_in_params()
+    assert len(known.nodes) > 90
+    assert {it.kind for node in known.nodes.values() for it in node.params.values()} <= set(KINDS)
+    assert set(known.types.values()) <= set(known.nodes)
+    assert {"odom_frame_id", "joints"} <= set(known.anywhere.exact)
+    assert "world_frame" not in known.anywhere.exact
+
+
+@pytest.mark.parametrize(
+    ("words", "distro", "found"),
+    [
+        ("<=jazzy", "humble", True),
+        ("<=jazzy", "jazzy", True),
+        ("<=jazzy", "kilted", False),
+        ("kilted+", "rolling", True),
+        ("kilted+", "jazzy", False),
+        ("rolling", "jazzy", False),
+        ("<=jazzy", "unheard-of", False),
+        ("", "jazzy", False),
+    ],
+)
+def test_releases(words: str, distro: str, found: bool) -> None:
+    assert in_release(words, distro) is found
+
+
+def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
+    path = f"{tmp_path}/more.yaml"
+    text = "nodes:\n  rover:\n    params: {wheels: {kind: joint, list: true}, mast.*: frame}\n"
+    with open(path, "w") as file:
+        file.write(text + "  amcl: {params: {extra: frame}}\n")
+    source = section("rover", "wheels: [elbow]", "mast.a: tool0") + section("amcl", "extra: laser")
+    text, findings = made(source, known=known_params(path))
+    assert "wheels: [r1_elbow]" in text
+    assert "mast.a: r1/tool0" in text
+    assert "extra: r1/laser" in text
+    assert "base_frame_id: r1/base_footprint" in text
+    assert "MF114" not in codes(findings)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("nodes: {a: {params: {b: frme}}}", "did you mean 'frame'"),
+        ("nodes: {a: {parms: {}}}", "did you mean 'params'"),
+        ("nodes:\n  a:\n    params:\n      <jont>.b: keep", "did you mean 'joint'"),
+        ("nodes: {a: {params: {b: {default: x}}}}", "has no kind"),
+        ("nodes: {a: {params: {b: {kind: frame, distros: jazy}}}}", "did you mean 'jazzy'"),
+        ("nodes: {a: {params: {b..c: frame}}}", "empty segment"),
+        ("guesses: {frme: [x]}", "did you mean 'frame'"),
+        ("nodes: [", "broken YAML"),
+    ],
+)
+def test_a_mistake_in_a_users_file_is_told_with_its_line(
+    tmp_path: object, text: str, words: str
+) -> None:
+    path = f"{tmp_path}/more.yaml"
+    with open(path, "w") as file:
+        file.write(text)
+    with pytest.raises(UsageError, match=r"more\.yaml:\d") as error:
+        known_params(path)
+    assert words in str(error.value)
+
+
+# ---------------------------------------------------------------- properties
+
+_WORDS = st.text(st.characters(codec="utf-8", exclude_categories=["Cs", "Cc"]), max_size=12)
+_SCALARS = st.one_of(
+    _WORDS,
+    st.sampled_from(
+        [*LINKS, *JOINTS, "odom", "map", "/scan", "scan", "y", "1e-9", "elbow/position"]
+    ),
+    st.integers(),
+    st.booleans(),
+    st.floats(allow_nan=False, allow_infinity=False),
+)
+_NAMES = st.sampled_from(
+    ["joints", "frame_id", "scan_topic", "elbow", "gains", "odom0", "x", "base_frame_id", "a.b"]
+)
+_TREES = st.dictionaries(
+    _NAMES, st.recursive(_SCALARS, lambda inner: st.dictionaries(_NAMES, inner), max_leaves=5)
+)
+_FILES = st.dictionaries(
+    st.sampled_from(["amcl", "/**", "other", "joint_trajectory_controller", "ekf_filter_node"]),
+    _TREES,
+    min_size=1,
+)
+
+
+@given(_FILES, st.sampled_from([L1, L2, L3, L4]))
+def test_structure_and_what_is_no_name_stay(
+    files: dict[str, object], policy: tuple[str, str]
+) -> None:
+    source = yaml.safe_dump({name: {"ros__parameters": it} for name, it in files.items()})
+    context = setting(policy)
+    text = fill(params(read_yaml(source.encode(), "p"), context).template, "robot1", "r1")
+    old = [it for it in leaves(yaml.safe_load(source)) if not isinstance(it, str)]
+    new = [it for it in leaves(yaml.safe_load(text)) if not isinstance(it, str)]
+    inserted = text.count("tf_frame_prefix_enable")
+    assert len(new) == len(old) + inserted
+    assert [it for it in old if it not in new] == []
+
+
+def leaves(node: object) -> list[object]:
+    if isinstance(node, dict):
+        return [leaf for value in node.values() for leaf in leaves(value)]
+    return [node]
+
+
+@given(st.sampled_from([L1, L2, L3, L4]), st.text("abc_1", min_size=1, max_size=5))
+def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str) -> None:
+    source = section("amcl", "scan_topic: /scan", "base_frame_id: base_link")
+    template = params(read_yaml(source.encode(), "p"), setting(policy)).template
+    one, two = fill(template, "robot1", "r1"), fill(template, f"g{robot}", f"s{robot}")
+    assert one.replace("robot1", f"g{robot}").replace("r1", f"s{robot}") == two
+
+
+# ---------------------------------------------------------------- the page
+
+
+def test_the_page_has_the_table_and_every_code() -> None:
+    text = (ROOT / "docs" / "params.md").read_text()
+    assert text.endswith(page(built_in_params()))
+    source = "".join(
+        (ROOT / "multibot_rewrite" / "companions" / name).read_text()
+        for name in ("sections.py", "respelled_params.py", "inserted_params.py")
+    )
+    assert set(re.findall(r"MF1\d\d", text)) == set(re.findall(r'"(MF1\d\d)"', source))
+
+
+def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "params.md").read_text()
+    path = tmp_path / "more.yaml"
+    path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
+    source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")
+    text, _ = made(source, known=known_params(str(path)))
+    assert "base: r1/mast_base" in text
+    assert "motors: [r1_elbow]" in text
+    assert "limits: {r1_elbow: {max: 1}}" in text

@@ -1,0 +1,176 @@
+"""Rewritten parameter files in the real rcl: every node gets what it got, with its names respelled."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from robots import spread
+from test_params_corpus import POLICIES, ROBOT, declared, facts, files, is_respelled
+
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.params.known import built_in_params
+from multibot_rewrite.companions.params.rewrite import params
+from multibot_rewrite.companions.params.sections import Section, found_sections, known_sections
+from multibot_rewrite.companions.template import GRAPH, fill
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.model import ERROR, InputError
+from multibot_rewrite.naming import make_naming
+
+INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
+pytestmark = pytest.mark.skipif(
+    not importlib.util.find_spec("rclpy"),
+    reason=f"parameter files are not read with the real rcl: no rclpy here, {INSTALL}",
+)
+CHILD = Path(__file__).parents[1].joinpath("rcl_params_child.py")
+SECONDS = 300
+OWN = """\
+amcl:
+  ros__parameters: {alpha1: 0.2, base_frame_id: base_link}
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      width: 3
+      robot_base_frame: base_link
+/**/collision_monitor:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
+diff_drive_controller:
+  ros__parameters:
+    left_wheel_names: [left]
+    right_wheel_names: ['y']
+joint_trajectory_controller:
+  ros__parameters:
+    joints: [left]
+    gains.left.p: 1.0
+    constraints: {left: {goal: 0.1}}
+amcl:
+  ros__parameters: {alpha2: 0.3, odom_frame_id: odom}
+"""
+
+
+class Case:
+    """A file, its text for a robot, and each exact section's node in both."""
+
+    def __init__(self, document: YamlText, context: Context, text: str) -> None:
+        self.source, self.text = document.text, text
+        sections = known_sections(found_sections(document), context, built_in_params())
+        exact = {it.path: it for it in sections if not it.wild and not it.shared}
+        self.old = [apart(f"/{path}") for path in exact]
+        self.new = [apart(full(it)) for it in exact.values()]
+
+
+def full(section: Section) -> str:
+    return section.full.replace(GRAPH, ROBOT)
+
+
+def apart(name: str) -> tuple[str, str]:
+    namespace, _, last = name.rpartition("/")
+    return namespace or "/", last
+
+
+def cases(sources: dict[str, bytes], policies: Sequence[tuple[str, str]]) -> Iterator[Case]:
+    for file, data in sources.items():
+        for layout, affix in policies:
+            try:
+                document = read_yaml(data, file)
+                naming = make_naming(layout=layout, affix=affix)
+                context = make_context(declared(document), naming, facts())  # type: ignore[arg-type]
+                companion = params(document, context, robots=(ROBOT,))
+            except InputError:
+                continue
+            if all(it.level != ERROR for it in companion.findings):
+                yield Case(document, context, fill(companion.template, ROBOT, ROBOT))
+
+
+def asked(folder: Path, found: Sequence[Case]) -> list[list[Any]]:
+    """What rcl makes of both texts of each case."""
+    lines = []
+    for at, case in enumerate(found):
+        for kind, text, nodes in (("old", case.source, case.old), ("new", case.text, case.new)):
+            path = folder / f"{at}.{kind}.yaml"
+            path.write_text(text, newline="")
+            lines.append(json.dumps({"file": str(path), "nodes": nodes}))
+    done = subprocess.run(
+        [sys.executable, str(CHILD)],
+        input="\n".join(lines) + "\n",
+        capture_output=True,
+        text=True,
+        timeout=SECONDS,
+        check=False,
+    )
+    answers = [json.loads(line) for line in done.stdout.splitlines()]
+    assert len(answers) == len(lines), done.stderr[-2000:]
+    return [answers[at : at + 2] for at in range(0, len(answers), 2)]
+
+
+def wrong(found: Sequence[Case], folder: Path) -> tuple[list[str], int]:
+    """What differs beyond names, and how many nodes were compared."""
+    told, count = [], 0
+    for case, (old, new) in zip(found, asked(folder, found), strict=True):
+        if old is None:
+            continue
+        if new is None:
+            told.append(f"{case.old}: rcl refuses the rewritten file")
+            continue
+        for node, before, after in zip(case.new, old, new, strict=True):
+            count += 1
+            told += [f"{node}: {it}" for it in differences(before, after)]
+    return told, count
+
+
+def differences(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
+    left = dict(after)
+    for key, value in before.items():
+        same = next((it for it in left if is_respelled(key, it)), None)
+        if same is None:
+            yield f"{key} is gone"
+        elif not is_same(key, value, left.pop(same)):
+            yield f"{key}: {value!r} became {after[same]!r}"
+    for key, value in left.items():
+        if ROBOT not in str(value) and not (key.endswith("tf_frame_prefix_enable") and not value):
+            yield f"{key}: {value!r} is new"
+
+
+def is_same(key: str, old: Any, new: Any) -> Any:
+    if isinstance(old, str) and isinstance(new, str):
+        return is_respelled(old, new)
+    if isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+        return all(is_same(key, *pair) for pair in zip(old, new, strict=True))
+    return (
+        repr(old) == repr(new)
+        or old == new
+        or (key.endswith("tf_frame_prefix_enable") and new is False)
+    )
+
+
+@pytest.mark.parametrize("policy", POLICIES)
+def test_every_node_gets_its_parameters(policy: tuple[str, str], tmp_path: Path) -> None:
+    found = list(cases({"own.yaml": OWN.encode()}, [policy]))
+    told, count = wrong(found, tmp_path)
+    assert told == []
+    assert count == 4
+
+
+def test_real_files(tmp_path: Path) -> None:
+    sources = {name: path.read_bytes() for name, path in spread(files(), 60).items()}
+    if not sources:
+        pytest.skip("no corpus of parameter files beside the repository")
+    told, count = wrong(list(cases(sources, POLICIES[1::2])), tmp_path)
+    assert told == []
+    assert count > 100
+
+
+@pytest.mark.deep
+def test_all_real_files(tmp_path: Path) -> None:
+    sources = {name: path.read_bytes() for name, path in files().items()}
+    if not sources:
+        pytest.skip("no corpus of parameter files beside the repository")
+    told, count = wrong(list(cases(sources, POLICIES)), tmp_path)
+    assert told == []
+    assert count > 1000

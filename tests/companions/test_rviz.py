@@ -1,0 +1,569 @@
+"""One RViz config for robots: groups, tools, views, frames, colours, and what is said about it."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import Any
+
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+from rviz_robots import robots_of
+
+from multibot_rewrite.companions.graph_names import known_topics, robot_topic
+from multibot_rewrite.companions.rviz.colours import palette, read_colour
+from multibot_rewrite.companions.rviz.read import rviz_data
+from multibot_rewrite.companions.rviz.rewrite import RvizText, rviz, start_command
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.model import Finding, InputError, UsageError
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.table import build_table
+
+ROBOTS = ("robot1", "robot2")
+DECLARED = {"link": dict.fromkeys(("base_link", "base_scan", "wheel")), "joint": {"hip": None}}
+CONFIG = """\
+Panels:
+  - Class: rviz_common/Displays
+    Name: Displays
+    Property Tree Widget:
+      Expanded:
+        - /Global Options1
+        - /Scan1/Topic1
+        - /TF1/Frames1
+      Splitter Ratio: 0.5
+  - Class: nav2_rviz_plugins/Navigation 2
+    Name: Navigation 2
+  - Class: slam_toolbox::SlamToolboxPlugin
+    Name: Slam
+  - Class: rviz_common/Time
+    Name: Time
+    SyncSource: Eye
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Class: rviz_default_plugins/Grid
+      Name: Grid  # stays once
+      Reference Frame: <Fixed Frame>
+    # what the lidar sees
+    - Class: "rviz_default_plugins/LaserScan"
+      Color: 255; 0; 0
+      Color Transformer: FlatColor
+      Name: 'Scan'
+      Topic:
+        Depth: 5
+        Value: "/scan"  # absolute
+      Value: true
+    - Class: rviz_default_plugins/TF
+      Filter (whitelist): ""
+      Frames:
+        All Enabled: false
+        base_link:
+          Value: true
+        map:
+          Value: true
+      Name: TF
+      Tree:
+        map:
+          base_link:
+            {}
+    - Class: rviz_common/Group
+      Displays:
+        - Class: rviz_default_plugins/Image
+          Name: Eye
+          Topic:
+            Value: eye/image
+        - Class: rviz_default_plugins/Axes
+          Name: Origin
+          Reference Frame: map
+        - Class: moveit_rviz_plugin/MotionPlanning
+          Name: Plan
+      Enabled: true
+      Name: Both
+    - Class: rviz_default_plugins/RobotModel
+      Description Topic:
+        Durability Policy: Transient Local
+        Value: <robot_namespace>/robot_description
+      Links:
+        All Links Enabled: true
+        base_link:
+          Alpha: 1
+      Name: RobotModel
+      TF Prefix: ""
+  Global Options:
+    Fixed Frame: odom
+  Name: root
+  Tools:
+    - Class: rviz_default_plugins/MoveCamera
+    - Class: rviz_default_plugins/SetGoal
+    - Class: rviz_default_plugins/SetInitialPose
+      Covariance x: 0.25
+      Topic:
+        Value: /initialpose
+    - Class: nav2_rviz_plugins/GoalTool
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Name: Current View
+      Target Frame: base_link
+    Saved: ~
+Window Geometry:
+  Eye:
+    collapsed: false
+  QMainWindow State: 000000ff
+  Width: 1200
+"""
+
+
+def declared(**more: dict[str, Any]) -> Any:
+    return defaultdict(dict, {**DECLARED, **more})
+
+
+def make(
+    text: str = CONFIG, layout: str = "L2", **more: Any
+) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
+    options = {key: more.pop(key) for key in ("world", "relayed") if key in more}
+    robots = robots_of(declared(), layout, ROBOTS, **more)
+    return rviz(read_yaml(text.encode(), "one.rviz"), robots, **options)
+
+
+def shown(text: str = CONFIG, layout: str = "L2", **more: Any) -> dict[str, Any]:
+    return yaml.safe_load(make(text, layout, **more)[0][0].text)
+
+
+def manager(**more: Any) -> dict[str, Any]:
+    return shown(**more)["Visualization Manager"]
+
+
+def codes(text: str = CONFIG, layout: str = "L2", **more: Any) -> list[str]:
+    return [finding.code for finding in make(text, layout, **more)[1]]
+
+
+def config(display: str, more: str = "") -> str:
+    rows = "".join(f"      {line}\n" for line in display.strip().splitlines())
+    head = "Visualization Manager:\n  Displays:\n    - Name: it\n"
+    return f"{head}{rows}{more}  Global Options:\n    Fixed Frame: map\n"
+
+
+def group(number: int) -> dict[str, Any]:
+    return manager()["Displays"][number - 1 - len(ROBOTS)]
+
+
+def test_a_group_for_each_robot_behind_what_all_share() -> None:
+    names = [(one["Class"].rpartition("/")[2], one["Name"]) for one in manager()["Displays"]]
+    assert names == [
+        ("Grid", "Grid"),
+        ("TF", "TF"),
+        ("Group", "Both"),
+        ("Group", "robot1"),
+        ("Group", "robot2"),
+    ]
+    assert [one["Name"] for one in group(1)["Displays"]] == ["Scan", "Both", "RobotModel"]
+
+
+def test_a_group_of_the_file_is_split_into_what_is_shared_and_what_is_not() -> None:
+    both = manager()["Displays"][2]
+    assert [one["Name"] for one in both["Displays"]] == ["Origin"]
+    assert [one["Name"] for one in group(2)["Displays"][1]["Displays"]] == ["robot2 Eye"]
+
+
+def test_absolute_and_relative_topics_become_the_robots() -> None:
+    scan, both, model = group(2)["Displays"]
+    assert scan["Topic"] == {"Depth": 5, "Value": "/robot2/scan"}
+    assert both["Displays"][0]["Topic"]["Value"] == "/robot2/eye/image"
+    assert model["Description Topic"]["Value"] == "/robot2/robot_description"
+
+
+def test_a_rewritten_description_keeps_tf_prefix_empty() -> None:
+    assert group(1)["Displays"][2]["TF Prefix"] == ""
+
+
+def test_a_description_with_bare_links_gets_a_tf_prefix() -> None:
+    displays = manager(tf_prefix="robot1")["Displays"][-1]["Displays"]
+    assert displays[-1]["TF Prefix"] == "robot1"
+
+
+def test_a_tf_prefix_of_the_file_is_emptied_and_told() -> None:
+    text = config("Class: rviz_default_plugins/RobotModel\nTF Prefix: tb3\nDescription Topic: /d")
+    assert manager(text=text)["Displays"][0]["Displays"][0]["TF Prefix"] == ""
+    assert "MF207" in codes(text)
+
+
+def test_links_frames_and_the_tree() -> None:
+    assert "robot1/base_link" in group(1)["Displays"][2]["Links"]
+    tf = manager()["Displays"][1]
+    assert list(tf["Frames"]) == ["All Enabled", "robot1/base_link", "robot2/base_link", "map"]
+    assert tf["Tree"] == {}
+
+
+def test_comments_and_quotes_come_with_each_copy() -> None:
+    text = make()[0][0].text
+    assert text.count("# what the lidar sees") == len(ROBOTS)
+    assert text.count('Class: "rviz_default_plugins/LaserScan"') == len(ROBOTS)
+    assert text.count('Value: "/robot1/scan"  # absolute') == 1
+    assert text.count("Name: 'Scan'") == len(ROBOTS)
+    assert text.count("# stays once") == 1
+
+
+def test_line_ends_stay() -> None:
+    text = make(CONFIG.replace("\n", "\r\n"))[0][0].text
+    assert text.count("\n") == text.count("\r\n")
+    assert yaml.safe_load(text) == shown()
+
+
+def test_a_file_without_a_last_line_end() -> None:
+    assert shown(CONFIG.rstrip("\n")) == shown()
+    path = "    - Class: rviz_default_plugins/Path\n      Topic: /p"
+    tail = f"Visualization Manager:\n  Displays:\n{path}"
+    assert len(shown(tail)["Visualization Manager"]["Displays"]) == len(ROBOTS)
+
+
+def test_tools_publish_for_one_robot_each() -> None:
+    tools = [(tool["Class"].rpartition("/")[2], tool.get("Topic")) for tool in manager()["Tools"]]
+    assert tools == [
+        ("MoveCamera", None),
+        ("SetGoal", "/robot1/goal_pose"),
+        ("SetGoal", "/robot2/goal_pose"),
+        ("SetInitialPose", {"Value": "/robot1/initialpose"}),
+        ("SetInitialPose", {"Value": "/robot2/initialpose"}),
+    ]
+
+
+def test_what_serves_one_process_is_left_out_with_a_comment() -> None:
+    made, findings = make()
+    for cls in ("Navigation 2", "GoalTool", "MotionPlanning", "SlamToolboxPlugin"):
+        assert f"{cls}" in str([line for line in made[0].text.splitlines() if "# left out" in line])
+    assert [it.line for it in findings if it.code == "MF202"] == [10, 12, 54, 78]
+
+
+def test_fixed_frame_of_one_robot_gives_way_to_the_shared_one() -> None:
+    assert manager()["Global Options"]["Fixed Frame"] == "map"
+    assert manager(world="world")["Global Options"]["Fixed Frame"] == "world"
+    assert "MF201" in codes()
+    text = CONFIG.replace("Fixed Frame: odom", "Fixed Frame: world")
+    assert manager(text=text)["Global Options"]["Fixed Frame"] == "world"
+    assert "MF201" not in codes(text)
+
+
+def test_views_that_follow_a_robot() -> None:
+    views = manager()["Views"]
+    assert views["Current"]["Target Frame"] == "robot1/base_link"
+    saved = [(view["Name"], view["Target Frame"]) for view in views["Saved"]]
+    assert saved == [
+        ("robot1 Current View", "robot1/base_link"),
+        ("robot2 Current View", "robot2/base_link"),
+    ]
+    assert "MF213" in codes()
+
+
+def test_saved_views_are_there_for_each_robot() -> None:
+    listed = (
+        "Saved:\n      - Class: c\n        Name: near\n        Target Frame: base_scan\n"
+        "      - Class: c\n        Name: far\n        Target Frame: <Fixed Frame>"
+    )
+    text = CONFIG.replace("Saved: ~", listed).replace(
+        "Target Frame: base_link", "Target Frame: map"
+    )
+    saved = [(view["Name"], view["Target Frame"]) for view in manager(text=text)["Views"]["Saved"]]
+    assert saved == [
+        ("robot1 near", "robot1/base_scan"),
+        ("robot2 near", "robot2/base_scan"),
+        ("far", "<Fixed Frame>"),
+    ]
+
+
+def test_windows_and_paths_follow_the_names() -> None:
+    result = shown()
+    assert list(result["Window Geometry"]) == ["robot1 Eye", "robot2 Eye", "Width"]
+    tree = result["Panels"][0]["Property Tree Widget"]["Expanded"]
+    assert tree == ["/Global Options1", "/TF1/Frames1"]
+    assert result["Panels"][1]["SyncSource"] == "robot1 Eye"
+
+
+def test_window_state_stays_where_no_window_changes() -> None:
+    text = config("Class: rviz_default_plugins/Path\nTopic: /plan")
+    text += "Window Geometry:\n  QMainWindow State: 000000ff\n"
+    assert "QMainWindow State: 000000ff" in make(text)[0][0].text
+
+
+def test_colours_tell_robots_apart() -> None:
+    colours = [group(number)["Displays"][0]["Color"] for number in (1, 2)]
+    assert colours == ["230; 159; 0", "86; 180; 233"]
+    assert manager(colour="#102030")["Displays"][-1]["Displays"][0]["Color"] == "16; 32; 48"
+
+
+def test_a_colour_that_means_something_stays() -> None:
+    text = CONFIG.replace("Color Transformer: FlatColor", "Color Transformer: Intensity")
+    assert manager(text=text)["Displays"][-1]["Displays"][0]["Color"] == "255; 0; 0"
+
+
+@pytest.mark.parametrize(
+    ("given_", "colour"),
+    [
+        ("red", (255, 0, 0)),
+        ("#0a0B0c", (10, 11, 12)),
+        ((1, 2, 3), (1, 2, 3)),
+        ("Teal", (0, 128, 128)),
+    ],
+)
+def test_colours_as_people_write_them(given_: Any, colour: tuple[int, ...]) -> None:
+    assert read_colour(given_) == colour
+
+
+@pytest.mark.parametrize("wrong", ["#12345", "#1234567", "#12 345", "rad", "", "12; 3; 4"])
+def test_a_colour_that_is_none(wrong: str) -> None:
+    with pytest.raises(InputError, match="is not known"):
+        read_colour(wrong)
+
+
+def test_a_thousand_colours_are_all_different() -> None:
+    assert len({palette(at) for at in range(1000)}) >= 950
+    assert len({palette(at) for at in range(30)}) == 30
+
+
+@pytest.mark.parametrize("layout", ["L1", "L3", "L4"])
+def test_a_tf_topic_for_each_robot_gives_a_config_for_each(layout: str) -> None:
+    made, findings = make(layout=layout)
+    assert [one.robot for one in made] == list(ROBOTS)
+    assert "MF203" in [it.code for it in findings]
+
+
+def test_how_the_window_of_one_robot_is_started() -> None:
+    bare, posted = make(layout="L1")[0][0], make(layout="L4")[0][1]
+    assert start_command(bare, "a.rviz") == [
+        *("rviz2", "-d", "a.rviz", "--ros-args", "-r", "__ns:=/robot1"),
+        *("-r", "/tf:=/robot1/tf", "-r", "/tf_static:=/robot1/tf_static"),
+    ]
+    assert start_command(posted, "b.rviz") == [
+        *("rviz2", "-d", "b.rviz", "--ros-args"),
+        *("-r", "/tf:=/tf/robot2", "-r", "/tf_static:=/tf_static/robot2"),
+    ]
+    assert start_command(make()[0][0], "c.rviz") == ["rviz2", "-d", "c.rviz"]
+
+
+def test_the_window_of_one_robot_in_its_namespace_keeps_its_panels() -> None:
+    panels = [panel["Name"] for panel in shown(layout="L1")["Panels"]]
+    assert panels == ["Displays", "Navigation 2", "Time"]
+    assert [panel["Name"] for panel in shown(layout="L4")["Panels"]] == ["Displays", "Time"]
+
+
+def test_bare_frames_stay_and_topics_do_not() -> None:
+    made = manager(layout="L1")
+    assert made["Global Options"]["Fixed Frame"] == "odom"
+    assert made["Displays"][1]["Topic"]["Value"] == "/robot1/scan"
+    assert "base_link" in made["Displays"][2]["Frames"]
+
+
+def test_relayed_tf_shows_all_robots_in_one_window() -> None:
+    made, _ = make(layout="L4", relayed=True)
+    assert [one.robot for one in made] == [""]
+    assert made[0].relays[0] == ("/tf/robot1", "/tf")
+    assert [
+        one["Name"] for one in yaml.safe_load(made[0].text)["Visualization Manager"]["Displays"]
+    ][-2:] == ["robot1", "robot2"]
+
+
+def test_bare_frames_cannot_be_relayed() -> None:
+    assert len(make(layout="L1", relayed=True)[0]) == len(ROBOTS)
+
+
+def test_the_postfix_layout_spells_topics_behind() -> None:
+    assert manager(layout="L4")["Displays"][1]["Topic"]["Value"] == "/scan/robot1"
+    assert manager(layout="L4")["Global Options"]["Fixed Frame"] == "odom/robot1"
+
+
+@pytest.mark.parametrize(
+    ("display", "code"),
+    [
+        ("Class: acme/Show\nTopic: /t", "MF204"),
+        ("Class: acme/Show\nBody: base_link", "MF205"),
+        ("Class: rviz_default_plugins/RobotModel\nLinks:\n  base_lnk:\n    Alpha: 1", "MF206"),
+        ("Class: rviz_default_plugins/Axes\nReference Frame: base_lin", "MF206"),
+        ("Class: rviz_default_plugins/TF\nFilter (whitelist): ^base", "MF208"),
+        (
+            "Class: rviz_default_plugins/RobotModel\nDescription Source: File\nDescription File: a",
+            "MF208",
+        ),
+        ("Class: rviz_default_plugins/Image\nImage Topic: /i", "MF209"),
+        ("Class: rviz_default_plugins/Path\nTopic: /a/<name>/b", "MF210"),
+        ("Class: rviz_default_plugins/Camera\nTopic: /i\nVisibility:\n  it: false", "MF212"),
+        (
+            "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile",
+            "MF214",
+        ),
+        ("Class: rviz_default_plugins/Path\nTopic: /robot1/plan", "MF215"),
+    ],
+)
+def test_findings(display: str, code: str) -> None:
+    assert code in codes(config(display))
+
+
+def test_a_finding_says_where() -> None:
+    text = config("Class: rviz_default_plugins/Axes\nReference Frame: base_lin")
+    found = next(it for it in make(text)[1] if it.code == "MF206")
+    assert (found.file, found.line, found.column) == ("one.rviz", 5, 24)
+    assert "did you mean 'base_link'" in found.message
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("rviz_default_plugins/Odometry\nCovariance:\n  Orientation:\n    Frame: Local", "Local"),
+        ("rviz_default_plugins/Axes\nReference Frame: <Fixed Frame>", "<Fixed Frame>"),
+        ('rviz_default_plugins/Path\nTopic: ""', '""'),
+        ("rviz_default_plugins/Path\nTopic: ~", "~"),
+        ("rviz_default_plugins/Path\nTopic: $(var topic)", "$(var topic)"),
+        ("rviz_default_plugins/MarkerArray\nNamespaces:\n  base_link: true", "base_link"),
+        ("rviz_default_plugins/Axes\nReference Frame: map", "map"),
+        ("rviz_default_plugins/Path\nTopic: /clock", "/clock"),
+        ("rviz_default_plugins/Path\nTopic: ~/private", "~/private"),
+        ("rviz_default_plugins/RobotModel\nUpdate Interval: 1e-9", "1e-9"),
+    ],
+)
+def test_what_is_no_name_stays(path: str, value: str) -> None:
+    text = config(f"Class: {path}")
+    made = make(text)[0][0].text
+    assert made == text and value in made
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("Panels: []\n", "it has no 'Visualization Manager'"),
+        ("", "it has no 'Visualization Manager'"),
+        ("[General]\nkey=1\n", "not YAML"),
+        ("Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n", "a config of ROS 1"),
+        (
+            "Visualization Manager:\n  Displays: [{Class: rviz_default_plugins/Grid}]\n",
+            "in brackets",
+        ),
+        ("Visualization Manager:\n  Displays:\n    - &a\n      Class: x\n    - *a\n", "anchor"),
+    ],
+)
+def test_refusals_name_place_and_remedy(text: str, why: str) -> None:
+    with pytest.raises(InputError, match=why) as caught:
+        make(text)
+    assert str(caught.value).startswith("one.rviz") and ";" in str(caught.value)
+
+
+def test_no_robot_is_an_error() -> None:
+    with pytest.raises(UsageError):
+        rviz(read_yaml(CONFIG.encode(), "one.rviz"), [])
+
+
+def test_robots_of_two_kinds() -> None:
+    first = robots_of(declared(), "L2", ["robot1"])[0]
+    other = robots_of(defaultdict(dict, {"link": {"mast": None}, "joint": {}}), "L2", ["robot2"])[0]
+    text = rviz(read_yaml(CONFIG.encode(), "one.rviz"), [first, other])[0][0].text
+    model = yaml.safe_load(text)["Visualization Manager"]["Displays"][-1]["Displays"][-1]
+    assert "base_link" in model["Links"]  # no link of this robot
+
+
+def test_frames_and_topics_may_have_two_words() -> None:
+    robots = robots_of(declared(), "L2", ["left"])
+    robot = robots[0]._replace(topics=robots[0].topics._replace(robot="fleet/l"))
+    text = rviz(read_yaml(CONFIG.encode(), "one.rviz"), [robot])[0][0].text
+    assert '"/fleet/l/scan"' in text and "left/base_link" in text
+
+
+def test_names_follow_the_table_where_they_do_not_follow_the_rule() -> None:
+    facts = built_in().stacks["navigation"].nodes
+    robot = robots_of(declared(), "L4", ["r"])[0]
+    naming = robot.names.naming._replace(topics="prefix")
+    known = known_topics(build_table(["r"], facts, naming), facts, "r")
+    names = robot.topics._replace(naming=naming)
+    wanted = known["/global_costmap/costmap"]
+    assert wanted != robot_topic(names, "/global_costmap/costmap")
+    assert robot_topic(names, "global_costmap/costmap", known) == wanted
+
+
+def test_known_classes_have_known_words() -> None:
+    words = {word for names in rviz_data()["displays"].values() for word in names.values()}
+    words |= set(rviz_data()["any"].values())
+    assert words <= {
+        *("topic", "namespace", "frame", "link", "joint", "colour", "flat_colour", "tf_prefix"),
+        *("regex", "file", "siblings", "keep"),
+    }
+    assert set(rviz_data()["flags"].values()) == {"dock", "shared", "process", "absolute"}
+
+
+def test_a_map_that_is_shared_stays_once() -> None:
+    text = config("Class: rviz_default_plugins/Map\nTopic: /map\nUpdate Topic: /map_updates")
+    assert manager(text=text)["Displays"][0]["Name"] == "robot1"
+    robots = robots_of(declared(), "L2", ROBOTS)
+    naming = make_naming("L2", "prefix", shared_topics=("map", "map_updates"))
+    shared = [
+        it._replace(
+            names=it.names._replace(naming=naming), topics=it.topics._replace(naming=naming)
+        )
+        for it in robots
+    ]
+    assert rviz(read_yaml(text.encode(), "one.rviz"), shared)[0][0].text == text
+
+
+def test_volatile_descriptions_are_told_once() -> None:
+    model = (
+        "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile"
+    )
+    other = "    - Name: two\n" + "".join(f"      {line}\n" for line in model.splitlines())
+    assert codes(config(model, other)).count("MF214") == 1
+
+
+def test_orientation_frames_are_no_frames() -> None:
+    rows = "Covariance:\n  Orientation:\n    Frame: Fixed"
+    text = config(f"Class: rviz_default_plugins/Odometry\nTopic: /odom\n{rows}")
+    made = manager(text=text)["Displays"][0]["Displays"][0]
+    assert made["Covariance"]["Orientation"]["Frame"] == "Fixed"
+
+
+def test_a_group_is_indented_as_rviz_does() -> None:
+    text = config("Class: rviz_default_plugins/Path\nTopic: /plan")
+    made = rviz(read_yaml(text.encode(), "one.rviz"), robots_of(declared(), "L2", ["r"]))
+    assert made[0][0].text == (
+        "Visualization Manager:\n"
+        "  Displays:\n"
+        "    - Class: rviz_common/Group\n"
+        "      Displays:\n"
+        "        - Name: it\n"
+        "          Class: rviz_default_plugins/Path\n"
+        "          Topic: /r/plan\n"
+        "      Enabled: true\n"
+        "      Name: r\n"
+        "  Global Options:\n"
+        "    Fixed Frame: map\n"
+    )
+
+
+def test_a_block_of_text_ends_with_its_display() -> None:
+    block = "Class: rviz_default_plugins/Path\nTopic: /plan\nNote: |\n  one\n  two"
+    after = "    - Class: rviz_default_plugins/Grid\n      Name: Grid\n"
+    listed = manager(text=config(block, after))["Displays"]
+    assert [one["Name"] for one in listed] == ["Grid", *ROBOTS]
+    assert listed[1]["Displays"][0]["Note"] == "one\ntwo\n"
+
+
+TOKEN = st.from_regex(r"[a-z][a-z0-9]{0,5}", fullmatch=True)
+
+
+@given(
+    st.lists(st.tuples(TOKEN, st.sampled_from(["Path", "Axes", "Grid", "Image"])), max_size=6),
+    st.sampled_from(["L1", "L2", "L3", "L4"]),
+    st.integers(0, 3),
+)
+def test_each_display_is_once_or_with_each_robot(
+    drawn: list[tuple[str, str]], layout: str, pad: int
+) -> None:
+    gap = " " * pad
+    rows = ["Visualization Manager:\n", " Displays:\n"]
+    for name, cls in drawn:
+        place = "Topic" if cls in ("Path", "Image") else "Reference Frame"
+        rows += [f" {gap}- Class: rviz_default_plugins/{cls}\n", f" {gap}  {place}: {name}\n"]
+    made, _ = make("".join(rows), layout)
+    for one in made:
+        listed = yaml.safe_load(one.text)["Visualization Manager"]["Displays"] or []
+        groups = [it for it in listed if it["Class"] == "rviz_common/Group"]
+        singles = len(listed) - len(groups)
+        assert all(len(it["Displays"]) + singles == len(drawn) for it in groups) or not groups
+        if not groups:
+            assert singles == len(drawn)

@@ -1,0 +1,375 @@
+"""Fleet files: what they mean, what is wrong with them in one line, the schema that is published."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from fleet_folder import fleet_folder
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.fleets.by_schema import TYPES
+from multibot_rewrite.fleets.fleet_file import (
+    KINDS,
+    FleetFile,
+    Pose,
+    RobotSpec,
+    is_fleet,
+    read_fleet,
+    schema,
+)
+from multibot_rewrite.model import InputError
+
+REPO = Path(__file__).parents[2]
+ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
+PAGE = (REPO / "docs" / "fleet-file.md").read_text()
+
+
+def read(folder: Path, text: str, **files: str) -> FleetFile:
+    return read_fleet(str(fleet_folder(folder, text, **files)))
+
+
+def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
+    text = f"{above}robots:\n  - {{name: a, description: rover.urdf{keys and ', '}{keys}}}\n"
+    return read(folder, text).robots[0]
+
+
+# ---------------------------------------------------------------- what it means
+
+
+def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
+    found = robot(tmp_path, "")
+    assert (found.name, found.namespace, found.spelled, found.model) == ("a",) * 4
+    assert (found.pose, found.colour, found.stacks, dict(found.companions)) == (None, "", (), {})
+    assert (found.line, found.file) == (2, str(tmp_path / "fleet.yaml"))
+
+
+@pytest.mark.parametrize(
+    ("keys", "above", "field", "value"),
+    [
+        pytest.param("namespace: b", "", "namespace", "b", id="namespace"),
+        pytest.param("namespace: /b", "", "namespace", "b", id="slash"),
+        pytest.param("postfix: b", "", "spelled", "b", id="postfix"),
+        pytest.param("prefix: b", "affix: prefix\n", "spelled", "b", id="prefix"),
+        pytest.param("model: b.1", "", "model", "b.1", id="model"),
+        pytest.param("pose: {x: 1, yaw: 2.5}", "", "pose", Pose(x=1.0, yaw=2.5), id="pose"),
+        pytest.param("pose: {}", "", "pose", Pose(), id="origin"),
+        pytest.param("colour: red", "", "colour", "red", id="colour"),
+        pytest.param("colour: '#00ff7f'", "", "colour", "#00ff7f", id="hex"),
+        pytest.param("colour: [1, 2, 3]", "", "colour", (1, 2, 3), id="rgb"),
+        pytest.param("stack: nav2", "", "stacks", ("nav2",), id="stack"),
+        pytest.param("", "stack: [nav2, moveit]\n", "stacks", ("nav2", "moveit"), id="stacks"),
+        pytest.param("stack: moveit", "stack: nav2\n", "stacks", ("moveit",), id="own-stack"),
+        pytest.param("stack: []", "stack: nav2\n", "stacks", (), id="no-stack"),
+    ],
+)
+def test_keys_of_a_robot(tmp_path: Path, keys: str, above: str, field: str, value: object) -> None:
+    assert getattr(robot(tmp_path, keys, above), field) == value
+
+
+def test_arguments_are_text_as_xacro_takes_it(tmp_path: Path) -> None:
+    text = (
+        "arguments: {a: 1, b: true}\n"
+        "robots:\n  - {name: r, description: arm.urdf.xacro, arguments: {a: 2.5, c: x}}\n"
+    )
+    assert read(tmp_path, text).robots[0].arguments == {"a": "2.5", "b": "true", "c": "x"}
+
+
+def test_arguments_of_the_fleet_are_for_robots_that_are_xacro(tmp_path: Path) -> None:
+    text = f"arguments: {{tool: fork}}\n{ONE}  - {{name: r, description: arm.urdf.xacro}}\n"
+    assert [dict(it.arguments) for it in read(tmp_path, text).robots] == [{}, {"tool": "fork"}]
+
+
+def test_companions_of_a_robot_replace_those_of_the_fleet_kind_by_kind(tmp_path: Path) -> None:
+    text = (
+        "companions: {params: params.yaml, rviz: one_robot.rviz}\n"
+        "robots:\n  - {name: r, description: rover.urdf, companions: {params: []}}\n"
+    )
+    found = read(tmp_path, text).robots[0].companions
+    assert found == {"params": (), "rviz": (str(tmp_path / "one_robot.rviz"),)}
+
+
+def test_what_is_included_gives_defaults_and_keeps_its_own_paths(tmp_path: Path) -> None:
+    (tmp_path / "site").mkdir()
+    (tmp_path / "site" / "common.yaml").write_text("layout: L3\ndescription: ../rover.urdf\n")
+    text = "include: site/common.yaml\nlayout: L2\nrobots:\n  - {name: a}\n"
+    found = read(tmp_path, text)
+    assert found.policy["layout"] == "L2"
+    assert Path(found.robots[0].description).samefile(tmp_path / "rover.urdf")
+    assert [Path(it).name for it in found.files] == ["fleet.yaml", "common.yaml"]
+
+
+def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> None:
+    (tmp_path / "more.yaml").write_text(
+        f"# robots\n{ONE}  - {{name: a, description: rover.urdf}}\n"
+    )
+    with pytest.raises(InputError, match=r"more\.yaml:4: 'a' is there twice, first at line 3"):
+        read(tmp_path, "include: more.yaml\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "fleet"),
+    [
+        ("robots:\n  - name: a\n", True),
+        ("robots: [{name: a}]\n", True),
+        ("layout: L1\nrobots:  # all\n# two\n\n- name: a\n", True),
+        ("robots:\n  a:\n    tf: /tf\n", False),
+        ("amcl:\n", False),
+    ],
+)
+def test_a_fleet_file_is_told_from_a_plan(text: str, fleet: bool) -> None:
+    assert is_fleet(text.encode()) is fleet
+
+
+# ---------------------------------------------------------------- bad input
+
+BAD: dict[str, tuple[str, ...]] = {
+    "unknown-key": (f"layot: L2\n{ONE}", "1: unknown key 'layot'; did you mean 'layout'?"),
+    "unknown-robot-key": (
+        "robots:\n  - name: a\n    descripton: x\n",
+        "3: robots[0]: unknown key 'descripton'; did you mean 'description'?",
+    ),
+    "unknown-companion": (
+        f"{ONE}companions: {{parms: params.yaml}}\n",
+        "3: companions: unknown key 'parms'; did you mean 'params'?",
+    ),
+    "unknown-pose-key": (
+        "robots:\n  - {name: a, description: rover.urdf, pose: {yow: 1}}\n",
+        "2: robots[0].pose: unknown key 'yow'; did you mean 'yaw'?",
+    ),
+    "key-that-is-a-number": (f"1: 2\n{ONE}", "1: unknown key 1; known are include, layout"),
+    "key-that-is-a-list": (f"[1]: 2\n{ONE}", "1: found unhashable key; write plain keys"),
+    "two-of-a-name": (f"{ONE}  - {{name: a, description: rover.urdf}}\n", "3: 'a' is there twice"),
+    "two-of-a-namespace": (
+        f"{ONE}  - {{name: b, namespace: a, description: rover.urdf}}\n",
+        "3: 'b' has the namespace 'a' of 'a' (line 2); every robot needs its own",
+    ),
+    "two-of-a-postfix": (
+        f"{ONE}  - {{name: b, postfix: a, description: rover.urdf}}\n",
+        "3: 'b' has the prefix or postfix 'a' of 'a' (line 2)",
+    ),
+    "two-of-a-model": (
+        f"{ONE}  - {{name: b, model: a, description: rover.urdf}}\n",
+        "3: 'b' has the model 'a' of 'a' (line 2)",
+    ),
+    "two-of-a-pose": (
+        "description: rover.urdf\nrobots:\n  - {name: a, pose: {x: 1}}\n"
+        "  - {name: b, pose: {x: 1.0, y: 0}}\n",
+        "4: 'b' has the pose of 'a' (line 3)",
+    ),
+    "missing-description": (
+        "robots:\n  - {name: a, description: nope.urdf}\n",
+        "2: FOLDER/nope.urdf is not there; name a file",
+    ),
+    "missing-companion": (
+        f"{ONE}companions:\n  rviz: nope.rviz\n",
+        "4: FOLDER/nope.rviz is not there; name a file",
+    ),
+    "companion-folder": (f"{ONE}companions: {{params: .}}\n", "3: FOLDER/. is a folder"),
+    "missing-include": (f"include: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml is not there"),
+    "missing-nodes": (f"nodes: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml is not there"),
+    "missing-vocabulary": (f"vocabulary: [a.vocab]\n{ONE}", "1: FOLDER/a.vocab is not there"),
+    "cyclic-include": (
+        f"include: fleet.yaml\n{ONE}",
+        " it includes itself (fleet.yaml -> fleet.yaml); leave one out",
+    ),
+    "duplicate-key": (
+        f"layout: L1\nlayout: L2\n{ONE}",
+        "2: the key 'layout' is there twice, first at line 1; leave one out",
+    ),
+    "duplicate-key-on-a-line": (
+        "robots:\n  - {name: a, name: b, description: rover.urdf}\n",
+        "2: the key 'name' is there twice",
+    ),
+    "tab": ("robots:\n\t- {name: a}\n", "2:1: not YAML: a tab; indent with spaces"),
+    "anchor": (
+        "robots:\n  - &x {name: a, description: rover.urdf}\n  - *x\n",
+        "2: the anchor or alias &x; write the value out",
+    ),
+    "ring-of-aliases": ("robots: &a [*a]\n", "1: the anchor or alias &a; write the value out"),
+    "merge": (
+        "x: &d {a: 1}\nrobots:\n  - {<<: *d, name: a}\n",
+        "1: the anchor or alias &d; write the value out",
+    ),
+    "python-tag": (
+        "robots: !!python/object:os.system []\n",
+        "1: could not determine a constructor for the tag",
+    ),
+    "empty": ("", " nothing is in it; write robots: with a name each"),
+    "only-comments": ("# later\n", " nothing is in it; write robots:"),
+    "a-list": ("- a\n", "1: it is no keys with values; write robots:"),
+    "a-word": ("hello\n", "1: it is no keys with values"),
+    "no-robots": ("layout: L1\n", " there is no list of robots; write robots:"),
+    "empty-robots": ("robots: []\n", "1: robots: the list is empty; write at least one"),
+    "robots-as-keys": ("robots: {a: 1}\n", "1: robots: {'a': 1} does not fit; write a list"),
+    "robot-as-word": ("robots: [a]\n", "1: robots[0]: 'a' does not fit; write keys with values"),
+    "no-name": ("robots:\n  - {description: rover.urdf}\n", "2: robots[0]: the key 'name' is miss"),
+    "name-number": ("robots:\n  - {name: 1}\n", "2: robots[0].name: 1 does not fit; write it in q"),
+    "name-on": ("robots:\n  - {name: on}\n", "2: robots[0].name: True does not fit; write it in q"),
+    "name-dash": (
+        "robots:\n  - {name: my-robot}\n",
+        "2: robots[0].name: 'my-robot' does not fit; write letters, digits and underscores",
+    ),
+    "namespace-of-two": (
+        "robots:\n  - {name: a, namespace: b/c}\n",
+        "2: robots[0].namespace: 'b/c' does not fit; write one word",
+    ),
+    "model-slash": ("robots:\n  - {name: a, model: a/b}\n", "2: robots[0].model: 'a/b' does not"),
+    "model-date": (
+        "robots:\n  - {name: a, model: 2020-01-01}\n",
+        "2: robots[0].model: datetime.date(2020, 1, 1) does not fit; write it in quotes",
+    ),
+    "layout": (f"layout: frames\n{ONE}", "1: layout: 'frames' is not known; did you mean 'frames-"),
+    "layout-none": (f"layout:\n{ONE}", "1: layout: there is no value; write one, or leave the key"),
+    "affix": (f"affix: suffix\n{ONE}", "1: affix: 'suffix' is not known; did you mean 'postfix'?"),
+    "distro": (f"distro: humble\n{ONE}", "1: distro: 'humble' is not known; known are jazzy, kil"),
+    "stack": (f"stack: nav3\n{ONE}", "1: stack 'nav3' is not known; did you mean 'nav2'?"),
+    "robots-stack": (
+        "robots:\n  - {name: a, description: rover.urdf, stack: nav3}\n",
+        "2: stack 'nav3' is not known",
+    ),
+    "separator": (f"separators: {{link: '%'}}\n{ONE}", "1: separator link='%': use one of / _ __"),
+    "separator-kind": (f"separators: {{lnk: /}}\n{ONE}", "1: separator kind 'lnk' is not known"),
+    "world": (
+        f"world: odom\n{ONE}",
+        "1: world 'odom' is no shared frame (map, world); put it into shared_frames",
+    ),
+    "pose-word": (
+        "robots:\n  - {name: a, description: rover.urdf, pose: {x: one}}\n",
+        "2: robots[0].pose.x: 'one' does not fit; write a number",
+    ),
+    "pose-nan": (
+        "robots:\n  - {name: a, description: rover.urdf, pose: {x: .nan}}\n",
+        "2: 'a': pose x is nan; write a number",
+    ),
+    "colour": (
+        "robots:\n  - {name: a, description: rover.urdf, colour: gren}\n",
+        "2: 'a': colour 'gren' is not known; did you mean 'green'?",
+    ),
+    "colour-two": (
+        "robots:\n  - {name: a, description: rover.urdf, colour: [1, 2]}\n",
+        "2: robots[0].colour: [1, 2] does not fit; write",
+    ),
+    "other-affix": (
+        "affix: prefix\nrobots:\n  - {name: a, description: rover.urdf, postfix: b}\n",
+        "3: 'a' has a postfix, and the fleet's affix is prefix; write prefix:",
+    ),
+    "no-description": ("robots:\n  - {name: a}\n", "2: robot 'a' has no description; name its"),
+    "arguments-without-xacro": (
+        "robots:\n  - {name: a, description: rover.urdf, arguments: {x: 1}}\n",
+        "2: 'a' has arguments and no xacro; take them out, or name a file ….xacro",
+    ),
+    "arguments-list": (f"{ONE}arguments: [a]\n", "3: arguments: ['a'] does not fit; write keys"),
+    "companions-none": (f"{ONE}companions:\n", "3: companions: there is no value"),
+    "broken": ("robots: [\n", "2:1: not YAML: did not find expected node content; mend the YAML"),
+    "two-documents": (f"{ONE}---\n{ONE}", "3:1: not YAML: there is more than one document"),
+    "too-deep": (f"robots: {'[' * 3000}{']' * 3000}\n", " lists and maps go too deep"),
+    "nul": ("robots:\n  - {name: a\0}\n", " not YAML: unacceptable character #x0000"),
+    "params-of-rviz": (
+        f"{ONE}companions: {{params: one_robot.rviz}}\n",
+        "@one_robot.rviz:1: no ROS 2 parameter file: an RViz configuration, which goes under rviz",
+    ),
+    "params-anchor": (
+        f"{ONE}companions: {{params: bad.yaml}}\n",
+        "@bad.yaml:1: &x: rcl takes no anchors; write it out",
+        "amcl: {ros__parameters: &x {a: 1}}\n",
+    ),
+    "params-tab": (
+        f"{ONE}companions: {{params: bad.yaml}}\n",
+        "@bad.yaml:2:1: not YAML: a tab; indent with spaces",
+        "amcl:\n\tros__parameters: {a: 1}\n",
+    ),
+    "rviz-of-ros1": (
+        f"{ONE}companions: {{rviz: bad.yaml}}\n",
+        "@bad.yaml:1: a config of ROS 1 (rviz/Grid), which rviz2 cannot load; make it anew in rv",
+        "Visualization Manager: {Displays: [{Class: rviz/Grid}]}\n",
+    ),
+    "srdf-of-yaml": (
+        "robots:\n  - {name: a, description: rover.urdf, srdf: params.yaml}\n",
+        "@params.yaml:1:1: not well-formed XML",
+    ),
+    "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: no f"),
+    "bridge-of-params": (
+        f"{ONE}companions: {{bridge: params.yaml}}\n",
+        "@params.yaml:2: no list of topics",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_one_line_and_nothing_is_written(
+    case: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, said, *other = BAD[case]
+    path = fleet_folder(tmp_path, text, bad__yaml="".join(other))
+    code = main(["build", str(path), "-o", str(tmp_path / "out")])
+    error = capsys.readouterr().err
+    assert code == 2, error
+    assert error.count("\n") == 1, error
+    file = said[1:].partition(":")[0] if said.startswith("@") else "fleet.yaml"
+    rest = said[1 + len(file) :] if said.startswith("@") else f":{said}"
+    assert f"{tmp_path / file}{rest}".replace("FOLDER", str(tmp_path)) in error
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_file_of_another_encoding_is_one_line(tmp_path: Path) -> None:
+    path = fleet_folder(tmp_path, ONE)
+    path.write_bytes(b"robots:\n  - {name: \xe9}\n")
+    with pytest.raises(InputError, match=r"fleet\.yaml:2: it is not UTF-8; save it as UTF-8"):
+        read_fleet(str(path))
+
+
+# ---------------------------------------------------------------- schema and page
+
+
+def keys(part: dict[str, Any]) -> set[str]:
+    return set(part["properties"])
+
+
+def test_the_schema_is_one_and_says_so() -> None:
+    from jsonschema import Draft202012Validator
+
+    Draft202012Validator.check_schema(schema())
+    assert keys(schema()["$defs"]["companions"]) == set(KINDS)
+    used = re.findall(r'"type": "(\w+)"', json.dumps(schema()))
+    assert set(used) <= set(TYPES)
+
+
+def test_every_key_of_the_schema_is_on_the_page() -> None:
+    parts = (schema(), *(schema()["$defs"][it] for it in ("robot", "companions")))
+    missing = {key for part in parts for key in keys(part) if f"`{key}`" not in PAGE}
+    assert missing == set()
+
+
+def test_every_key_on_the_page_is_in_the_schema() -> None:
+    parts = (schema(), *(schema()["$defs"][it] for it in ("robot", "companions")))
+    known = {key for part in parts for key in keys(part)}
+    assert set(re.findall(r"^\| `(\w+)` ", PAGE, re.MULTILINE)) == known
+
+
+EXAMPLES = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.parametrize("at", range(len(EXAMPLES)))
+def test_every_example_of_the_page_builds(
+    at: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fleet_folder(tmp_path)
+    (tmp_path / "site.yaml").write_text("layout: L2\naffix: prefix\n")
+    path = tmp_path / "fleet.yaml"
+    path.write_text(EXAMPLES[at])
+    code = main(["build", str(path), "-o", str(tmp_path / "out"), "--quiet"])
+    assert code == 0, capsys.readouterr().err
+
+
+def test_the_page_has_examples_and_the_line_for_editors() -> None:
+    assert len(EXAMPLES) >= 4
+    line = re.search(r"yaml-language-server: \$schema=(\S+)", PAGE)
+    assert line is not None
+    named = line[1].rpartition("/")[2]
+    assert (REPO / "multibot_rewrite" / "fleets" / named).exists()
+    assert yaml.safe_load(EXAMPLES[0])["robots"]

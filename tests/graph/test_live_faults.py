@@ -1,0 +1,238 @@
+"""A planned fleet on a real graph, as it should be and with one fault each: found and named.
+
+Side by side, each on a domain of its own; 20 times in a row in the deep run.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import live_fleet
+import planned
+import pytest
+import tf2_build
+
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.transforms import description_edges
+from multibot_rewrite.library import rewrite
+from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.document import read_document
+
+pytest.importorskip(
+    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
+)
+ROOT = Path(__file__).parents[2]
+GRAPHS = ROOT / "fixtures" / "graphs"
+ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
+LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}
+TF = "tf2_msgs/msg/TFMessage"
+TRIGGER = "std_srvs/srv/Trigger"
+ROUNDS = 20
+# Robot -> node -> what it has, as live_fleet takes it.
+Fleet = dict[str, dict[str, dict[str, Any]]]
+
+
+class Scenario(NamedTuple):
+    """A fault put into a fleet of a layout, and the findings it must come to: (code, who)."""
+
+    name: str
+    layout: str
+    fault: Callable[[Fleet], None]
+    found: frozenset[tuple[str, str]]
+
+
+def plan_of(layout: str) -> Path:
+    return GRAPHS / ("" if layout == "frames-per-robot" else layout) / "plan.yaml"
+
+
+def fleet_of(layout: str) -> Fleet:
+    """The fleet exactly as planned, its tf as the rewritten descriptions say."""
+    path = plan_of(layout)
+    plan = from_yaml(path.read_bytes(), str(path))
+    types = {it.name: it.type for it in plan.endpoints if it.type}
+    nodes: dict[str, dict[str, Any]] = {}
+    for robot in plan.robots:
+        for node in robot.nodes:
+            space, _, name = node.rpartition("/")
+            nodes[node] = {"name": name, "namespace": space, **_lists()}
+    for it in plan.endpoints:
+        kept = it.type if it.type == TF else types.get(it.name, TRIGGER)
+        if kept != TF:
+            nodes[it.node][LISTS[it.role]].append([it.name, kept])
+    fleet = {robot.name: {node: nodes[node] for node in robot.nodes} for robot in plan.robots}
+    for robot in plan.robots:
+        state, drive = (next(n for n in robot.nodes if w in n) for w in ("state_pub", "diff_drive"))
+        moving, fixed = edges(robot.name, layout)
+        root = moving.pop()
+        static = f"{robot.tf}_static"
+        nodes[state]["frames"] = [[robot.tf, False, *moving], [static, True, *fixed]]
+        nodes[drive]["frames"] = [[robot.tf, False, root]]
+    return fleet
+
+
+def _lists() -> dict[str, list[Any]]:
+    return {name: [] for name in (*LISTS.values(), "frames")}
+
+
+def edges(robot: str, layout: str) -> tuple[list[list[str]], list[list[str]]]:
+    """Transforms of the rewritten rover, moving ones and fixed ones; the last moving is odometry."""
+    text = rewrite(ROVER, robot, layout=layout).text
+    inventory = collect(read_document(text.encode(), ROVER), builtin_tree())
+    found = list(description_edges(inventory))
+    moving = [[it.parent, it.child] for it in found if not it.static]
+    fixed = [[it.parent, it.child] for it in found if it.static]
+    odometry = [f"odom/{robot}", f"base_footprint/{robot}"]
+    return [*moving, odometry], fixed
+
+
+def healthy(fleet: Fleet) -> None:
+    """No fault at all."""
+
+
+def leak(fleet: Fleet) -> None:
+    fleet["robot1"]["/robot1/diff_drive"]["subscriptions"] = [
+        ["/cmd_vel", "geometry_msgs/msg/Twist"]
+    ]
+
+
+def cross_talk(fleet: Fleet) -> None:
+    pilot = fleet["robot1"]["/robot1/pilot"]
+    pilot["publishers"].append(["/robot2/cmd_vel", "geometry_msgs/msg/Twist"])
+
+
+def clash(fleet: Fleet) -> None:
+    pilot = fleet["robot1"]["/robot1/pilot"]
+    fleet["again"] = {"/robot1/pilot": {"name": "pilot", "namespace": "/robot1"}}
+    assert pilot["namespace"] == "/robot1"
+
+
+def qos(fleet: Fleet) -> None:
+    (odometry,) = fleet["robot2"]["/robot2/diff_drive"]["publishers"]
+    odometry.append("best_effort")
+
+
+def other_type(fleet: Fleet) -> None:
+    (odometry,) = fleet["robot2"]["/robot2/diff_drive"]["publishers"]
+    odometry[1] = "std_msgs/msg/String"
+    # One process has no two types of a topic.
+    fleet["pilot"] = {"/robot2/pilot": fleet["robot2"].pop("/robot2/pilot")}
+
+
+def two_parents(fleet: Fleet) -> None:
+    edge = ["base_link/robot2", "imu_link/robot1"]
+    fleet["robot2"]["/robot2/pilot"]["frames"] = [["/tf", False, edge]]
+
+
+def missing_remap(fleet: Fleet) -> None:
+    state = fleet["robot1"]["/robot1/robot_state_publisher"]
+    state["frames"] = [["/tf", *state["frames"][0][1:]], ["/tf_static", *state["frames"][1][1:]]]
+
+
+def not_started(fleet: Fleet) -> None:
+    del fleet["robot2"]
+
+
+def wrong_namespace(fleet: Fleet) -> None:
+    fleet["robot2"]["/robot2/pilot"]["namespace"] = "/"
+
+
+L2, L3 = "frames-per-robot", "both"
+SCENARIOS = (
+    Scenario("healthy L2", L2, healthy, frozenset()),
+    Scenario("healthy L3", L3, healthy, frozenset()),
+    Scenario(
+        "leak", L2, leak,
+        frozenset({("MG102", "/robot1/diff_drive"), ("MG103", "/robot1/diff_drive")}),
+    ),
+    Scenario("cross-talk", L2, cross_talk, frozenset({("MG104", "/robot1/pilot")})),
+    Scenario("clash", L2, clash, frozenset({("MG105", "/robot1/pilot")})),
+    Scenario("qos", L2, qos, frozenset({("MG107", "/robot2/pilot")})),
+    Scenario("type", L2, other_type, frozenset({("MG106", "/robot2/diff_drive")})),
+    Scenario("two parents", L2, two_parents, frozenset({("MG201", "robot1")})),
+    Scenario(
+        "missing remap", L3, missing_remap,
+        frozenset({
+            ("MG102", "/robot1/robot_state_publisher"), ("MG103", "/robot1/robot_state_publisher"),
+            ("MG205", "robot1"),
+        }),
+    ),
+    Scenario("not started", L2, not_started, frozenset({("MG109", "robot2")})),
+    Scenario("wrong namespace", L2, wrong_namespace, frozenset({("MG101", "/robot2/pilot")})),
+)  # fmt: skip
+
+
+class Outcome(NamedTuple):
+    code: int
+    found: frozenset[tuple[str, str]]
+    said: str
+
+
+def check(at: int, scenario: Scenario, more: Mapping[str, str]) -> Outcome:
+    """What the command finds while the scenario's processes run."""
+    domain = planned.domain(at)
+    fleet = fleet_of(scenario.layout)
+    scenario.fault(fleet)
+    env = {**live_fleet.environ(domain), **more}
+    with live_fleet.running(domain, *(list(nodes.values()) for nodes in fleet.values()), **more):
+        done = planned.multibot("check", plan_of(scenario.layout), *planned.PATIENTLY, env=env)
+    return Outcome(done.returncode, frozenset(_found(done.stdout)), done.stdout + done.stderr)
+
+
+def _found(lines: str) -> Iterator[tuple[str, str]]:
+    for line in lines.splitlines():
+        who, _, rest = line.partition(": ")
+        yield rest.split()[1], who
+
+
+@pytest.fixture(scope="module")
+def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
+    """What makes tf2_msgs importable in children; a loud skip where it cannot be had."""
+    if not tf2 and not find_spec("tf2_msgs"):
+        pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
+    return tf2
+
+
+def checked(more: Mapping[str, str]) -> dict[str, Outcome]:
+    """All scenarios side by side: most of a check is waiting."""
+    with ThreadPoolExecutor(4) as pool:
+        found = pool.map(lambda it: check(it[0], it[1], more), enumerate(SCENARIOS))
+        return {it.name: outcome for it, outcome in zip(SCENARIOS, found, strict=True)}
+
+
+@pytest.fixture(scope="module")
+def once(needed: Mapping[str, str]) -> dict[str, Outcome]:
+    return checked(needed)
+
+
+@pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario.name)
+def test_a_fault_is_found_and_named_and_nothing_else(
+    scenario: Scenario, once: dict[str, Outcome]
+) -> None:
+    outcome = once[scenario.name]
+    assert outcome.found == scenario.found, outcome.said
+    assert outcome.code == bool(scenario.found), outcome.said
+
+
+@pytest.mark.deep
+def test_the_same_is_found_many_times_in_a_row(needed: Mapping[str, str]) -> None:
+    odd: dict[str, list[str]] = defaultdict(list)
+    for _ in range(ROUNDS):
+        outcomes = checked(needed)
+        for it in SCENARIOS:
+            if outcomes[it.name].found != it.found:
+                odd[it.name].append(outcomes[it.name].said)
+    assert not odd, "\n".join(f"{name}: {said}" for name, said in odd.items())
+
+
+def test_the_plans_are_those_of_the_rover() -> None:
+    plan: Expectation = from_yaml(plan_of(L2).read_bytes(), "plan.yaml")
+    links = {child for moving_or_not in edges("robot1", L2) for _, child in moving_or_not}
+    assert links | {"odom/robot1"} == set(plan.robots[0].frames)

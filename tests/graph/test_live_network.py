@@ -1,0 +1,165 @@
+"""``multibot`` and the robots on different hosts: what is seen, and what is said of what is not.
+
+Every host is a network namespace with a /dev/shm of its own (see ``network``).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, ExitStack, contextmanager
+from pathlib import Path
+from subprocess import CompletedProcess, Popen
+from typing import Any
+
+import live_fleet
+import pytest
+from network import Host, discovery_server, hosts
+from planned import PATIENTLY, assert_inconclusive, multibot, node, write_plan
+
+pytest.importorskip(
+    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
+)
+# The hosts are alone in their network, so any will do.
+DOMAIN = 7
+SUBNET = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+LOCALHOST = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+# More than a participant on LOCALHOST looks for.
+MANY = [f"robot{number}" for number in range(1, 41)]
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    return write_plan(tmp_path / "plan.yaml", ("robot1", "robot2"))
+
+
+@contextmanager
+def fleet(*places: tuple[Host, list[dict[str, Any]]], **settings: str) -> Iterator[None]:
+    """A process on each of these hosts."""
+    with ExitStack() as stack:
+        for host, nodes in places:
+            stack.enter_context(live_fleet.running(DOMAIN, nodes, inside=host.inside, **settings))
+        yield
+
+
+def crowd(
+    host: Host, names: Sequence[str], **settings: str
+) -> AbstractContextManager[list[Popen[str]]]:
+    """All these robots on one host, each a participant."""
+    nodes = [node(name, alone=True) for name in names]
+    return live_fleet.running(DOMAIN, nodes, inside=host.inside, **settings)
+
+
+def run(host: Host, *arguments: object, **settings: str) -> CompletedProcess[str]:
+    env = {**live_fleet.environ(DOMAIN), **settings}
+    return multibot(*arguments, *PATIENTLY, env=env, inside=host.inside)
+
+
+def test_robots_on_two_hosts_are_checked_from_a_third_by_multicast(plan: Path) -> None:
+    with hosts(3) as (one, two, base):
+        robots = (one, [node("robot1")]), (two, [node("robot2")])
+        with fleet(*robots, **SUBNET):
+            done = run(base, "check", plan, **SUBNET)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    assert "2 robots, 0 findings: as planned" in done.stderr
+
+
+@pytest.mark.deep
+def test_a_leak_on_another_host_is_named(plan: Path) -> None:
+    with hosts(3) as (one, two, base):
+        leaky = node("robot2", subscriptions=[["/cmd_vel", "String"]])
+        with fleet((one, [node("robot1")]), (two, [leaky]), **SUBNET):
+            done = run(base, "check", plan, **SUBNET)
+    assert done.returncode == 1, done.stderr
+    assert "/robot2/drive: error: MG102" in done.stdout
+    assert "/robot2/drive: error: MG103 /cmd_vel" in done.stdout
+    assert "/robot1/drive" not in done.stdout
+
+
+@pytest.mark.deep
+def test_peers_are_named_on_one_side_only(plan: Path) -> None:
+    """Robots that speak on their own machine only: who names their machines sees them."""
+    with hosts(3) as (one, two, base):
+        robots = (one, [node("robot1")]), (two, [node("robot2")])
+        with fleet(*robots, **LOCALHOST):
+            alone = run(base, "check", plan, **LOCALHOST)
+            peers = f"{one.address};{two.address}"
+            named = run(base, "check", plan, **LOCALHOST, ROS_STATIC_PEERS=peers)
+    assert_inconclusive(alone)
+    assert f"no node was seen (domain {DOMAIN}, range LOCALHOST)" in alone.stderr
+    assert "name these in ROS_STATIC_PEERS" in alone.stderr
+    assert (named.returncode, named.stdout) == (0, ""), named.stderr
+
+
+def test_peers_where_multicast_is_lost(tmp_path: Path) -> None:
+    """Under SUBNET Fast DDS asks 4 participants of a peer."""
+    plan = write_plan(tmp_path / "plan.yaml", MANY[:6])
+    with hosts(2, multicast=False) as (robots, base), crowd(robots, MANY[:6], **SUBNET):
+        done = run(base, "check", plan, **SUBNET, ROS_STATIC_PEERS=robots.address)
+    assert_inconclusive(done)
+    assert len(done.stdout.splitlines()) == 2
+    assert "look with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST" in done.stderr
+
+
+@pytest.mark.deep
+def test_peers_under_localhost_where_multicast_is_lost(tmp_path: Path) -> None:
+    """What the message above advises: 32 participants of a peer are asked."""
+    plan = write_plan(tmp_path / "plan.yaml", MANY[:31])
+    with hosts(2, multicast=False) as (robots, base), crowd(robots, MANY[:31], **SUBNET):
+        done = run(base, "check", plan, **LOCALHOST, ROS_STATIC_PEERS=robots.address)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+@pytest.mark.deep
+def test_a_super_client_sees_forty_participants_and_a_plain_one_says_why_not(
+    tmp_path: Path,
+) -> None:
+    plan = write_plan(tmp_path / "plan.yaml", MANY)
+    graph = tmp_path / "graph.json"
+    with hosts(2) as (robots, base), discovery_server(robots) as address:
+        server = {**SUBNET, "ROS_DISCOVERY_SERVER": address}
+        with crowd(robots, MANY, **server):
+            look = run(base, "snapshot", "-o", graph, **server, ROS_SUPER_CLIENT="TRUE")
+            plain = run(base, "check", plan, **server)
+    assert look.returncode == 0, look.stderr
+    assert "40 nodes in 40 participants" in look.stderr
+    done = multibot("check", plan, "--snapshot", graph, env=live_fleet.environ(DOMAIN))
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    assert_inconclusive(plain)
+    assert "MG102" in plain.stdout
+    assert "the view is not complete; set ROS_SUPER_CLIENT=TRUE" in plain.stderr
+
+
+@pytest.mark.deep
+def test_the_profile_of_the_page_lifts_the_limit(tmp_path: Path) -> None:
+    page = Path(__file__).parents[2] / "docs" / "large-fleets.md"
+    profile = tmp_path / "look.xml"
+    profile.write_text(page.read_text().partition("```xml\n")[2].partition("```")[0])
+    plan = write_plan(tmp_path / "plan.yaml", MANY)
+    settings = {
+        "FASTRTPS_DEFAULT_PROFILES_FILE": str(profile),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT",
+    }
+    with hosts(2) as (robots, base), crowd(robots, MANY, **LOCALHOST):
+        # The page names the first host, and every host itself.
+        for host in (robots, base):
+            done = run(host, "check", plan, **settings)
+            assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+@pytest.mark.deep
+def test_a_discovery_server_that_is_not_there(plan: Path) -> None:
+    with hosts(1) as (base,):
+        server = {"ROS_DISCOVERY_SERVER": f"{base.address}:11811", "ROS_SUPER_CLIENT": "TRUE"}
+        done = run(base, "check", plan, **SUBNET, **server)
+    assert_inconclusive(done)
+    assert f"discovery server {base.address}:11811); does the server run there" in done.stderr
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("count", [3, 31, 33, 60, 100])
+def test_multicast_has_no_limit(count: int, tmp_path: Path) -> None:
+    names = [f"robot{number}" for number in range(1, count + 1)]
+    plan = write_plan(tmp_path / "plan.yaml", names)
+    with hosts(2) as (robots, base), crowd(robots, names, **SUBNET):
+        done = run(base, "check", plan, **SUBNET)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr

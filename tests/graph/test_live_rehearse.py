@@ -1,0 +1,177 @@
+"""``multibot rehearse`` on a real graph: every layout holds, what leaks is shown, nothing is left."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
+from pathlib import Path
+
+import live_fleet
+import planned
+import pytest
+import tf2_build
+
+from multibot_rewrite.graph.snapshot import Snapshot, from_json
+
+pytest.importorskip(
+    "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
+)
+COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
+ROBOTS = Path(__file__).parents[2] / "fixtures" / "robots"
+ROVER = str(ROBOTS / "rover.urdf")
+PAIR = (ROVER, "robot1", "robot2")
+LAYOUTS = ("L1", "L2", "L3", "L4")
+
+
+def domain(offset: int) -> int:
+    """A domain of this test's own."""
+    return planned.domain(80 + offset)
+
+
+def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
+    env = {**live_fleet.environ(domain(offset)), **more}
+    words = ("rehearse", *arguments, "--domain", domain(offset))
+    return planned.multibot(*words, env=env)
+
+
+@pytest.fixture(scope="module")
+def layouts(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> dict[str, tuple[subprocess.CompletedProcess[str], Path]]:
+    """A rehearsal a layout, side by side: most of it is waiting."""
+    folder = tmp_path_factory.mktemp("rehearsals")
+
+    def run(at: int, layout: str) -> subprocess.CompletedProcess[str]:
+        words = ["--stack", "nav2", "--layout", layout, "-o", str(folder / layout)]
+        words += ["--report", str(folder / f"{layout}.html")]
+        return rehearse(at, *PAIR, *words)
+
+    with ThreadPoolExecutor() as pool:
+        done = list(pool.map(run, range(len(LAYOUTS)), LAYOUTS))
+    return {layout: (one, folder / layout) for layout, one in zip(LAYOUTS, done, strict=True)}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_layout_holds(
+    layout: str, layouts: dict[str, tuple[subprocess.CompletedProcess[str], Path]]
+) -> None:
+    done, file = layouts[layout]
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    assert "2 robots, 0 findings: as planned" in done.stderr
+    graph = from_json(file.read_bytes(), "graph")
+    # The tree is on the graph, too: from the map to every link of both robots.
+    assert len({frame.child for frame in graph.frames}) == (9 if layout == "L1" else 18)
+    assert not [node for node in graph.nodes if not _of_a_robot(node.name)]
+    assert len(actions(graph)) == 34
+    page = file.with_suffix(".html").read_text()
+    assert "as planned" in page
+    assert "/navigate_to_pose" in page
+
+
+def _of_a_robot(name: str) -> bool:
+    return "robot1" in name or "robot2" in name or "transform_listener_impl" in name
+
+
+def actions(graph: Snapshot) -> set[str]:
+    names = (end.name for end in graph.endpoints if end.role == "serves")
+    return {name for name in names if name.endswith("/_action/send_goal")}
+
+
+def test_without_rules_it_leaks_and_says_so() -> None:
+    words = [*PAIR, "--stack", "robot_state", "--layout", "tf-per-robot", "--without-rules"]
+    done = rehearse(4, *words)
+    assert done.returncode == 1, done.stderr
+    assert "/robot1/robot_state_publisher: error: MG103 /tf" in done.stdout
+    assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
+
+
+@pytest.mark.deep
+def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
+    own = tmp_path / "own.yaml"
+    own.write_text(
+        "nodes:\n"
+        "  siren:\n"
+        "    package: siren\n"
+        "    publishes:\n"
+        "      /alarm: {type: std_msgs/msg/String, fixed: it is written in its code}\n"
+        "stacks:\n"
+        "  mine: {nodes: [siren]}\n"
+    )
+    done = rehearse(5, *PAIR, "--nodes", str(own), "--stack", "mine", "--layout", "L2")
+    assert done.returncode == 1
+    assert "/robot1/siren: error: MG103 /alarm" in done.stdout
+    assert "/robot2/siren: error: MG103 /alarm" in done.stdout
+    assert "robot_state_publisher" not in done.stdout
+
+
+@pytest.mark.deep
+def test_many_robots_share_processes() -> None:
+    names = [f"robot{at}" for at in range(1, 13)]
+    done = rehearse(6, ROVER, *names, "--stack", "robot_state", "--layout", "L2")
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    assert "12 robots, 0 findings: as planned" in done.stderr
+
+
+def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:
+    if not tf2 and not find_spec("tf2_msgs"):
+        pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
+    words = [*PAIR, "--stack", "robot_state", "--layout", "L3"]
+    done = rehearse(7, *words, **tf2)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    assert "stand-in" not in done.stderr
+
+
+def test_a_missing_rclpy_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "rclpy.py").write_text("raise ImportError('not here')\n")
+    path = os.pathsep.join(filter(None, [str(tmp_path), os.environ.get("PYTHONPATH", "")]))
+    done = rehearse(8, *PAIR, "--layout", "L2", PYTHONPATH=path)
+    assert done.returncode == 4
+    assert "rclpy cannot be imported" in done.stderr.splitlines()[-1]
+    assert "Traceback" not in done.stderr
+
+
+def children(pid: int) -> Iterator[int]:
+    """The processes that ``pid`` started."""
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = stat.read_text().rpartition(")")[2].split()
+        except OSError:
+            continue
+        if int(fields[1]) == pid:
+            yield int(stat.parent.name)
+
+
+def waited(seconds: float, gone: list[int]) -> bool:
+    limit = time.monotonic() + seconds
+    while any(Path(f"/proc/{pid}").exists() for pid in gone):
+        if time.monotonic() > limit:
+            return False
+        time.sleep(0.05)
+    return True
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to look for children")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_no_node_is_left(number: signal.Signals) -> None:
+    command = [*COMMAND, *PAIR, "--stack", "nav2", "--layout", "L2", "--domain", str(domain(9))]
+    env = live_fleet.environ(domain(9))
+    play = subprocess.Popen(command, env=env, stderr=subprocess.PIPE, text=True)
+    try:
+        assert play.stderr is not None
+        assert "44 nodes in domain" in play.stderr.readline()
+        there = list(children(play.pid))
+        assert len(there) >= 2
+        play.send_signal(number)
+        _, said = play.communicate(timeout=20)
+        assert play.returncode == (-number if number == signal.SIGKILL else 130)
+        assert "Traceback" not in said
+        assert waited(10, there)
+    finally:
+        play.kill()
+        play.wait()

@@ -1,0 +1,784 @@
+"""Pictures of a checked graph: what is wrong is drawn as that, and any name may be drawn."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import itertools
+import os
+import random
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+
+import drawn
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lxml import html
+
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.pictures.dot import to_dot
+from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
+from multibot_rewrite.graph.pictures.lighter import plain, rest
+from multibot_rewrite.graph.pictures.marks import (
+    CLASH,
+    CROSS_TALK,
+    LEAK,
+    MISSING,
+    OK,
+    TROUBLE,
+    UNEXPECTED,
+)
+from multibot_rewrite.graph.pictures.mermaid import MOST_EDGES, MOST_LETTERS, to_mermaid
+from multibot_rewrite.graph.pictures.page import to_html
+from multibot_rewrite.graph.pictures.scene import Group, Scene, make_scene
+from multibot_rewrite.graph.pictures.text import clipped, columns, visible
+from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
+from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphNode, Snapshot, to_json
+from multibot_rewrite.graph.watching import Verdict
+from multibot_rewrite.remap.records import PUBLISHES
+
+LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
+CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
+ABSENT = "/robot2/bt_navigator"
+DOCS = Path(__file__).parents[2] / "docs" / "report.md"
+# What a page is made of.
+TAGS = frozenset(
+    re.findall(
+        r"\w+",
+        """html head meta title style script body header main section h1 h2 h3 p ul li div span b em
+        a code small table thead tbody tr th td label select option output input details summary
+        dl dt dd svg defs marker g path rect text tspan""",
+    )
+)
+
+
+def group(scene: Scene, robot: str) -> Group:
+    return next(group for group in scene.groups if group.robot == robot)
+
+
+def states(scene: Scene, robot: str) -> dict[str, set[str]]:
+    """The states of a group's edges, by name."""
+    found: dict[str, set[str]] = {}
+    for edge in group(scene, robot).edges:
+        found.setdefault(edge.name, set()).add(edge.state)
+    return found
+
+
+def node_states(scene: Scene) -> dict[str, str]:
+    return {node.name: node.state for group in scene.groups for node in group.nodes}
+
+
+def page(scene: Scene) -> html.HtmlElement:
+    return html.document_fromstring(to_html(scene).decode())
+
+
+def pick(tree: html.HtmlElement, tag: str | None = None, look: str = "") -> list[html.HtmlElement]:
+    """The elements of a tag that have these classes."""
+    wanted = set(look.split())
+    return [it for it in tree.iter(tag) if wanted <= set((it.get("class") or "").split())]
+
+
+def section(tree: html.HtmlElement, id_: str) -> html.HtmlElement:
+    return tree.get_element_by_id(id_)
+
+
+def swarm() -> Expectation:
+    return drawn.fleet(30, 4)
+
+
+# ---------------------------------------------------------------- the scene
+
+
+@pytest.mark.parametrize("layout", drawn.LAYOUTS)
+def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
+    plan = drawn.nav2(layout)
+    scene = drawn.scene(plan, drawn.healthy(plan))
+    assert scene.verdict == Verdict.PLANNED
+    assert {edge.state for group in scene.groups for edge in group.edges} == {OK}
+    assert set(node_states(scene).values()) == {OK}
+    assert [group.robot for group in scene.groups] == ["robot1", "robot2", ""]
+    assert scene.reaches == ()
+    for robot in plan.robots:
+        own = {n.name for n in group(scene, robot.name).nodes if n.robot == robot.name}
+        assert own == set(robot.nodes)
+
+
+@pytest.mark.parametrize("layout", drawn.LAYOUTS)
+def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
+    plan = drawn.nav2(layout)
+    own = next(w for w in plan.endpoints if "collision_monitor" in w.node and "scan" in w.asked)
+    scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), own.name, "/scan", own.node))
+    assert states(scene, "robot1")["/scan"] == {LEAK}
+    assert states(scene, "")["/scan"] == {LEAK}
+    assert "/scan" not in states(scene, "robot2")
+    assert node_states(scene)[own.node] == LEAK
+    assert [(r.source, r.target, r.names) for r in scene.reaches] == [
+        ("robot1", "", ("subscribes /scan",))
+    ]
+
+
+def test_what_is_missing_in_place_of_a_leak_is_drawn() -> None:
+    plan = drawn.nav2()
+    scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), *LEAKY))
+    assert states(scene, "robot1")["/robot1/cmd_vel"] == {OK, MISSING}
+    assert node_states(scene)["/robot1/collision_monitor"] == LEAK
+
+
+def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None:
+    plan = drawn.nav2()
+    scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), *CROSSED))
+    assert CROSS_TALK in states(scene, "robot1")["/robot1/scan"]
+    assert states(scene, "robot2")["/robot1/scan"] == {CROSS_TALK}
+    assert scene.reaches == (("robot2", "", "robot1", CROSS_TALK, ("subscribes /robot1/scan",)),)
+    drawing = pick(page(scene), "svg", "overview")[0]
+    assert len(pick(drawing, "path", "reach bad")) == 1
+    assert [tile.get("class") for tile in pick(drawing, "g", "tile")] == ["tile odd", "tile bad"]
+
+
+def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
+    plan = drawn.nav2()
+    scene = drawn.scene(plan, drawn.without_node(drawn.healthy(plan), ABSENT))
+    assert node_states(scene)[ABSENT] == MISSING
+    own = {e.name for e in plan.endpoints if e.node == ABSENT}
+    missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
+    assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
+    shown = {edge.name for edge in plain(group(scene, "robot2")).edges if edge.state == MISSING}
+    # Nobody misses the life cycle of a node that is not there.
+    assert shown == {name for name in missing if "/bt_navigator/" not in name and "tf" not in name}
+
+
+def test_a_silent_robot_is_drawn_as_missing_whole() -> None:
+    plan = drawn.fleet(2, 4)
+    graph = drawn.without_node(drawn.healthy(plan), "/robot1/driver")
+    scene = drawn.scene(plan, drawn.without_node(graph, "/robot1/planner"))
+    assert {node.state for node in group(scene, "robot1").nodes} == {MISSING}
+    assert {edge.state for edge in group(scene, "robot1").edges} == {MISSING}
+
+
+def test_what_a_plan_leaves_open_is_not_drawn_as_missing() -> None:
+    plan = drawn.nav2()
+    first, *others = plan.robots
+    loose = plan._replace(robots=(first._replace(optional=("/robot1/amcl",)), *others))
+    scene = drawn.scene(loose, drawn.without_node(drawn.healthy(plan), "/robot1/amcl"))
+    assert "/robot1/amcl" not in node_states(scene)
+    assert TROUBLE.isdisjoint(edge.state for edge in group(scene, "robot1").edges)
+
+
+def test_a_node_and_a_topic_that_nobody_planned() -> None:
+    plan = drawn.nav2()
+    graph = drawn.with_end(drawn.healthy(plan), "/robot1/gripper", "/robot1/grip")
+    scene = drawn.scene(plan, drawn.with_end(graph, "/robot1/amcl", "/robot1/debug", PUBLISHES))
+    assert node_states(scene)["/robot1/gripper"] == UNEXPECTED
+    assert states(scene, "robot1")["/robot1/grip"] == {UNEXPECTED}
+    assert states(scene, "robot1")["/robot1/debug"] == {UNEXPECTED}
+    assert node_states(scene)["/robot1/amcl"] == OK
+
+
+def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not() -> None:
+    plan = drawn.nav2()
+    graph = drawn.healthy(plan)
+    for node in ("/rqt_gui", "/robot1/gripper"):
+        log = graph.endpoints[-1]._replace(node=node)
+        seen = (*graph.nodes, GraphNode(node, ""))
+        graph = graph._replace(nodes=seen, endpoints=(*graph.endpoints, log))
+    scene = drawn.scene(plan, graph)
+    light = {n.name for one in scene.groups for n in plain(one).nodes}
+    more = {n.name for one in scene.groups for n in rest(one).nodes}
+    assert "/robot1/gripper" in light and "/rqt_gui" not in light and "/rqt_gui" in more
+
+
+def test_a_clash_of_types_marks_all_ends() -> None:
+    plan = drawn.nav2()
+    graph = drawn.healthy(plan)
+    end = next(e for e in graph.endpoints if e.name == "/robot1/odom" and e.role == PUBLISHES)
+    other = end._replace(type="std_msgs/msg/String", node="/robot1/amcl")
+    scene = drawn.scene(plan, graph._replace(endpoints=(*graph.endpoints, other)))
+    assert states(scene, "robot1")["/robot1/odom"] == {CLASH}
+    (name,) = (n for n in group(scene, "robot1").names if n.name == "/robot1/odom")
+    assert len(name.types) == 2
+
+
+def test_two_nodes_of_one_name_clash() -> None:
+    plan = drawn.nav2()
+    graph = drawn.healthy(plan)
+    twin = graph._replace(nodes=(*graph.nodes, GraphNode("/robot1/amcl", "other")))
+    assert node_states(drawn.scene(plan, twin))["/robot1/amcl"] == CLASH
+
+
+def test_a_node_started_without_its_namespace_is_a_leak() -> None:
+    plan = drawn.fleet(2, 2)
+    graph = drawn.healthy(plan)
+    lost = graph._replace(
+        nodes=tuple(n._replace(name=n.name.replace("/robot1/d", "/d")) for n in graph.nodes),
+        endpoints=tuple(
+            e._replace(node=e.node.replace("/robot1/d", "/d")) for e in graph.endpoints
+        ),
+    )
+    found = node_states(drawn.scene(plan, lost))
+    assert (found["/driver"], found["/robot1/driver"]) == (LEAK, MISSING)
+
+
+def test_among_what_is_shared_a_robot_is_one_box() -> None:
+    plan = drawn.nav2()
+    shared = group(drawn.scene(plan, drawn.healthy(plan)), "")
+    assert {node.name for node in shared.nodes} == {"robot1", "robot2"}
+    assert all(node.whole for node in shared.nodes)
+    assert {name.name for name in shared.names} >= {"/rosout", "/diagnostics", "/tf"}
+
+
+def test_in_an_incomplete_view_the_verdict_is_open() -> None:
+    plan = drawn.nav2()
+    graph = drawn.without_node(drawn.healthy(plan), ABSENT)
+    cut = drawn.environment(Caveat("participant-limit", True, "the view may be cut off at 32"))
+    scene = drawn.scene(plan, graph._replace(environment=cut))
+    assert scene.verdict == Verdict.INCONCLUSIVE
+    assert {finding.level for finding in scene.findings} == {INCONCLUSIVE}
+    header = pick(page(scene), "header")[0].text_content()
+    assert "inconclusive" in header
+    assert "the view may be cut off at 32" in header
+
+
+def test_the_light_picture_and_the_rest_are_the_whole() -> None:
+    plan = drawn.nav2()
+    for one in drawn.scene(plan, drawn.spoiled(plan)).groups:
+        light, more = plain(one), rest(one)
+        merged = {name for it in light.names for name in it.merged}
+        shown = {n.name for n in light.names if not n.merged}
+        assert shown | {name.name for name in more.names} == {name.name for name in one.names}
+        assert merged <= {name.name for name in more.names}
+        assert not any(name in shown for name in ("/rosout", "/parameter_events"))
+        # What is wrong is never put away.
+        assert {e.name for e in more.edges if e.state in TROUBLE - {MISSING}} == set()
+
+
+# ---------------------------------------------------------------- places
+
+
+def scenes() -> Iterable[Scene]:
+    for layout in drawn.LAYOUTS:
+        plan = drawn.nav2(layout)
+        yield drawn.scene(plan, drawn.healthy(plan))
+    plan = drawn.nav2()
+    yield drawn.scene(plan, drawn.spoiled(plan))
+    yield drawn.scene(*drawn.nasty(plan))
+    yield drawn.scene(swarm(), drawn.healthy(swarm()))
+
+
+def test_nothing_overlaps_and_everything_has_a_place() -> None:
+    for scene in scenes():
+        for one in scene.groups:
+            for part in (one, plain(one), rest(one)):
+                place = lay_out(part)
+                assert {name.name for name, _ in place.names} == {n.name for n in part.names}
+                both = {node.name for node, _ in (*place.left, *place.right)}
+                assert both == {node.name for node in part.nodes}
+                for column, gap in ((place.left, NODE_ROW), (place.right, NODE_ROW)):
+                    assert_apart([y for _, y in column], gap)
+                assert_apart([y for _, y in place.names], ROW)
+                every = [y for column in place[:3] for _, y in column]
+                assert all(0 < y < place.height for y in every)
+
+
+def assert_apart(places: list[float], gap: float) -> None:
+    order = sorted(places)
+    assert all(b - a >= gap - 0.01 for a, b in itertools.pairwise(order))
+
+
+def test_what_is_wrong_stands_on_top() -> None:
+    plan = drawn.nav2()
+    scene = drawn.scene(plan, drawn.spoiled(plan))
+    order = [name for name, _ in lay_out(plain(group(scene, "robot1"))).names]
+    assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/scan"]
+
+
+def test_the_order_leaves_fewer_crossings_than_the_alphabet() -> None:
+    plan = drawn.nav2()
+    one = plain(group(drawn.scene(plan, drawn.healthy(plan)), "robot1"))
+    place = lay_out(one)
+    rows = {(n.kind, n.name): y for n, y in place.names}
+    left = {n.name: y for n, y in place.left}
+    alphabet = {key: at for at, key in enumerate(sorted(rows))}
+    names = {node: at for at, node in enumerate(sorted(left))}
+    ends = [(e.node, (e.kind, e.name)) for e in one.edges if e.role in ("publishes", "serves")]
+    mine = crossings([(left[node], rows[key]) for node, key in ends])
+    plainly = crossings([(names[node], alphabet[key]) for node, key in ends])
+    assert mine < plainly / 4
+
+
+def crossings(edges: list[tuple[float, float]]) -> int:
+    pairs = itertools.combinations(edges, 2)
+    return sum((a[0] - b[0]) * (a[1] - b[1]) < 0 for a, b in pairs)
+
+
+# ---------------------------------------------------------------- tf
+
+
+def test_each_robots_tree_stands_by_itself_below_a_shared_root() -> None:
+    plan = drawn.nav2("L2")
+    trees = drawn.scene(plan, drawn.healthy(plan)).outlines
+    assert [(tree.topic, tree.robot, tree.rows[0].frame) for tree in trees] == [
+        ("/tf", "robot1", "map"),
+        ("/tf", "robot2", "map"),
+    ]
+    assert {row.robot for row in trees[1].rows[1:]} == {"robot2"}
+
+
+def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
+    plan = drawn.nav2("L1")
+    trees = drawn.scene(plan, drawn.healthy(plan)).outlines
+    assert [tree.topic for tree in trees] == ["/robot1/tf", "/robot2/tf"]
+    assert {row.robot for row in trees[0].rows} == {"robot1"}
+    assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
+
+
+def with_frames(plan: Expectation, *more: Frame) -> Scene:
+    graph = drawn.healthy(plan)
+    return drawn.scene(plan, graph._replace(frames=(*graph.frames, *more)))
+
+
+def test_a_frame_with_two_parents_is_red_where_it_hangs() -> None:
+    scene = with_frames(drawn.nav2(), Frame("imu_link/robot1", "map", "/tf", False, ()))
+    (first, second) = (
+        row for tree in scene.outlines for row in tree.rows if row.frame == "imu_link/robot1"
+    )
+    assert (first.state, first.words) == (CLASH, ("two parents",))
+    assert second.again and not first.again
+    red = [row.frame for tree in scene.outlines for row in tree.rows if row.state == CLASH]
+    assert set(red) == {"imu_link/robot1"}
+
+
+def test_bare_frames_are_red_on_one_robots_topic_only() -> None:
+    scene = with_frames(drawn.nav2("L1"), Frame("imu_link", "map", "/robot1/tf", False, ()))
+    red = {t.topic for t in scene.outlines for row in t.rows if row.state == CLASH}
+    assert red == {"/robot1/tf"}
+
+
+def test_a_declared_frame_that_was_not_heard() -> None:
+    plan = drawn.nav2()
+    graph = drawn.healthy(plan)
+    last = plan.robots[1].frames[-1]
+    silent = graph._replace(frames=tuple(f for f in graph.frames if f.child != last))
+    unheard = drawn.scene(plan, silent).outlines[-1]
+    assert (unheard.heard, unheard.robot) == (False, "robot2")
+    assert [(row.frame, row.state) for row in unheard.rows] == [(last, MISSING)]
+
+
+def test_without_any_tf_no_frame_is_called_missing() -> None:
+    plan = drawn.nav2()
+    scene = drawn.scene(plan, drawn.healthy(plan)._replace(frames=()))
+    assert scene.outlines == ()
+    assert "No tf was heard" in section(page(scene), "tf").text_content()
+
+
+def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
+    ring = [Frame(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
+    chain = [Frame(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
+    scene = with_frames(drawn.nav2(), *ring, *chain)
+    rows = {row.frame: row for tree in scene.outlines for row in tree.rows}
+    assert rows["c3000"].depth == 3000
+    assert {"r0", "r1", "r2"} <= set(rows)
+    assert to_html(scene)
+
+
+# ---------------------------------------------------------------- the page
+
+
+def test_the_page_is_one_file_that_asks_for_nothing() -> None:
+    plan = drawn.nav2()
+    text = to_html(drawn.scene(plan, drawn.spoiled(plan))).decode()
+    tree = html.document_fromstring(text)
+    for element in tree.iter():
+        for name, value in element.attrib.items():
+            assert name != "src" and not name.startswith("on"), (element.tag, name)
+            assert name not in ("style", "xlink:href"), (element.tag, name)
+            assert name != "href" or value.startswith("#"), value
+    assert "http:" not in text and "https:" not in text and "@import" not in text
+    assert set(re.findall(r"url\((.)", text)) <= {"#"}
+
+
+def test_the_policy_lets_in_the_pages_own_script_and_looks_alone() -> None:
+    tree = page(drawn.scene(swarm(), drawn.healthy(swarm())))
+    (policy,) = (it for it in tree.iter("meta") if it.get("http-equiv"))
+    rules = dict(rule.split(None, 1) for rule in policy.get("content").split("; "))
+    for rule in ("default-src", "base-uri", "form-action"):
+        assert rules.pop(rule) == "'none'"
+    assert set(rules) == {"script-src", "style-src"}
+    for tag, rule in (("script", "script-src"), ("style", "style-src")):
+        (element,) = pick(tree, tag)
+        digest = base64.b64encode(hashlib.sha256(element.text.encode()).digest()).decode()
+        assert rules[rule] == f"'sha256-{digest}'"
+    assert len(pick(tree, "script")[0].text.splitlines()) < 100
+
+
+def test_all_links_and_hooks_lead_somewhere() -> None:
+    for scene in scenes():
+        tree = page(scene)
+        ids = [element.get("id") for element in tree.iter() if element.get("id")]
+        assert [id_ for id_, times in Counter(ids).items() if times > 1] == []
+        links = {a.get("href")[1:] for a in tree.iter("a")}
+        assert links <= set(ids)
+        hooks = {element.get("data-id") for element in tree.iter()}
+        hits = {hit for row in tree.iter("tr") for hit in row.get("data-hits", "").split()}
+        ends = {end for path in tree.iter("path") for end in path.get("data-e", "").split()}
+        assert hits <= hooks and ends <= hooks
+
+
+def test_every_finding_is_told_and_leads_to_what_it_is_about() -> None:
+    plan = drawn.nav2()
+    scene = drawn.scene(plan, drawn.spoiled(plan))
+    tree = page(scene)
+    rows = [row for row in tree.iter("tr") if row.get("data-level")]
+    assert len(rows) == len(scene.findings) > 5
+    by_code = {}
+    for row, finding in zip(rows, scene.findings, strict=True):
+        text = row.text_content()
+        assert all(part in text for part in finding[:6])
+        target = section(tree, pick(row, "a")[0].get("href")[1:])
+        by_code[finding.code] = pick(target, "text")[0].text_content()
+    assert by_code["MG101"].endswith("/bt_navigator")
+    assert by_code["MG103"] == "/cmd_vel"
+    assert by_code["MG104"].endswith("/scan")
+    assert by_code["MG201"] == "lidar_link/robot1"
+
+
+def test_a_small_fleet_is_open_and_the_healthy_of_a_large_one_are_folded() -> None:
+    small = page(drawn.scene(drawn.fleet(2, 4), drawn.healthy(drawn.fleet(2, 4))))
+    assert {one.get("open") for one in section(small, "graph").iter("details")} == {""}
+    plan = swarm()
+    graph = drawn.moved(drawn.healthy(plan), "/robot7/topic1", "/topic1")
+    tree = page(drawn.scene(plan, graph))
+    assert unfolded(tree) == ["g6", "shared"]
+    (away,) = (it for it in tree.iter("b") if it.text == "29 more robots as planned")
+    assert len(list(away.getparent().getparent().iter("details"))) == 30
+
+
+def unfolded(tree: html.HtmlElement) -> list[str]:
+    """The ids of the groups that are open."""
+    there = section(tree, "graph").iter("details")
+    return [one.get("id") for one in there if one.get("open") is not None]
+
+
+def test_a_hundred_robots_are_a_small_page_soon() -> None:
+    plan = drawn.fleet(100, 20)
+    graph = drawn.healthy(plan)
+    for at in (3, 50, 99):
+        graph = drawn.moved(graph, f"/robot{at}/topic2", "/topic2")
+    start = time.perf_counter()
+    scene = drawn.scene(plan, graph)
+    data = to_html(scene)
+    to_mermaid(scene)
+    assert time.perf_counter() - start < 5
+    assert len(data) < 5_000_000
+    assert unfolded(page(scene)) == ["g2", "g49", "g98", "shared"]
+
+
+def test_a_plan_without_robots_is_drawn() -> None:
+    empty = Expectation("L2", (), (), (), (), ())
+    scene = drawn.scene(empty, Snapshot((), (), (), drawn.environment()))
+    assert pick(page(scene), "svg", "overview")
+    assert to_mermaid(scene).startswith(b"flowchart LR\n")
+
+
+def test_the_environment_is_told() -> None:
+    plan = drawn.nav2()
+    around = drawn.environment(Caveat("range-word", False, "a word that is no range"))
+    around = around._replace(static_peers=("10.0.0.1", "10.0.0.2"), discovery_server="h:11811")
+    scene = drawn.scene(plan, drawn.healthy(plan)._replace(environment=around))
+    text = section(page(scene), "environment").text_content()
+    for word in ("SUBNET", "10.0.0.1 10.0.0.2", "rmw_fastrtps_cpp", "h:11811", "3.5 s", "no range"):
+        assert word in text
+
+
+# ---------------------------------------------------------------- the same bytes
+
+
+def all_pictures(scene: Scene) -> bytes:
+    return to_html(scene) + to_mermaid(scene) + to_dot(scene)
+
+
+def test_the_order_of_a_snapshot_does_not_show() -> None:
+    plan = drawn.nav2()
+    graph = drawn.spoiled(plan)
+    found = drawn.scene(plan, graph).findings
+    mixed = random.Random(7)
+    shuffled = graph._replace(
+        nodes=tuple(mixed.sample(graph.nodes, len(graph.nodes))),
+        endpoints=tuple(mixed.sample(graph.endpoints, len(graph.endpoints))),
+        frames=tuple(mixed.sample(graph.frames, len(graph.frames))),
+    )
+    assert all_pictures(make_scene(plan, shuffled, found)) == all_pictures(
+        make_scene(plan, graph, found)
+    )
+
+
+def test_every_process_draws_the_same_bytes(tmp_path: Path) -> None:
+    plan = drawn.nav2()
+    (tmp_path / "plan.yaml").write_text(to_yaml(plan))
+    (tmp_path / "graph.json").write_bytes(to_json(drawn.spoiled(plan)))
+    command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check", "plan.yaml"]
+    command += ["--snapshot", "graph.json"]
+    results = []
+    for seed in ("1", "2"):
+        names = [f"{kind}{seed}" for kind in ("report", "mermaid", "dot")]
+        asked = [word for name in names for word in (f"--{name[:-1]}", name)]
+        env = {**os.environ, "PYTHONHASHSEED": seed}
+        done = subprocess.run(
+            command + asked, cwd=tmp_path, env=env, capture_output=True, check=False
+        )
+        assert done.returncode == 1, done.stderr
+        results.append([(tmp_path / name).read_bytes() for name in names])
+    assert results[0] == results[1]
+
+
+# ---------------------------------------------------------------- names that bite
+
+
+def assert_harmless(scene: Scene) -> None:
+    tree = page(scene)
+    assert {element.tag for element in tree.iter()} <= TAGS
+    assert len(pick(tree, "script")) == len(pick(tree, "style")) == 1
+    names = {name for element in tree.iter() for name in element.attrib}
+    assert not any(name.startswith("on") for name in names)
+    assert_mermaid(to_mermaid(scene).decode())
+    assert_dot(to_dot(scene).decode())
+
+
+def test_names_from_the_graph_do_not_break_out() -> None:
+    scene = drawn.scene(*drawn.nasty(drawn.nav2()))
+    assert_harmless(scene)
+    text = page(scene).text_content()
+    for name in drawn.NASTY:
+        assert visible(name) in text
+
+
+@settings(max_examples=40)
+@given(st.lists(st.text(max_size=20), min_size=6, max_size=6))
+def test_any_text_may_be_a_name(words: list[str]) -> None:
+    node, topic, child, parent, robot, type_ = words
+    plan = drawn.fleet(2, 1)
+    first = plan.robots[0]._replace(name=robot or "r")
+    graph = drawn.with_end(drawn.healthy(plan), f"/{node}", f"/{topic}")
+    ends = tuple(e._replace(type=type_) if e.name == f"/{topic}" else e for e in graph.endpoints)
+    frame = Frame(child, parent, f"/{topic}", True, (node,))
+    odd = graph._replace(endpoints=ends, frames=(*graph.frames, frame))
+    assert_harmless(drawn.scene(plan._replace(robots=(first, *plan.robots[1:])), odd))
+
+
+@given(st.text(max_size=60), st.integers(4, 40))
+def test_a_clipped_text_fits_and_keeps_its_ends(text: str, room: int) -> None:
+    shown = clipped(visible(text), room)
+    assert columns(shown) <= room
+    assert shown == visible(text) or "…" in shown
+    assert shown.isprintable()
+
+
+def test_a_name_is_clipped_in_its_middle() -> None:
+    assert clipped("/robot1/a_very_long_name/costmap", 20) == "/robot1/a…me/costmap"
+    assert visible("a\nb\x1b\u202e\ud800é機") == "a\\nb\\x1b\\u202e\\ud800é機"
+
+
+# ---------------------------------------------------------------- Mermaid
+
+LABEL = r'"(?:[\w/ .,:()~-]|\#\d+;|[^\x00-\x7f])*"'
+MERMAID = re.compile(
+    rf"""flowchart\ LR
+    |\ \ %%\ [\w\ ]+
+    |\ \ subgraph\ g\d+\[{LABEL}\]
+    |\ \ end
+    |\ \ \ \ n\d+\[{LABEL}\]:::[a-z]+
+    |\ \ \ \ t\d+(?:\(\[{LABEL}\]\)|\[\[{LABEL}\]\]|{{{{{LABEL}}}}}):::[a-z]+
+    |\ \ c\d+\[{LABEL}\]:::ok
+    |\ \ [nt]\d+\ (?:-->|-\.->)\ [nt]\d+
+    |\ \ classDef\ [a-z]+\ [\w:\#,\ -]+
+    |\ \ linkStyle\ [\d,]+\ [\w:\#,-]+""",
+    re.VERBOSE,
+)
+
+
+def assert_mermaid(text: str) -> None:
+    """Every line is one of the few forms used, ends of arrows are declared, limits are kept."""
+    lines = text.splitlines()
+    assert [line for line in lines if not MERMAID.fullmatch(line)] == []
+    ids = re.findall(r"^ +([ntcg]\d+)[\[({]", text, re.MULTILINE)
+    ids += re.findall(r"subgraph (g\d+)", text)
+    assert len(ids) == len(set(ids))
+    arrows = re.findall(r"^  ([nt]\d+) (?:-->|-\.->) ([nt]\d+)$", text, re.MULTILINE)
+    assert {end for arrow in arrows for end in arrow} <= set(ids)
+    classes = set(re.findall(r"classDef ([a-z]+)", text))
+    assert set(re.findall(r":::([a-z]+)", text)) <= classes
+    assert sum(line.startswith("  subgraph") for line in lines) == lines.count("  end")
+    styled = [int(at) for own in re.findall(r"linkStyle ([\d,]+)", text) for at in own.split(",")]
+    assert len(styled) == len(set(styled)) and all(at < len(arrows) for at in styled)
+    assert len(arrows) <= MOST_EDGES and len(text) <= MOST_LETTERS
+
+
+def test_mermaid_has_a_subgraph_a_robot_and_the_leak_in_red() -> None:
+    plan = drawn.nav2()
+    text = to_mermaid(drawn.scene(plan, drawn.moved(drawn.healthy(plan), *LEAKY))).decode()
+    assert_mermaid(text)
+    titles = re.findall(r'subgraph g\d+\["(.*)"\]', text)
+    assert titles == ["robot1", "robot2", "shared and others"]
+    assert re.search(r't\d+\(\["/cmd_vel"\]\):::leak', text)
+    assert re.search(r'n\d+\["/robot1/collision_monitor"\]:::leak', text)
+    (red,) = re.findall(r"linkStyle ([\d,]+) stroke:#c4261d", text)
+    arrows = re.findall(r"^  ([nt]\d+) (?:-->|-\.->) ([nt]\d+)$", text, re.MULTILINE)
+    (leak,) = re.findall(r'(t\d+)\(\["/cmd_vel"\]', text)
+    assert [arrows[int(at)][1] for at in red.split(",")] == [leak]
+
+
+@pytest.mark.parametrize(
+    ("robots", "leaks", "note"),
+    [
+        pytest.param(2, 0, "without what every node has", id="all"),
+        pytest.param(40, 1, "robots as planned are empty boxes", id="folded"),
+        pytest.param(100, 40, "only what is missing or wrong", id="trouble"),
+        pytest.param(100, 100, "only 300 of all that is wrong", id="cut"),
+    ],
+)
+def test_mermaid_shows_as_much_as_it_bears(robots: int, leaks: int, note: str) -> None:
+    plan = drawn.fleet(robots, 20)
+    graph = drawn.healthy(plan)
+    last = 2 if leaks < robots else 20
+    leaked = {f"/robot{r}/topic{t}" for r in range(1, leaks + 1) for t in range(last)}
+    ends = (
+        e._replace(name=f"/{e.name.rpartition('/')[2]}") if e.name in leaked else e
+        for e in graph.endpoints
+    )
+    text = to_mermaid(drawn.scene(plan, graph._replace(endpoints=tuple(ends)))).decode()
+    assert_mermaid(text)
+    assert text.splitlines()[1] == f"  %% {note}"
+    assert ("leak" in re.findall(r":::([a-z]+)", text)) == (leaks > 0)
+
+
+def test_the_flowchart_on_the_docs_page_is_a_real_one() -> None:
+    plan = drawn.fleet(2, 2)
+    graph = drawn.moved(drawn.healthy(plan), "/robot1/topic1", "/topic1", "driver")
+    text = to_mermaid(drawn.scene(plan, graph)).decode()
+    shown = re.findall(r"```mermaid\n(.*?)```", DOCS.read_text(), re.DOTALL)
+    assert shown == [text.replace("topic0", "odom").replace("topic1", "cmd_vel")]
+
+
+# ---------------------------------------------------------------- Graphviz
+
+DOT_TOKEN = re.compile(r'"(?:[^"\\\n]|\\["\\])*"|//[^\n]*|->|[\w.]+|[{}\[\];,=]|\s+')
+
+
+def assert_dot(text: str) -> None:
+    """It is all tokens of the language, and what is opened is closed."""
+    tokens = DOT_TOKEN.findall(text)
+    assert "".join(tokens) == text
+    for start, end in (("{", "}"), ("[", "]")):
+        assert tokens.count(start) == tokens.count(end)
+    words = [token for token in tokens if not token.isspace()]
+    ids = {word for word in words if re.fullmatch(r"[ntc]\d+", word)}
+    declared = set(re.findall(r"^ +([ntc]\d+) \[label=", text, re.MULTILINE))
+    assert ids == declared
+    # An entity would be read as the letter it stands for.
+    assert re.findall(r"&(?!amp;)", text) == []
+
+
+def test_dot_has_a_cluster_a_robot_and_what_is_missing_dashed() -> None:
+    plan = drawn.nav2()
+    text = to_dot(drawn.scene(plan, drawn.spoiled(plan))).decode()
+    assert_dot(text)
+    assert re.findall(r"^    label=(.*);$", text, re.MULTILINE) == [
+        '"robot1"',
+        '"robot2"',
+        '"shared and others"',
+    ]
+    (node,) = re.findall(r'^    n\d+ \[label="/robot2/bt_navigator".*$', text, re.MULTILINE)
+    assert "filled,dashed" in node
+    assert 'color="#c4261d", style=solid' in text
+
+
+@pytest.mark.skipif(not shutil.which("dot"), reason="no Graphviz here: apt install graphviz")
+@pytest.mark.parametrize("case", ["healthy", "spoiled", "nasty", "swarm"])
+def test_graphviz_draws_it(case: str) -> None:
+    plan = drawn.nav2()
+    graph = drawn.spoiled(plan) if case == "spoiled" else drawn.healthy(plan)
+    if case == "nasty":
+        plan, graph = drawn.nasty(plan)
+    elif case == "swarm":
+        plan, graph = swarm(), drawn.healthy(swarm())
+    text = to_dot(drawn.scene(plan, graph))
+    done = subprocess.run(
+        ["dot", "-Tsvg"], input=text, capture_output=True, timeout=60, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    titles = re.findall(rb"<title>([nt]\d+|cluster_\d+)</title>", done.stdout)
+    assert len(titles) == len(re.findall(rb"^ +(?:[nt]\d+ \[|subgraph)", text, re.MULTILINE)) > 40
+
+
+# ---------------------------------------------------------------- the command
+
+
+@pytest.fixture
+def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a plan and a spoiled graph, which the command runs in."""
+    plan = drawn.nav2()
+    (tmp_path / "plan.yaml").write_text(to_yaml(plan))
+    (tmp_path / "graph.json").write_bytes(to_json(drawn.spoiled(plan)))
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def check(*more: str) -> int:
+    return multibot.main(["check", "plan.yaml", "--snapshot", "graph.json", *more])
+
+
+def test_the_command_writes_what_is_asked_for(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code = check()
+    printed = capsys.readouterr().out
+    assert sorted(path.name for path in files.iterdir()) == ["graph.json", "plan.yaml"]
+    assert check("--report", "r.html", "--mermaid", "m.mmd", "--dot", "d.dot") == code == 1
+    assert capsys.readouterr().out == printed
+    scene = drawn.scene(drawn.nav2(), drawn.spoiled(drawn.nav2()))
+    assert (files / "r.html").read_bytes() == to_html(scene)
+    assert (files / "m.mmd").read_bytes() == to_mermaid(scene)
+    assert (files / "d.dot").read_bytes() == to_dot(scene)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        (("--report", "plan.yaml"), "plan.yaml is a file that is read; choose another one for"),
+        (("--dot", "./graph.json"), "./graph.json is a file that is read"),
+        (("--mermaid", "-"), "--mermaid '-' is no file; standard output has the findings"),
+        (("--report", ""), "--report '' is no file"),
+        (("--report", "."), ".: cannot be written: it is a folder, name a file in it"),
+        (("--dot", "no/d.dot"), "no/d.dot: cannot be written: the folder no does not exist"),
+        (("--dot", "plan.yaml/d"), "plan.yaml/d: cannot be written: plan.yaml is a file"),
+        (("--report", "x", "--dot", "x"), "x: two results would go to this one file"),
+    ],
+)
+def test_all_pictures_or_none(
+    files: Path, capsys: pytest.CaptureFixture[str], wrong: tuple[str, ...], said: str
+) -> None:
+    before = {path.name: path.read_bytes() for path in files.iterdir()}
+    assert check("--mermaid", "m.mmd", *wrong) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"multibot: {said}")
+    assert {path.name: path.read_bytes() for path in files.iterdir()} == before
+
+
+def test_a_snapshot_of_names_that_bite_goes_through_the_command(
+    files: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    _, graph = drawn.nasty(drawn.nav2())
+    text = to_json(graph).replace(b"\\ud800", b"?")
+    (files / "graph.json").write_bytes(text)
+    assert check("--report", "r.html", "--mermaid", "m.mmd", "--dot", "d.dot") in (1, 3)
+    capsys.readouterr()
+    tree = html.document_fromstring((files / "r.html").read_text())
+    assert {element.tag for element in tree.iter()} <= TAGS

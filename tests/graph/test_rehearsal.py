@@ -1,0 +1,209 @@
+"""What is played in a rehearsal: the names of the code, the rules of the table, the transforms."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from robots import FIXTURES
+
+from multibot_rewrite.cli import rehearse
+from multibot_rewrite.graph.expectation import expect
+from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.rehearsal import (
+    PROCESSES,
+    Actor,
+    Part,
+    action_parts,
+    as_played,
+    cast,
+    dealt,
+    from_order,
+    stand_in,
+    to_order,
+)
+from multibot_rewrite.graph.snapshot import from_json
+from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
+from multibot_rewrite.library import rewrite
+from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.plugins import plugin_nodes
+from multibot_rewrite.remap.records import (
+    ACTION,
+    CALLS,
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+    NodeFacts,
+    NodeTable,
+    Rule,
+    Table,
+)
+from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.steps.collect import Inventory, collect
+from multibot_rewrite.steps.document import read_document
+
+ROVER = Path(__file__).parents[2] / "fixtures" / "robots" / "rover.urdf"
+LASER = "sensor_msgs/msg/LaserScan"
+NODE = NodeFacts(
+    "drive",
+    "drive",
+    (
+        Endpoint(TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist"),
+        Endpoint(TOPIC, PUBLISHES, "scan"),
+        Endpoint(TOPIC, PUBLISHES, "debug", "std_msgs/msg/String", when="debug"),
+        Endpoint(ACTION, SERVES, "go", "nav2_msgs/action/Spin"),
+        Endpoint(TOPIC, SUBSCRIBES, "/tf", "tf2_msgs/msg/TFMessage", helper=True),
+    ),
+)
+MAPPER = NodeFacts("mapper", "mapper", (Endpoint(TOPIC, SUBSCRIBES, "scan", LASER),))
+
+
+def table(layout: str = "L2") -> Table:
+    return build_table(("robot1", "robot2"), (NODE, MAPPER), make_naming(layout))
+
+
+def drive(layout: str = "L2", rules: bool = True) -> Actor:
+    actors = [actor for robot, actor in cast(table(layout), {}, rules) if robot == "robot2"]
+    return next(actor for actor in actors if actor.name == "drive")
+
+
+def test_a_node_asks_as_its_code_does_and_rcl_gets_the_rules() -> None:
+    actor = drive()
+    assert actor.parts[0] == Part(TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist", False)
+    assert actor.arguments == ("--ros-args", "-r", "__ns:=/robot2", "-r", "/cmd_vel:=cmd_vel")
+    assert drive("L4").arguments[:3] == ("--ros-args", "-r", "__node:=drive_robot2")
+
+
+def test_without_rules_a_node_keeps_its_place_only() -> None:
+    assert drive(rules=False).arguments == ("--ros-args", "-r", "__ns:=/robot2")
+
+
+def test_what_hangs_on_a_condition_is_not_played() -> None:
+    assert "debug" not in {part.name for part in drive().parts}
+
+
+def test_a_type_nobody_told_is_that_of_the_other_end() -> None:
+    assert Part(TOPIC, PUBLISHES, "scan", LASER, False) in drive().parts
+
+
+def test_what_a_helper_asks_for_is_marked() -> None:
+    assert [part.name for part in drive().parts if part.helper] == ["/tf"]
+
+
+def test_a_node_of_the_plugins_and_of_the_stack_is_one() -> None:
+    one = NodeTable("r", "manager", "/r", "manager", (Rule("r", "manager", "a", "b", "", ""),))
+    two = one._replace(rules=(Rule("r", "manager", "c", "d", "", ""),))
+    ((_, actor),) = cast(Table("both", (one, two), (), ()), {})
+    assert actor.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "a:=b", "-r", "c:=d")
+
+
+def test_robots_share_processes_when_they_are_many() -> None:
+    some = [(f"robot{at}", Actor(f"node{at}", (), (), ())) for at in range(3 * PROCESSES + 1)]
+    hands = dealt(some)
+    assert len(hands) == PROCESSES
+    assert sorted(len(hand) for hand in hands) == [3] * (PROCESSES - 1) + [4]
+    assert [len(hand) for hand in dealt(some[:3])] == [1, 1, 1]
+
+
+def test_an_order_survives_the_pipe() -> None:
+    import json
+
+    actor = drive()._replace(edges=(Edge("odom", "base", False),))
+    assert from_order(json.loads(json.dumps(to_order([actor])))) == [actor]
+
+
+@pytest.mark.parametrize(("role", "parts"), [(SERVES, PUBLISHES), (CALLS, SUBSCRIBES)])
+def test_an_action_without_its_type_is_three_services_and_two_topics(role: str, parts: str) -> None:
+    made = list(action_parts(Part(ACTION, role, "go", "x/action/Go", False)))
+    assert [(part.kind, part.role, part.name) for part in made] == [
+        (SERVICE, role, "go/_action/send_goal"),
+        (SERVICE, role, "go/_action/cancel_goal"),
+        (SERVICE, role, "go/_action/get_result"),
+        (TOPIC, parts, "go/_action/feedback"),
+        (TOPIC, parts, "go/_action/status"),
+    ]
+
+
+@pytest.mark.parametrize("layout", ["L2", "L4"])
+def test_the_plan_is_told_what_stands_in(layout: str) -> None:
+    plan = expect(table(layout), make_naming(layout), {})
+    replaced = {"nav2_msgs/action/Spin": "", LASER: stand_in(TOPIC, LASER)}
+    played = as_played(plan, replaced).endpoints
+    assert {it.type for it in played if "mapper" in it.node} == {"std_msgs/msg/Empty"}
+    there = [it for it in played if "_action" in it.name and "robot2" in it.node]
+    action = "/robot2/go" if layout == "L2" else "/go/robot2"
+    assert [it.name for it in there] == [
+        f"{action}/_action/{part}"
+        for part in ("send_goal", "cancel_goal", "get_result", "feedback", "status")
+    ]
+    assert not [it for it in played if it.kind == ACTION]
+
+
+def rewritten(layout: str) -> tuple[Inventory, Naming]:
+    text = rewrite(str(ROVER), "robot1", layout=layout).text
+    return collect(read_document(text.encode(), "rover.urdf"), builtin_tree()), make_naming(layout)
+
+
+def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
+    inventory, naming = rewritten(layout)
+    nodes = [node for stack in stacks for node in stack_of(built_in(), stack)]
+    plugins = [facts for facts, _ in plugin_nodes(inventory, "robot1")]
+    found = edges_of("robot1", inventory, nodes, plugins, naming)
+    return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}
+
+
+@pytest.mark.parametrize(("layout", "end"), [("L1", ""), ("L2", "/robot1"), ("L4", "/robot1")])
+def test_description_odometry_and_map_are_one_tree(layout: str, end: str) -> None:
+    edges = sent(layout, "robot_state", "localization")
+    assert edges["amcl"] == [Edge("map", f"odom{end}", False)]
+    assert edges["diff_drive"] == [Edge(f"odom{end}", f"base_footprint{end}", False)]
+    tree = edges["robot_state_publisher"]
+    assert tree[0] == Edge(f"base_footprint{end}", f"base_link{end}", True)
+    assert Edge(f"base_link{end}", f"left_wheel{end}", False) in tree
+    parents = {edge.child: edge.parent for edges in edges.values() for edge in edges}
+    assert {parent for parent in parents.values() if parent not in parents} == {"map"}
+
+
+def test_a_base_that_the_description_calls_otherwise_is_its_root() -> None:
+    assert sent("L2", "robot_localization")["ekf_filter_node"] == [
+        Edge("odom/robot1", "base_footprint/robot1", False)
+    ]
+
+
+def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
+    inventory, naming = rewritten("L2")
+    frames = frames_of(inventory, [Edge("map", "odom/robot1", False)], naming)
+    assert "odom/robot1" in frames
+    assert "camera_link/robot1" in frames
+    assert "map" not in frames
+
+
+def test_odometry_that_nobody_is_known_to_send_is_sent_and_told() -> None:
+    naming = make_naming("L2")
+    tree = [Edge("base", "arm", True)]
+    edges = {("r1", "robot_state_publisher"): tree, ("r1", "amcl"): [Edge("map", "odom", False)]}
+    filled, told = with_odometry(edges, "r1", naming)
+    assert told == "odom -> base"
+    assert filled["r1", "robot_state_publisher"] == [*tree, Edge("odom", "base", False)]
+    assert with_odometry(filled, "r1", naming) == (filled, "")
+    assert with_odometry({("r1", "robot_state_publisher"): tree}, "r1", naming)[1] == ""
+    assert with_odometry(edges, "r2", naming) == (edges, "")
+    standing = {**edges, ("r1", "robot_state_publisher"): [Edge("world", "base", True)]}
+    assert with_odometry(standing, "r1", naming) == (standing, "")
+
+
+@pytest.mark.parametrize("seen", [0, 1])
+def test_a_look_that_sees_nothing_is_taken_again(
+    seen: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    graphs = FIXTURES / "graphs"
+    full = from_json((graphs / "healthy.json").read_bytes(), "healthy")
+    looks = [full] if seen else [full, full._replace(nodes=())]
+    monkeypatch.setattr(rehearse, "observe", lambda *_: looks.pop())
+    assert rehearse._look(Request(1.0), {}).nodes == full.nodes

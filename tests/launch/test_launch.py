@@ -1,0 +1,611 @@
+"""``multibot_rewrite.launch`` in launch, or in a stand-in for it where there is none.
+
+What needs the real one (processes, the YAML frontend, the example package) is skipped without it.
+"""
+
+from __future__ import annotations
+
+import gc
+import importlib
+import inspect
+import io
+import json
+import os
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from types import MappingProxyType, ModuleType
+from typing import Any
+
+import launch_stand_in
+import pytest
+import yaml
+from robots import FIXTURES, REPO
+
+from multibot_rewrite import InputError, UsageError, launch, load_fleet
+
+REAL = not launch.missing()
+NO_LAUNCH = f"not tried in the real launch, which is not here: {launch.missing()}"
+in_launch = pytest.mark.skipif(not REAL, reason=NO_LAUNCH)
+CHILD = Path(__file__).parents[1].joinpath("launch_child.py")
+EXAMPLE = REPO / "examples" / "multibot_example"
+FLEET = """\
+layout: frames-per-robot
+affix: prefix
+stack: [nav2, robot_state]
+robots:
+  - {name: robot1, description: rover.urdf, pose: {x: 1.0, y: 0.5, yaw: 1.5}}
+  - {name: robot2, description: rover.urdf, model: second}
+companions:
+  params: params.yaml
+  rviz: one.rviz
+"""
+PARAMS = 'amcl:\n  ros__parameters: {base_frame_id: "base_footprint", flag: "n", many: 1e-9}\n'
+RVIZ = EXAMPLE / "config" / "rover.rviz"
+
+
+class Started:
+    """Stands for launch_ros's Node: keeps what it is given."""
+
+    def __init__(self, **options: Any) -> None:
+        self.options = options
+
+    @staticmethod
+    def parse(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
+        options = launch.action_options(entity, parser)
+        words = {"pkg": "package", "exec": "executable", "name": "name", "namespace": "namespace"}
+        for attribute, option in words.items():
+            text = entity.get_attr(attribute, optional=True)
+            if text is not None:
+                options[option] = parser.parse_substitution(text)
+        return Started, options
+
+
+@pytest.fixture
+def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+    """What XML can say, in launch or in the stand-in."""
+    monkeypatch.setattr(launch, "node_class", lambda: Started)
+    if not REAL:
+        launch_stand_in.install(monkeypatch)
+        monkeypatch.delitem(sys.modules, "multibot_rewrite.launch.frontend", raising=False)
+    launch.substitution.cache_clear()
+    yield importlib.import_module("multibot_rewrite.launch.frontend")
+    launch.substitution.cache_clear()
+
+
+@pytest.fixture
+def context(frontend: Any) -> Any:
+    return importlib.import_module("launch").LaunchContext()
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> str:
+    """The path of a fleet file."""
+    (tmp_path / "rover.urdf").write_bytes((FIXTURES / "robots" / "rover.urdf").read_bytes())
+    (tmp_path / "params.yaml").write_text(PARAMS)
+    (tmp_path / "one.rviz").write_bytes(RVIZ.read_bytes())
+    (tmp_path / "fleet.yaml").write_text(FLEET)
+    return str(tmp_path / "fleet.yaml")
+
+
+def run(context: Any, action: Any) -> list[Started]:
+    """What an action starts, and what those start that it makes."""
+    if isinstance(action, Started):
+        return [action]
+    return [it for made in action.visit(context) or () for it in run(context, made)]
+
+
+def read(text: str) -> list[Any]:
+    """The actions of an XML launch file."""
+    whole = f"<launch>{text}</launch>"
+    if not REAL:
+        parser: Any = launch_stand_in.Parser()
+        children = launch_stand_in.Entity(ET.fromstring(whole)).children
+        return [parser.parse_action(it) for it in children]
+    from launch.frontend import Parser
+
+    entity, parser = Parser.load(io.StringIO(whole))
+    return list(parser.parse_description(entity).entities)
+
+
+def of(name: str) -> Any:
+    """A launch configuration, known when the launch file runs."""
+    return importlib.import_module("launch.substitutions").LaunchConfiguration(name)
+
+
+def shut_down(context: Any) -> None:
+    handlers = list(context._event_handlers) if REAL else context.handlers
+    event = importlib.import_module("launch.events").Shutdown() if REAL else None
+    for handler in handlers:
+        handler.handle(event, context)
+
+
+def performed(context: Any, options: dict[str, Any]) -> dict[str, Any]:
+    return {key: launch.perform(context, value) for key, value in options.items()}
+
+
+def test_importing_it_imports_no_launch() -> None:
+    code = "import sys, multibot_rewrite.launch.frontend as f; print(*sys.modules)"
+    code = code.replace("import sys,", "import sys; sys.modules['launch'] = None; import")
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "launch_ros" not in done.stdout.split()
+    code = "import sys, multibot_rewrite.launch; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"launch", "launch_ros"} & set(done.stdout.split())
+
+
+WORDS = [
+    ("name", "", "robot2"),
+    ("namespace", "", "/robot2"),
+    ("model", "", "second"),
+    ("pose", "x", "0.0"),
+    ("frame", "base_link", "robot2/base_link"),
+    ("frame", "map", "map"),
+    ("joint", "lidar_joint", "robot2_lidar_joint"),
+    ("topic", "/scan", "/robot2/scan"),
+    ("node", "amcl", "/robot2/amcl"),
+    ("srdf", "", ""),
+]
+
+
+@pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
+def test_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
+    context.launch_configurations.update({"which": "robot2", "where": fleet})
+    value = launch.value(word, name, robot=of("which"), fleet=of("where"))
+    assert launch.perform(context, value) == wanted
+
+
+def test_every_word_is_tried() -> None:
+    assert {word for word, _, _ in WORDS} == set(launch.WORDS) - {"description"}
+
+
+def test_a_description(fleet: str, context: Any) -> None:
+    value = launch.description("robot1", fleet)
+    assert launch.perform(context, value) == load_fleet(fleet).robot("robot1").description
+
+
+def test_a_robot_in_its_group(fleet: str, context: Any) -> None:
+    context.launch_configurations.update({"where": fleet})
+    told = []
+
+    def make(robot: Any) -> list[Any]:
+        told.append(robot.name)
+        return [Started(name=launch.value("name")), Started(name=launch.value("frame", "odom"))]
+
+    action = launch.each_robot(of("where"), make)
+    found = []
+    for group in action.visit(context):
+        for it in group.visit(context):
+            if isinstance(it, Started):
+                found.append(launch.perform(context, it.options["name"]))
+            else:
+                it.visit(context)
+    assert told == ["robot1", "robot2"]
+    assert found == ["robot1", "robot1/odom", "robot2", "robot2/odom"]
+    assert set(context.launch_configurations) == {"where"}
+
+
+@pytest.mark.parametrize(
+    ("robots", "wanted"),
+    [
+        ("robot2, ", ["robot2"]),
+        ("robot2,robot1", ["robot2", "robot1"]),
+        (["robot2"], ["robot2"]),
+        ([], ["robot1", "robot2"]),
+        ("", ["robot1", "robot2"]),
+        (None, ["robot2", "robot1"]),
+    ],
+)
+def test_only_some_robots(robots: Any, wanted: list[str], fleet: str, context: Any) -> None:
+    context.launch_configurations.update({"robots": "robot2"})
+    chosen = [of("robots"), ",robot1"] if robots is None else robots
+    made = launch.each_robot(fleet, lambda it: [Started(name=it.name)], robots=chosen)
+    assert [it.options["name"] for it in run(context, made)] == wanted
+
+
+@pytest.mark.parametrize("files", ["params.yaml,more.yaml", ["params.yaml", "more.yaml"]])
+def test_several_files(files: Any, fleet: str, context: Any) -> None:
+    (Path(fleet).with_name("more.yaml")).write_text(PARAMS)
+    Path(fleet).write_text(FLEET.replace("params: params.yaml", "params: [params.yaml, more.yaml]"))
+    (made,) = run(context, launch.node("amcl", files=files, robot="robot2", fleet=fleet))
+    assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
+
+
+def test_a_condition(fleet: str, context: Any) -> None:
+    never = importlib.import_module("launch.conditions").IfCondition("false")
+    always = importlib.import_module("launch.conditions").IfCondition("true")
+    for condition, count in ((never, 0), (always, 2)):
+        made = launch.each_robot(fleet, lambda it: [Started(name=it.name)], condition=condition)
+        assert len(run(context, made)) == count
+        where = {"robot": "robot1", "fleet": fleet, "condition": condition}
+        for one in (launch.node("amcl", **where), launch.spawn("gz", **where)):
+            assert len(run(context, one)) == bool(count)
+
+
+def test_a_node(fleet: str, context: Any) -> None:
+    mine, later = ("scan", "front"), {"use_sim_time": True}
+    action = launch.node(
+        "amcl", files="params.yaml", robot="robot1", fleet=fleet, package="nav2_amcl",
+        executable="amcl", remappings=[mine], parameters=[later],
+    )  # fmt: skip
+    (made,) = run(context, action)
+    robot = load_fleet(fleet).robot("robot1")
+    assert made.options["namespace"] == "/robot1"
+    assert (made.options["name"], made.options["package"]) == ("amcl", "nav2_amcl")
+    assert made.options["remappings"] == [mine, *robot.table.for_node("amcl")]
+    params, start, last = made.options["parameters"]
+    assert last == later
+    assert Path(params).read_text() == robot.text("params.yaml")
+    own = yaml.safe_load(Path(start).read_text())["/robot1/amcl"]["ros__parameters"]
+    assert own == robot.start_parameters("amcl")
+
+
+def test_a_node_with_the_description(fleet: str, context: Any) -> None:
+    where = {"robot": "robot2", "fleet": fleet}
+    (made,) = run(context, launch.node("robot_state_publisher", describe=True, **where))
+    (path,) = made.options["parameters"]
+    held = yaml.safe_load(Path(path).read_text())["/robot2/robot_state_publisher"]
+    wanted = load_fleet(fleet).robot("robot2").description
+    assert held == {"ros__parameters": {"robot_description": wanted}}
+    (bare,) = run(context, launch.node("bt_navigator", **where))
+    assert bare.options["parameters"] == []
+
+
+@pytest.mark.parametrize("odd", ["\x7f", "\x85", "\u2028", "\ufeff", "\U0001f916", 'a "b" \\n'])
+def test_a_description_reads_back_whatever_is_in_it(odd: str, fleet: str, context: Any) -> None:
+    path = Path(fleet).with_name("rover.urdf")
+    text = path.read_text().replace('<robot name="rover">', f'<robot name="rover"><!-- {odd} -->')
+    path.write_text(text)
+    action = launch.node("robot_state_publisher", describe=True, robot="robot1", fleet=fleet)
+    (made,) = run(context, action)
+    data = yaml.safe_load(Path(made.options["parameters"][0]).read_bytes())
+    assert odd in data["/robot1/robot_state_publisher"]["ros__parameters"]["robot_description"]
+
+
+def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
+    Path(fleet).write_text(FLEET.replace("[nav2, robot_state]", "robot_state"))
+    robot = load_fleet(fleet).robot("robot1")
+    (gz,) = run(context, launch.spawn("gz", "robot1", fleet))
+    (classic,) = run(context, launch.spawn("classic", "robot1", fleet))
+    (place,) = run(context, launch.place("robot1", fleet))
+    assert gz.options["arguments"] == robot.spawn_arguments
+    assert gz.options["package"] == "ros_gz_sim"
+    assert classic.options["arguments"] == robot.classic_arguments
+    assert place.options["arguments"] == robot.transform_arguments
+    assert run(context, launch.place("robot2", fleet)) == []
+
+
+def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
+    own = launch.perform(context, launch.params_file("params.yaml", "robot1", fleet))
+    shared = launch.perform(context, launch.rviz_config("one.rviz", fleet=fleet))
+    loaded = load_fleet(fleet)
+    assert Path(own).read_text() == loaded.text("robot1/params.yaml")
+    assert Path(shared).read_text() == loaded.text("one.rviz")
+    folder = Path(own).parents[1]
+    assert folder == Path(shared).parents[1]
+    shut_down(context)
+    assert not folder.exists()
+
+
+def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any) -> None:
+    own = importlib.import_module("launch").LaunchContext()
+    path = Path(launch.perform(own, launch.params_file("params.yaml", "robot1", fleet)))
+    assert path.exists()
+    with pytest.warns(ResourceWarning, match="multibot_launch_"):
+        del own
+        gc.collect()
+    assert not path.parents[1].exists()
+
+
+def test_a_launch_loads_a_fleet_once(
+    fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    loads = []
+
+    def counted(path: str) -> Any:
+        loads.append(path)
+        return load_fleet(path)
+
+    monkeypatch.setattr(launch, "load_fleet", counted)
+    first = launch.fleet_of(context, fleet)
+    assert launch.fleet_of(context, fleet) is first
+    run(context, launch.each_robot(fleet, lambda it: [launch.node("amcl", files="params.yaml")]))
+    assert loads == [fleet]
+    other = importlib.import_module("launch").LaunchContext()
+    assert launch.fleet_of(other, fleet) is not first
+
+
+def test_warnings_are_logged_once(
+    fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told: list[str] = []
+
+    class Log:
+        def warning(self, text: str) -> None:
+            told.append(text)
+
+    log = importlib.import_module("launch.logging")
+    monkeypatch.setattr(log, "get_logger", lambda name: Log())
+    for robot in ("robot1", "robot2"):
+        launch.perform(context, launch.params_file("params.yaml", robot, fleet))
+    made = load_fleet(fleet).made
+    assert told == [str(it) for it in made.findings]
+    assert told
+
+
+@pytest.mark.parametrize(
+    ("make", "part"),
+    [
+        (lambda fleet: launch.value("name"), "not said which robot"),
+        (lambda fleet: launch.value("name", robot="robot1"), "not said which fleet"),
+        (lambda fleet: launch.value("nam", robot="robot1", fleet=fleet), "did you mean 'name'"),
+        (lambda fleet: launch.value("pose", "w", "robot1", fleet), "'w'"),
+        (lambda fleet: launch.description("robt1", fleet), "did you mean 'robot1'"),
+        (lambda fleet: launch.params_file("parms.yaml", "robot1", fleet), "did you mean"),
+        (lambda fleet: launch.params_file("parms.yaml", fleet=fleet), "did you mean"),
+    ],
+)
+def test_what_is_wrong_is_told(
+    make: Callable[[str], Any], part: str, fleet: str, context: Any
+) -> None:
+    with pytest.raises(UsageError) as caught:
+        launch.perform(context, make(fleet))
+    assert part in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_fleet_that_is_not_there(context: Any) -> None:
+    with pytest.raises(InputError, match="nowhere"):
+        launch.fleet_of(context, "nowhere.yaml")
+    with pytest.raises(UsageError, match="did you mean 'gz'"):
+        run(context, launch.spawn("gzz", "robot1", "nowhere.yaml"))
+
+
+def test_xml_for_every_robot(fleet: str, context: Any) -> None:
+    context.launch_configurations.update({"where": fleet, "which": ""})
+    (action,) = read(
+        '<multibot_robots fleet="$(var where)" robots="$(var which)">'
+        '<multibot_node node="amcl" pkg="nav2_amcl" exec="$(multibot name)" files="params.yaml"/>'
+        '<multibot_spawn simulator="gz"/><multibot_place/>'
+        "</multibot_robots>"
+    )
+    executables = []
+    for group in action.visit(context):
+        for it in group.visit(context):
+            for made in run(context, it):
+                found = made.options["executable"]
+                executables.append(launch.perform(context, found))
+    assert executables == ["robot1", "create", "robot2", "create"]
+
+
+def test_xml_for_one_robot(fleet: str, context: Any) -> None:
+    where = f'robot="robot2" fleet="{fleet}"'
+    node, spawn, off = read(
+        f'<multibot_node node="robot_state_publisher" describe="true" exec="x" {where}/>'
+        f'<multibot_spawn simulator="classic" {where}/>'
+        f'<multibot_node node="amcl" exec="x" if="false" {where}/>'
+    )
+    (made,) = run(context, node)
+    assert made.options["name"] == "robot_state_publisher"
+    assert len(made.options["parameters"]) == 1
+    (made,) = run(context, spawn)
+    assert made.options["arguments"][:2] == ["-entity", "second"]
+    assert run(context, off) == []
+
+
+@pytest.mark.parametrize(("word", "name", "wanted"), WORDS)
+def test_xml_words(word: str, name: str, wanted: str, fleet: str, context: Any) -> None:
+    context.launch_configurations.update({"where": fleet, "which": "robot2"})
+    words = f"{word} {name}".strip()
+    text = f"a $(multibot {words} robot:=$(var which) fleet:=$(var where)) b"
+    (action,) = read(f'<multibot_spawn simulator="{text}"/>')
+    with pytest.raises(UsageError) as caught:
+        run(context, action)
+    assert f"'a {wanted} b'" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "part"),
+    [
+        ('<multibot_node node="amcl" exec="x" name="y"/>', "leave name= out"),
+        ('<multibot_node node="amcl" exec="x" namespace="y"/>', "leave namespace= out"),
+        ('<multibot_node exec="x"/>', "node"),
+        ("<multibot_robots/>", "fleet=FILE"),
+        ("<multibot_spawn/>", "simulator"),
+        ('<multibot_place robt="x"/>', "robt"),
+        ('<multibot_robots fleet="x" robot="y"/>', "robot"),
+    ],
+)
+def test_xml_that_is_wrong(text: str, part: str, context: Any) -> None:
+    with pytest.raises((ValueError, AttributeError), match=part):
+        read(text)
+
+
+def test_a_substitution_needs_a_word(frontend: Any) -> None:
+    with pytest.raises(ValueError, match="needs a word: name"):
+        frontend.words([])
+
+
+PAGE = (REPO / "docs" / "launch.md").read_text()
+PYTHON = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
+def test_the_python_of_the_page(
+    code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    actions = ModuleType("launch_ros.actions")
+    vars(actions)["Node"] = Started
+    monkeypatch.setitem(sys.modules, "launch_ros", ModuleType("launch_ros"))
+    monkeypatch.setitem(sys.modules, "launch_ros.actions", actions)
+    monkeypatch.chdir(Path(fleet).parent)
+    context.launch_configurations["fleet"] = fleet
+    names: dict[str, Any] = {}
+    exec(compile(code, "launch.md", "exec"), names)
+    made = run(context, names["generate_launch_description"]())
+    programs = [it.options["executable"] for it in made]
+    assert programs.count("amcl") == programs.count("create") == 2
+    assert programs.count("robot_state_publisher") == 2
+
+
+def test_the_words_of_the_page_are_those_there_are() -> None:
+    (listed,) = re.findall(r"`\$\(multibot WORD\)` is one of (.*?);", PAGE, re.DOTALL)
+    words = {it.split()[0] for it in re.findall(r"`(.*?)`", listed)}
+    assert words == {*launch.WORDS, launch.FILE}
+
+
+@in_launch
+def test_the_xml_of_the_page(fleet: str, tmp_path: Path) -> None:
+    (text,) = re.findall(r"```xml\n(.*?)```", PAGE, re.DOTALL)
+    (tmp_path / "page.launch.xml").write_text(text)
+    more = {"amcl": "nav2_amcl", "driver": "my_driver"}
+    told, _ = launched(tmp_path / "page.launch.xml", tmp_path, f"fleet:={fleet}", programs=more)
+    drivers = [it["words"] for it in told if it["words"][0].endswith("driver")]
+    assert sorted(words[1] for words in drivers) == ["robot1/lidar_link", "robot2/lidar_link"]
+    assert len([it for it in told if it["words"][0].endswith("amcl")]) == 2
+
+
+def signature(thing: Any) -> Sequence[str]:
+    """The names of the parameters, and which are only given by name."""
+    made = inspect.signature(thing).parameters.values()
+    return [f"{'*' if it.kind is it.KEYWORD_ONLY else ''}{it.name}" for it in made]
+
+
+@in_launch
+@pytest.mark.parametrize(
+    ("module", "name"),
+    [(module, name) for module, names in launch_stand_in.MODULES.items() for name in names],
+)
+def test_the_stand_in_is_like_launch(module: str, name: str) -> None:
+    real = getattr(importlib.import_module(module), name)
+    ours = launch_stand_in.MODULES[module][name]
+    if not inspect.isclass(ours):
+        assert callable(real)
+        return
+    if name != "Entity":
+        assert signature(real.__init__) == signature(ours.__init__)
+    for method, function in vars(ours).items():
+        if inspect.isfunction(function) and not method.startswith("_"):
+            assert signature(getattr(real, method)) == signature(function), method
+
+
+def fake_packages(folder: Path, files: dict[str, str], programs: dict[str, str]) -> None:
+    """An install folder of packages whose programs write down what they are told."""
+    index = folder / "share" / "ament_index" / "resource_index" / "packages"
+    index.mkdir(parents=True)
+    for path, text in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+    for package in {*programs.values(), *(path.split("/")[1] for path in files)}:
+        (index / package).touch()
+    for program, package in programs.items():
+        path = folder / "lib" / package / program
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f"#!{sys.executable}\n{PROGRAM}")
+        path.chmod(0o755)
+
+
+PROGRAM = """\
+import json, os, sys
+files = {word: open(word).read() for word in sys.argv if os.path.isfile(word)}
+with open(os.path.join(os.environ["TOLD"], str(os.getpid())), "w") as out:
+    json.dump({"words": sys.argv, "files": files}, out)
+"""
+EMPTY = "from launch import LaunchDescription\n\n\ndef generate_launch_description():\n"
+EMPTY += "    return LaunchDescription([])\n"
+PROGRAMS = {
+    "robot_state_publisher": "robot_state_publisher",
+    "create": "ros_gz_sim",
+    "parameter_bridge": "ros_gz_bridge",
+    "spawn_entity.py": "gazebo_ros",
+    "static_transform_publisher": "tf2_ros",
+    "rviz2": "rviz2",
+}
+
+
+def launched(
+    file: Path, folder: Path, *arguments: str, programs: Mapping[str, str] = MappingProxyType({})
+) -> tuple[list[dict[str, Any]], str]:
+    """What the programs of a launch file were told, and what launch said."""
+    share = {
+        f"share/multibot_example/{path.relative_to(EXAMPLE)}": path.read_text()
+        for path in EXAMPLE.glob("*/*.*")
+    }
+    included = ("ros_gz_sim/launch/gz_sim.launch.py", "gazebo_ros/launch/gazebo.launch.py")
+    files = {**share, **{f"share/{it}": EMPTY for it in included}}
+    fake_packages(folder / "install", files, {**PROGRAMS, **programs})
+    (folder / "told").mkdir()
+    (folder / "tmp").mkdir()
+    env = {
+        **os.environ,
+        "AMENT_PREFIX_PATH": os.pathsep.join(
+            [str(folder / "install"), os.environ.get("AMENT_PREFIX_PATH", "")]
+        ),
+        "TOLD": str(folder / "told"),
+        "TMPDIR": str(folder / "tmp"),
+        "ROS_LOG_DIR": str(folder / "log"),
+    }
+    command = [sys.executable, str(CHILD), str(file), *arguments]
+    done = subprocess.run(
+        command, env=env, capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 0, done.stderr + done.stdout
+    told = [json.loads(it.read_text()) for it in (folder / "told").iterdir()]
+    left = [it.name for it in (folder / "tmp").iterdir()]
+    assert [it for it in left if not it.startswith("launch_params_")] == []
+    return told, done.stderr + done.stdout
+
+
+LAUNCH_FILES = ("gz.launch.py", "gz.launch.xml", "classic.launch.py", "classic.launch.yaml")
+
+
+@in_launch
+@pytest.mark.parametrize("name", LAUNCH_FILES)
+def test_the_example_package(name: str, tmp_path: Path) -> None:
+    told, said = launched(EXAMPLE / "launch" / name, tmp_path)
+    assert "ERROR" not in said
+    kind = "fleet_gz.yaml" if name.startswith("gz") else "fleet.yaml"
+    fleet = load_fleet(tmp_path / "install" / "share" / "multibot_example" / "config" / kind)
+    for robot in fleet.robots:
+        assert_started(robot, told, name)
+    if "rviz2" in (EXAMPLE / "launch" / name).read_text():
+        (rviz,) = (it for it in told if it["words"][0].endswith("rviz2"))
+        assert fleet.text("rover.rviz") in rviz["files"].values()
+
+
+def assert_started(robot: Any, told: list[dict[str, Any]], name: str) -> None:
+    """Its programs were started with what they need."""
+    its = [it for it in told if f"__ns:={robot.namespace}" in it["words"]]
+    (state,) = (it for it in its if it["words"][0].endswith("robot_state_publisher"))
+    held: dict[str, Any] = {}
+    for text in state["files"].values():
+        section = yaml.safe_load(text) if "ros__parameters" in text else {}
+        held |= section.get(f"{robot.namespace}/robot_state_publisher", {}).get(
+            "ros__parameters", {}
+        )
+    assert held["robot_description"] == robot.description
+    assert (held["use_sim_time"], held["publish_frequency"]) == (True, 30.0)
+    (place,) = (it for it in its if it["words"][0].endswith("static_transform_publisher"))
+    assert set(robot.transform_arguments) <= set(place["words"])
+    arguments = robot.spawn_arguments if name.startswith("gz") else robot.classic_arguments
+    assert any(it["words"][1 : 1 + len(arguments)] == arguments for it in told)
+    if name.startswith("gz"):
+        (bridge,) = (it for it in its if it["words"][0].endswith("parameter_bridge"))
+        assert "config_file" in "".join(bridge["files"].values())
+
+
+@in_launch
+def test_the_example_with_some_of_the_robots(tmp_path: Path) -> None:
+    told, _ = launched(EXAMPLE / "launch" / "gz.launch.xml", tmp_path, "robots:=robot2")
+    names = {word for it in told for word in it["words"] if word.startswith("__ns:=/")}
+    assert names == {"__ns:=/robot2"}
+
+
+@in_launch
+def test_a_mistake_is_one_line_of_launch(tmp_path: Path) -> None:
+    with pytest.raises(AssertionError) as caught:
+        launched(EXAMPLE / "launch" / "gz.launch.xml", tmp_path, "robots:=robt2")
+    assert "did you mean 'robot2'" in str(caught.value)

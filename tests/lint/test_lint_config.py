@@ -1,0 +1,486 @@
+"""``urdf-lint.toml``, ``[tool.urdf-lint]``: found, read, wrong ones named; the page's examples hold."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from multibot_rewrite import UsageError
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.configured import (
+    Configured,
+    check_codes,
+    configured,
+    is_excluded,
+    with_options,
+)
+from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.lint.settings import (
+    ArgumentSet,
+    Settings,
+    is_on,
+    is_silent,
+    level_of,
+    matches,
+)
+from multibot_rewrite.lint.values import READERS
+from multibot_rewrite.naming import make_naming
+
+PAGE = (Path(__file__).parents[2] / "docs" / "lint-config.md").read_text()
+TWO_ROOTS = '<robot name="r"><link name="a"/><link name="b"/></robot>'
+SECTION = "[plugin mine]\nmy_frame uses link frame\n"
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """What a configuration may name is there."""
+    for folder in ("robots/deep", "vendor/acme", "data", "external"):
+        (tmp_path / folder).mkdir(parents=True)
+    (tmp_path / "data" / "mine.vocab").write_text(SECTION)
+    (tmp_path / "robots" / "rover.urdf").write_text(TWO_ROOTS)
+    return tmp_path
+
+
+def read(project: Path, text: str) -> Configured:
+    (project / "urdf-lint.toml").write_text(text)
+    return configured(str(project / "robots"), None)
+
+
+def codes(path: Path, it: Configured) -> list[str]:
+    return [finding.code for finding in lint_file(str(path), it.settings)]
+
+
+# Where it is found.
+
+
+def test_without_a_file_the_defaults_hold(tmp_path: Path) -> None:
+    assert configured(str(tmp_path), None) == Configured()
+    assert Configured().settings == Settings()
+    assert Configured().fail_on == "warning"
+
+
+def test_the_nearest_one_counts(project: Path) -> None:
+    (project / "urdf-lint.toml").write_text('ignore = ["MB5"]')
+    (project / "robots" / "urdf-lint.toml").write_text('ignore = ["MB6"]')
+    assert configured(str(project / "robots" / "deep"), None).settings.ignore == ("MB6",)
+    assert configured(str(project / "data"), None).settings.ignore == ("MB5",)
+
+
+def test_of_two_in_one_folder_the_own_file_counts(project: Path) -> None:
+    (project / "pyproject.toml").write_text('[tool.urdf-lint]\nignore = ["MB6"]')
+    assert configured(str(project), None).settings.ignore == ("MB6",)
+    assert read(project, 'ignore = ["MB5"]').settings.ignore == ("MB5",)
+
+
+def test_a_project_file_without_the_table_is_passed_over(project: Path) -> None:
+    (project / "pyproject.toml").write_text('[tool.urdf-lint]\nignore = ["MB6"]')
+    (project / "robots" / "pyproject.toml").write_text('[project]\nname = "urdf-lint-rules"\n')
+    found = configured(str(project / "robots"), None)
+    assert (found.settings.ignore, found.file) == (("MB6",), str(project / "pyproject.toml"))
+
+
+def test_a_given_file_may_have_any_name(project: Path) -> None:
+    (project / "urdf-lint.toml").write_text('ignore = ["MB5"]')
+    (project / "data" / "strict.toml").write_text('select = ["MB2"]\nbaseline = "known.json"')
+    found = configured(str(project), str(project / "data" / "strict.toml"))
+    assert (found.settings.select, found.settings.ignore) == (("MB2",), ())
+    assert found.baseline == str(project / "data" / "known.json")
+
+
+def test_a_given_file_may_be_relative(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (project / "data" / "own.toml").write_text('exclude = ["x"]\nbaseline = "b.json"')
+    monkeypatch.chdir(project)
+    found = configured(".", "data/own.toml")
+    assert is_excluded("data/x/a.urdf", found)
+    assert not is_excluded("x/a.urdf", found)
+    assert found.baseline == str(project / "data" / "b.json")
+
+
+def test_vocabulary_of_the_project_is_added(project: Path) -> None:
+    (project / "data" / "other.vocab").write_text("")
+    table = '[tool.multibot-rewrite]\nvocabulary = ["data/mine.vocab"]\n'
+    (project / "pyproject.toml").write_text(table)
+    found = read(project, 'vocabulary = ["data/other.vocab", "data/mine.vocab"]')
+    both = (str(project / "data/mine.vocab"), str(project / "data/other.vocab"))
+    assert found.settings.vocabulary == both
+
+
+# What its keys say.
+
+
+def test_plain_keys(project: Path) -> None:
+    text = """\
+        select = ["MB2", "MB501"]
+        robots = ["r1", "r2"]
+        targets = ["usd"]
+        roots = ["external", "."]
+        urdf = "robots/rover.urdf"
+        fail-on = "error"
+        seconds = 5
+        levels = {MB5 = "note", MB501 = "error", MB6 = "off"}
+    """
+    found = read(project, text)
+    it = found.settings
+    assert (it.select, it.robots, it.targets) == (("MB2", "MB501"), ("r1", "r2"), ("usd",))
+    assert [Path(root).resolve() for root in it.roots] == [project / "external", project]
+    assert (it.urdf, it.seconds) == (str(project / "robots/rover.urdf"), 5.0)
+    assert (found.fail_on, found.file) == ("error", str(project / "urdf-lint.toml"))
+    assert [level_of(it, code, "?") for code in ("MB501", "MB502", "MB601", "MB201")] == [
+        *("error", "note", "?", "?")
+    ]
+
+
+def test_the_naming_is_that_of_the_options_of_urdf_postfix(project: Path) -> None:
+    text = """\
+        layout = "L4"
+        affix = "prefix"
+        topics = "namespace"
+        separators = {link = "_", sensor = "__"}
+        shared-frames = ["map"]
+        shared-topics = []
+    """
+    wanted = make_naming("L4", "prefix", "namespace", {"link": "_", "sensor": "__"}, ["map"], [])
+    assert read(project, text).settings.naming == wanted
+    assert read(project, 'affix = "prefix"').settings.naming == make_naming("L2", "prefix")
+
+
+ON = [
+    ("", "MB501", True),
+    ('select = ["MB5"]', "MB501", True),
+    ('select = ["MB5"]', "MB201", False),
+    ('ignore = ["MB5"]', "MB501", False),
+    ('select = ["MB501"]\nignore = ["MB5"]', "MB501", True),
+    ('select = ["MB5"]\nignore = ["MB5"]', "MB501", False),
+    ('levels = {MB5 = "off"}', "MB501", False),
+    ('levels = {MB5 = "off", MB501 = "note"}', "MB501", True),
+    ('levels = {MB5 = "note", MB501 = "off"}', "MB501", False),
+    ('levels = {MB5 = "note", MB501 = "off"}', "MB502", True),
+    ('select = ["MB501"]\nlevels = {MB5 = "off"}', "MB501", True),
+    ('ignore = ["MB501"]\nlevels = {MB501 = "error"}', "MB501", False),
+]
+
+
+@pytest.mark.parametrize(("text", "code", "on"), ON)
+def test_which_rules_are_on(project: Path, text: str, code: str, on: bool) -> None:
+    assert is_on(read(project, text).settings, code) is on
+
+
+def test_a_rule_that_is_on_again_keeps_its_own_level(project: Path) -> None:
+    settings = read(project, 'select = ["MB501"]\nlevels = {MB5 = "off"}').settings
+    assert level_of(settings, "MB501", "error") == "error"
+
+
+# Pattern, path below the configuration's folder, is it matched; a folder counts with its content.
+PATTERNS = [
+    ("rover.urdf", "rover.urdf", True),
+    ("rover.urdf", "robots/deep/rover.urdf", True),
+    ("rover.urdf", "robots/big_rover.urdf", False),
+    ("*.srdf", "robots/a.srdf", True),
+    ("*.srdf", "a.srdf", True),
+    ("*.srdf", "a.srdf.xacro", False),
+    ("vendor", "vendor/acme/a.urdf", True),
+    ("vendor", "robots/vendor/a.urdf", True),
+    ("vendor/", "vendor/acme/a.urdf", True),
+    ("vendor/", "vendored/a.urdf", False),
+    ("vendor/acme", "vendor/acme/a.urdf", True),
+    ("vendor/acme", "robots/vendor/acme/a.urdf", False),
+    ("vendor/*/a.urdf", "vendor/acme/a.urdf", True),
+    ("./vendor/*", "vendor/acme/a.urdf", True),
+    ("**/acme/*.urdf", "vendor/acme/a.urdf", True),
+    ("**/acme/*.urdf", "acme/a.urdf", True),
+    ("**/acme/*.urdf", "vendor/acme2/a.urdf", False),
+    ("a[12].urdf", "robots/a2.urdf", True),
+    ("a[!12].urdf", "robots/a2.urdf", False),
+    ("a?.urdf", "a2.urdf", True),
+]
+
+
+@pytest.mark.parametrize("outside", [".", "robots"])
+@pytest.mark.parametrize(("pattern", "path", "hit"), PATTERNS)
+def test_patterns_hang_on_the_folder_of_the_file(
+    project: Path, monkeypatch: pytest.MonkeyPatch, pattern: str, path: str, hit: bool, outside: str
+) -> None:
+    """However the path is written and wherever the command runs."""
+    found = read(project, f"exclude = ['{pattern}']\nper-file-ignores = {{'{pattern}' = ['MB5']}}")
+    monkeypatch.chdir(project / outside)
+    up = "../" if outside != "." else ""
+    for written in (str(project / path), f"{up}{path}", f"./{up}{path}"):
+        assert is_excluded(written, found) is hit
+        assert is_silent(found.settings, written, "MB501") is hit
+        assert not is_silent(found.settings, written, "MB601")
+
+
+def test_a_pattern_of_a_caller_may_be_relative() -> None:
+    assert matches("robots/a.urdf", "robots/*")
+    assert not matches("robots/a.urdf", "obots/*")
+
+
+def test_folders_above_the_configuration_are_not_meant(tmp_path: Path) -> None:
+    project = tmp_path / "build" / "project[1]"
+    (project / "robots").mkdir(parents=True)
+    found = read(project, 'exclude = ["build", "project*"]')
+    assert not is_excluded(str(project / "robots" / "a.urdf"), found)
+    assert is_excluded(str(project / "robots" / "build" / "a.urdf"), found)
+
+
+def test_xacro_argument_sets(project: Path) -> None:
+    text = """\
+        [[xacro]]
+        files = "robots/*.xacro"
+        arguments = {sim = "gz", joints = 6, fake = true, scale = 0.5}
+        [[xacro]]
+        arguments = {}
+    """
+    found = read(project, text).settings.arguments
+    # One expansion each, not one for each way to reach the file.
+    first, second = found
+    assert str(first) == "sim:=gz joints:=6 fake:=true scale:=0.5"
+    assert matches(str(project / "robots" / "a.xacro"), first.pattern)
+    assert not matches(str(project / "vendor" / "a.xacro"), first.pattern)
+    assert second == ArgumentSet("*", ())
+
+
+def test_settings_do_what_they_say(project: Path) -> None:
+    rover = project / "robots" / "rover.urdf"
+    assert codes(rover, read(project, 'select = ["MB501"]')) == ["MB501"]
+    assert codes(rover, read(project, 'levels = {MB = "off", MB501 = "note"}')) == ["MB501"]
+    per_file = "select = ['MB501']\n[per-file-ignores]\n'robots/*' = ['MB5']"
+    assert codes(rover, read(project, per_file)) == []
+
+
+# What is wrong with it.
+
+WRONG = [
+    ("ignore = [", ": broken TOML, correct it: "),
+    ("ignore = ['MB5'\nx", "2:1: broken TOML"),
+    ("ignore = ['MB5']\nignore = ['MB6']\n", "2:17: broken TOML"),
+    ("a = " + "[" * 5000, "TOML that cannot be read"),
+    ("seconds = " + "1" * 5000, "TOML that cannot be read"),
+    ("per-file-ignore = {}", "unknown key 'per-file-ignore', did you mean 'per-file-ignores'?"),
+    ("fail_on = 'error'", "unknown key 'fail_on', did you mean 'fail-on'?"),
+    ("xyzzy = 1", "unknown key 'xyzzy', use one of select, ignore, "),
+    ("[tool.urdf-lint]\nignore = []", "unknown key 'tool'"),
+    ("ignore = 'MB5'", "ignore is a string, write a list of texts"),
+    ("ignore = ['MB5', 5]", "ignore holds a number, write texts in quotes"),
+    ("ignore = ['MB99']", "ignore: no rule has the code 'MB99', and none begins with it; did you"),
+    ("select = ['mb501']", "did you mean 'MB501'?"),
+    ("select = ['MB5011']", "did you mean 'MB501'?"),
+    ("select = ['several-roots']", "did you mean 'MB501'?"),
+    ("select = ['M']", "no rule has the code 'M'"),
+    ("select = ['']", "no rule has the code ''"),
+    ("select = ['E501']", "no rule has the code 'E501'"),
+    ("per-file-ignores = ['MB5']", "per-file-ignores is a list, write a table"),
+    (
+        "per-file-ignores = {'a.urdf' = 'MB5'}",
+        "per-file-ignores: 'a.urdf' is a string, write a list",
+    ),
+    ("per-file-ignores = {'a.urdf' = ['X1']}", "'a.urdf': no rule has the code 'X1'"),
+    ("per-file-ignores = {'' = ['MB5']}", "a pattern is empty"),
+    ("exclude = ['!a.urdf']", "cannot take files back in"),
+    ("exclude = ['{a,b}.urdf']", "one pattern each instead of {a,b}"),
+    ("exclude = ['a[1.urdf']", "a bracket is not closed"),
+    ("exclude = ['../a.urdf']", "leads out of the folder"),
+    ("levels = 3", "levels is a number, write a table"),
+    ("levels = {MB99 = 'note'}", "levels: no rule has the code 'MB99'"),
+    ("levels = {MB5 = 'fatal'}", "levels: 'MB5' is 'fatal', use one of error, warning, note, off"),
+    ("levels = {MB5 = false}", "levels: 'MB5' is a boolean, write a text in quotes"),
+    ("robots = ['r1', 'r-2']", "robots: robot name 'r-2': character 2, '-'"),
+    ("robots = ['r1', 'r1']", "robots: the robot 'r1' is named twice"),
+    ("layout = 'L5'", "layout 'L5' is not known"),
+    ("layout = ''", "layout is empty"),
+    ("affix = 'infix'", "affix 'infix' is not known, use one of postfix, prefix"),
+    ("separators = {links = '_'}", "separator kind 'links' is not known"),
+    ("separators = {link = 1}", "separators: 'link' is a number"),
+    ("separators = {node = '/'}", "separator node='/': use one of _"),
+    ("targets = ['sdf']", "targets is 'sdf', use one of usd, mjcf"),
+    ("roots = ['nowhere']", "roots: there is no folder"),
+    ("roots = ['robots/rover.urdf']", "roots: there is no folder"),
+    ("urdf = 'nowhere.urdf'", "urdf: no file 'nowhere.urdf' in"),
+    ("urdf = ['robots/rover.urdf']", "urdf is a list, write a text in quotes"),
+    ("vocabulary = ['nowhere.vocab']", "vocabulary: no file 'nowhere.vocab' in"),
+    ("xacro = {files = '*'}", "xacro is a table, write tables [[xacro]]"),
+    ("xacro = ['a']", "xacro, number 1 is a string, write a table"),
+    ("[[xacro]]\nfiles = '*'", "xacro, number 1: no arguments"),
+    ("[[xacro]]\nargs = {}", "xacro, number 1: unknown key 'args', use files, arguments"),
+    ("[[xacro]]\narguments = {a = [1]}", "number 1: 'arguments': 'a' is a list"),
+    ("[[xacro]]\narguments = {}\nfiles = 3", "number 1: 'files' is a number"),
+    ("baseline = true", "baseline is a boolean"),
+    ("fail-on = 'never'", "fail-on is 'never', use one of error, warning, note"),
+    ("seconds = 0", "seconds is 0, write more than 0"),
+    ("seconds = nan", "seconds is nan"),
+    ("seconds = inf", "seconds is inf"),
+    ("seconds = true", "seconds is a boolean"),
+    ("seconds = '5'", "seconds is a string"),
+    ("seconds = 1979-05-27", "seconds is a date"),
+]
+
+
+@pytest.mark.parametrize(("text", "words"), WRONG)
+def test_what_is_wrong_is_one_line(project: Path, text: str, words: str) -> None:
+    with pytest.raises(UsageError) as caught:
+        read(project, text)
+    message = str(caught.value)
+    assert message.startswith(f"{project / 'urdf-lint.toml'}:")
+    assert words in message
+    assert "\n" not in message
+
+
+def test_every_key_is_refused_what_it_cannot_mean(project: Path) -> None:
+    for key in READERS:
+        with pytest.raises(UsageError, match=rf"{key} is a date|{key} is 1979"):
+            read(project, f"{key} = 1979-05-27")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("[tool]\nurdf-lint = 3", "tool.urdf-lint is a number, write [tool.urdf-lint]"),
+        ("[tool.urdf_lint]\nignore = []", "[tool.urdf_lint] is not read, write [tool.urdf-lint]"),
+        ("[tool.urdf-lint]\nignor = []", "unknown key 'ignor', did you mean 'ignore'?"),
+        ("# urdf-lint\n[tool\n", "2:6: broken TOML"),
+    ],
+)
+def test_a_wrong_project_file_is_one_line(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "pyproject.toml").write_text(text)
+    with pytest.raises(UsageError) as caught:
+        configured(str(tmp_path), None)
+    assert str(caught.value).startswith(f"{tmp_path / 'pyproject.toml'}:")
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "words"),
+    [
+        ("none.toml", None, "cannot be read: No such file"),
+        ("", None, "cannot be read: Is a directory"),
+        ("pyproject.toml", b"[project]\n", "there is no table [tool.urdf-lint] in it"),
+        ("a.toml", b"# \xff", "1: it is not UTF-8"),
+    ],
+)
+def test_a_given_file_that_is_no_configuration(
+    tmp_path: Path, name: str, content: bytes | None, words: str
+) -> None:
+    path = tmp_path / name
+    if content is not None:
+        path.write_bytes(content)
+    with pytest.raises(UsageError) as caught:
+        configured(str(tmp_path), str(path))
+    assert str(caught.value).startswith(f"{path}:")
+    assert words in str(caught.value)
+
+
+# What the command adds.
+
+OPTIONS: list[tuple[str, dict[str, Any], dict[str, bool]]] = [
+    ("", {"select": ("MB5",)}, {"MB501": True, "MB201": False}),
+    ('select = ["MB2"]', {"select": ("MB5",)}, {"MB501": True, "MB201": False}),
+    ('ignore = ["MB501"]', {"select": ("MB5",)}, {"MB501": False, "MB502": True}),
+    ('ignore = ["MB501"]', {"select": ("MB501",)}, {"MB501": True}),
+    ('ignore = ["MB5"]', {"select": ("MB5",)}, {"MB501": True}),
+    ('levels = {MB501 = "off"}', {"select": ("MB501",)}, {"MB501": True}),
+    ('levels = {MB501 = "off"}', {"select": ("MB5",)}, {"MB501": False, "MB502": True}),
+    ('ignore = ["MB2"]', {"ignore": ("MB5",)}, {"MB501": False, "MB201": False, "MB601": True}),
+    ('select = ["MB5"]', {"ignore": ("MB501",)}, {"MB501": False, "MB502": True, "MB201": False}),
+    ('select = ["MB5"]', {"select": (), "ignore": None}, {"MB501": True, "MB201": False}),
+]
+
+
+@pytest.mark.parametrize(("text", "given", "wanted"), OPTIONS)
+def test_the_command_has_the_last_word_on_codes(
+    project: Path, text: str, given: dict[str, Any], wanted: dict[str, bool]
+) -> None:
+    settings = with_options(read(project, text), **given).settings
+    assert {code: is_on(settings, code) for code in wanted} == wanted
+
+
+def test_the_command_replaces_or_adds(project: Path) -> None:
+    text = """\
+        robots = ["r1"]
+        targets = ["usd"]
+        roots = ["external"]
+        baseline = "a.json"
+        layout = "L4"
+        affix = "prefix"
+        vocabulary = ["data/mine.vocab"]
+        [[xacro]]
+        arguments = {sim = "gz"}
+    """
+    it = with_options(
+        read(project, text),
+        robots=("r2", "r3"),
+        target=("mjcf",),
+        baseline="b.json",
+        fail_on="note",
+        layout="L1",
+        vocabulary=("more.vocab",),
+        arguments=(("fake", "true"),),
+        urdf="other.urdf",
+    )
+    settings = it.settings
+    assert (settings.robots, settings.targets) == (("r2", "r3"), ("mjcf",))
+    assert (it.baseline, it.fail_on, settings.urdf) == ("b.json", "note", "other.urdf")
+    assert settings.naming == make_naming("L1", "prefix")
+    assert settings.roots == (str(project / "external"),)
+    assert settings.vocabulary == (str(project / "data/mine.vocab"), "more.vocab")
+    assert [str(given) for given in settings.arguments] == ["sim:=gz", "fake:=true"]
+
+
+def test_a_command_that_says_nothing_changes_nothing(project: Path) -> None:
+    it = read(project, 'select = ["MB5"]\naffix = "prefix"')
+    assert with_options(it, select=(), layout=None, vocabulary=(), arguments=(), urdf="") == it
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"select": ("MB99",)}, "--select: no rule has the code 'MB99'"),
+        ({"ignore": ("MB5", "")}, "--ignore: no rule has the code ''"),
+        ({"target": ("sdf",)}, "--target is 'sdf', use one of usd, mjcf"),
+        ({"robots": ("a b",)}, "--robots: robot name 'a b'"),
+        ({"fail_on": "never"}, "--fail-on is 'never', use one of"),
+        ({"layout": "L9"}, "layout 'L9' is not known"),
+    ],
+)
+def test_wrong_options_are_one_line(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(UsageError, match=re.escape(words)):
+        with_options(Configured(), **given)
+
+
+def test_every_code_and_every_beginning_is_one() -> None:
+    check_codes([code[:size] for code in RULES for size in (2, 3, 4, 5)], "here")
+    with pytest.raises(UsageError, match="here: no rule has the code 'MB50x'"):
+        check_codes(["MB5", "MB50x"], "here")
+
+
+# The page.
+
+EXAMPLES = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
+
+
+@pytest.mark.parametrize("text", EXAMPLES)
+def test_an_example_of_the_page_is_read(project: Path, text: str) -> None:
+    for name in ("robots/rover.urdf", "vocabulary/acme.vocab"):
+        (project / name).parent.mkdir(exist_ok=True)
+        (project / name).write_text("")
+    (project / "src").mkdir()
+    file = project / ("pyproject.toml" if "[tool.urdf-lint" in text else "urdf-lint.toml")
+    file.write_text(text)
+    found = configured(str(project), None)
+    assert found.file == str(file)
+    assert found != Configured(file=str(file))
+
+
+def test_every_key_has_an_example_on_the_page() -> None:
+    whole = "\n".join(EXAMPLES)
+    missing = [
+        key
+        for key in READERS
+        if not re.search(rf"^(\[*|\[tool.urdf-lint\.){key}\b", whole, re.MULTILINE)
+    ]
+    assert missing == []
+    told = re.findall(r"^\| `([a-z-]+)` \|", PAGE, re.MULTILINE)
+    assert sorted(told) == sorted(READERS)

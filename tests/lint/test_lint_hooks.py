@@ -1,0 +1,319 @@
+"""The lint where it is used: pre-commit really runs it, and so do the CI examples of its page."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+import yaml
+from junitparser import JUnitXml
+
+from multibot_rewrite.cli.lint_usage import check_use, parser
+from multibot_rewrite.cli.urdf_lint import main
+
+ROOT = Path(__file__).parents[2]
+HOOKS = ROOT / ".pre-commit-hooks.yaml"
+PAGE = (ROOT / "docs" / "lint-ci.md").read_text()
+HOME = "https://github.com/OWNER/multibot_rewrite"
+REVISION = "v0.1.0"
+BASH = ("bash", "-e", "-o", "pipefail", "-c")
+IDENTITY = ("-c", "user.name=t", "-c", "user.email=t@example.org", "-c", "init.defaultBranch=main")
+HAND = '<joint name="wrist" type="fixed"><parent link="base"/><child link="hand"/></joint>'
+LINKS = f'<link name="base"/><link name="hand"/>{HAND}'
+GOOD = f'<robot name="r">{LINKS}</robot>'
+BAD = f'<robot name="r">{LINKS}<link name="lost"/></robot>'
+FOUND = "MB501"
+
+
+def example(language: str, has: str) -> str:
+    """The example of the page in that language that holds a text."""
+    (found,) = (it for it in re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL) if has in it)
+    assert isinstance(found, str)
+    return found
+
+
+PRE_COMMIT = example("yaml", "hooks:")
+WORKFLOW = example("yaml", "runs-on:")
+GITLAB = example("yaml", "codequality:")
+JENKINS = example("groovy", "pipeline")
+
+
+def run(
+    command: Sequence[str], folder: Path, env: Mapping[str, str] | None = None
+) -> subprocess.CompletedProcess[str]:
+    whole = None if env is None else {**os.environ, **env}
+    return subprocess.run(
+        command, cwd=folder, env=whole, capture_output=True, text=True, check=False
+    )
+
+
+def git(folder: Path, *words: str) -> str:
+    done = run(["git", *IDENTITY, *words], folder)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def repository(folder: Path, document: str) -> Path:
+    """A repository with one description, committed."""
+    (folder / "urdf").mkdir(parents=True)
+    (folder / "urdf" / "rover.urdf").write_text(document)
+    git(folder, "init", "-q")
+    git(folder, "add", ".")
+    git(folder, "commit", "-q", "-m", "a rover")
+    return folder
+
+
+# What needs no network
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        pytest.param(["pre_commit", "validate-manifest", str(HOOKS)], id="manifest"),
+        pytest.param(["pre_commit", "validate-config", "config.yaml"], id="config"),
+        pytest.param(
+            ["check_jsonschema", "--builtin-schema", "vendor.github-workflows", "workflow.yaml"],
+            id="github",
+        ),
+        pytest.param(
+            ["check_jsonschema", "--builtin-schema", "vendor.gitlab-ci", "gitlab.yaml"], id="gitlab"
+        ),
+    ],
+)
+def test_it_holds_by_the_schema_of_its_reader(words: list[str], tmp_path: Path) -> None:
+    examples = {"config": PRE_COMMIT, "workflow": WORKFLOW, "gitlab": GITLAB}
+    for name, content in examples.items():
+        (tmp_path / f"{name}.yaml").write_text(content)
+    done = run([sys.executable, "-m", *words], tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("path", "runs"),
+    [
+        ("a.urdf", True),
+        ("deep/in/a.urdf.xacro", True),
+        ("a.SRDF", True),
+        ("urdf-lint.toml", True),
+        ("deep/urdf-lint.toml", True),
+        ("not-urdf-lint.toml", False),
+        ("a.urdf.md", False),
+        ("urdf", False),
+        ("a.xml", False),
+    ],
+)
+def test_the_hook_runs_where_a_description_was_touched(path: str, runs: bool) -> None:
+    (hook,) = yaml.safe_load(HOOKS.read_text())
+    assert bool(re.search(hook["files"], path)) == runs
+
+
+def shown_commands() -> list[str]:
+    """What follows every call of the lint on the page, up to where the shell takes over."""
+    found = re.findall(r"\burdf-lint\"? ((?:\.|\$PATHS) .*)$", PAGE, re.MULTILINE)
+    return [re.split(r"\|\||>>|'", it)[0].replace("$PATHS", ".").strip() for it in found]
+
+
+def test_the_page_shows_commands() -> None:
+    assert len(shown_commands()) == 8
+
+
+@pytest.mark.parametrize("line", shown_commands())
+def test_a_command_of_the_page_is_a_right_one(line: str) -> None:
+    check_use(parser().parse_intermixed_args(shlex.split(line)))
+
+
+def lint(line: str) -> int:
+    return main(shlex.split(line)[1:])
+
+
+def test_the_baseline_keeps_old_findings_away(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write, read = example("console", "--write-baseline").splitlines()
+    monkeypatch.chdir(repository(tmp_path / "r", BAD))
+    assert lint("urdf-lint .") == 1
+    assert lint(write) == 0
+    capsys.readouterr()
+    assert lint(read) == 0
+    assert capsys.readouterr().out == ""
+    Path("urdf/new.urdf").write_text(BAD)
+    assert lint(read) == 1
+    assert capsys.readouterr().out.count(FOUND) == 1
+
+
+def test_only_what_a_branch_changed_is_linted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (line,) = example("console", "--changed-since").splitlines()
+    repository(tmp_path / "origin", BAD)
+    git(tmp_path, "clone", "-q", "origin", "clone")
+    monkeypatch.chdir(tmp_path / "clone")
+    assert lint(line) == 0
+    Path("urdf/new.urdf").write_text(BAD)
+    git(Path(), "add", ".")
+    capsys.readouterr()
+    assert lint(line) == 1
+    assert "new.urdf" in capsys.readouterr().out
+
+
+# What installs the package: pre-commit and the CI examples
+
+
+@pytest.fixture(scope="session")
+def clone(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The working tree, committed as the revision of the page."""
+    folder = tmp_path_factory.mktemp("clone")
+    listed = git(ROOT, "ls-files", "-z", "--cached", "--others", "--exclude-standard")
+    for name in listed.split("\0"):
+        if name and (ROOT / name).is_file():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, folder / name)
+    git(folder, "init", "-q")
+    git(folder, "add", ".")
+    git(folder, "commit", "-q", "-m", "the working tree")
+    git(folder, "tag", REVISION)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def venv(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The Python of a CI job."""
+    folder = tmp_path_factory.mktemp("venv")
+    subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
+    return folder
+
+
+@pytest.mark.deep
+def test_pre_commit_runs_the_hook(clone: Path, tmp_path: Path) -> None:
+    here = repository(tmp_path / "r", GOOD)
+    (here / ".pre-commit-config.yaml").write_text(PRE_COMMIT.replace(HOME, str(clone)))
+    git(here, "add", ".")
+    env = {"PRE_COMMIT_HOME": str(tmp_path / "home"), "PYTHONPATH": ""}
+    command = [sys.executable, "-m", "pre_commit", "run", "--verbose"]
+
+    skipped = run(command, here, env)
+    assert (skipped.returncode, "Skipped" in skipped.stdout) == (0, True), skipped.stdout
+
+    (here / "urdf" / "bad.urdf").write_text(BAD)
+    git(here, "add", ".")
+    failed = run(command, here, env)
+    assert failed.returncode == 1, failed.stdout + failed.stderr
+    assert re.search(rf"bad\.urdf:1:\d+: {FOUND} link 'lost'", failed.stdout)
+    assert "rover.urdf" not in failed.stdout
+
+    (here / "urdf" / "bad.urdf").write_text(GOOD)
+    git(here, "add", ".")
+    passed = run(command, here, env)
+    assert (passed.returncode, "Passed" in passed.stdout) == (0, True), passed.stdout
+
+
+class Ran(NamedTuple):
+    """A CI job that ran in a folder: names of steps that failed, what it printed."""
+
+    folder: Path
+    failed: list[str]
+    printed: str
+
+
+# Expressions of the workflow, and what they are here.
+EXPRESSIONS = {"${{ inputs.paths || '.' }}": "."}
+KNOWN_ACTIONS = {"actions/checkout", "actions/setup-python", "github/codeql-action/upload-sarif"}
+
+
+def run_workflow(folder: Path, env: Mapping[str, str]) -> Ran:
+    """The steps of the workflow, with nothing in the place of actions."""
+    (job,) = yaml.safe_load(WORKFLOW)["jobs"].values()
+    given = {name: EXPRESSIONS.get(value, value) for name, value in job["env"].items()}
+    failed: list[str] = []
+    printed = ""
+    for step in job["steps"]:
+        if failed and "!cancelled()" not in step.get("if", ""):
+            continue
+        if "uses" in step:
+            assert step["uses"].partition("@")[0] in KNOWN_ACTIONS
+            uploaded = step["with"].get("sarif_file") if "with" in step else None
+            failed += [step["name"]] if uploaded and not (folder / uploaded).is_file() else []
+            continue
+        done = run(["bash", "-e", "-c", step["run"]], folder, {**given, **env})
+        failed += [step["name"]] if done.returncode else []
+        printed += done.stdout + done.stderr
+    return Ran(folder, failed, printed)
+
+
+def job_env(clone: Path, venv: Path, **more: str) -> dict[str, str]:
+    """The environment in which the page's requirement is the clone, and pip the job's."""
+    path = f"{venv / 'bin'}{os.pathsep}{os.environ['PATH']}"
+    return {"URDF_LINT": f"git+file://{clone}@{REVISION}", "PATH": path, "PYTHONPATH": "", **more}
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize(
+    ("document", "paths", "failed"),
+    [
+        pytest.param(GOOD, ".", [], id="good"),
+        pytest.param(BAD, ".", ["Lint"], id="bad"),
+        pytest.param(BAD, "urdf urdf/rover.urdf", ["Lint"], id="paths"),
+        pytest.param(GOOD, "nowhere", ["Report", "Code scanning"], id="wrong-use"),
+    ],
+)
+def test_the_github_workflow_runs(
+    document: str, paths: str, failed: list[str], clone: Path, venv: Path, tmp_path: Path
+) -> None:
+    here = repository(tmp_path / "r", document)
+    summary = tmp_path / "summary.md"
+    env = job_env(clone, venv, PATHS=paths, GITHUB_STEP_SUMMARY=str(summary))
+    ran = run_workflow(here, env)
+    assert ran.failed == failed, ran.printed
+    if "Report" in failed:
+        return
+    annotation = rf"(?m)^::error file=urdf/rover.urdf,line=1,col=\d+,title={FOUND} several-roots::"
+    assert bool(re.search(annotation, ran.printed)) == (document == BAD)
+    (log,) = json.loads((here / "urdf-lint.sarif").read_text())["runs"]
+    errors = [it["ruleId"] for it in log["results"] if it["level"] == "error"]
+    assert errors == ([FOUND] if document == BAD else [])
+    assert ("| 1 | error | MB501 several-roots |" in summary.read_text()) == (document == BAD)
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize(("document", "code"), [(GOOD, 0), (BAD, 1)], ids=["good", "bad"])
+def test_the_gitlab_job_runs(
+    document: str, code: int, clone: Path, venv: Path, tmp_path: Path
+) -> None:
+    here = repository(tmp_path / "r", document)
+    (job,) = yaml.safe_load(GITLAB).values()
+    assert set(job["variables"]) == {"URDF_LINT"}
+    done = run([*BASH, "\n".join(job["script"])], here, job_env(clone, venv))
+    assert done.returncode == code, done.stderr
+    report: list[dict[str, Any]] = json.loads((here / "gl-code-quality-report.json").read_text())
+    serious = [it["location"]["path"] for it in report if it["severity"] != "info"]
+    assert serious == ["urdf/rover.urdf"] * code
+
+
+@pytest.fixture(scope="session")
+def workspace_tmp(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("workspace")
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize(("document", "failures"), [(GOOD, 0), (BAD, 1)], ids=["good", "bad"])
+def test_the_jenkins_pipeline_runs(
+    document: str, failures: int, clone: Path, venv: Path, workspace_tmp: Path, tmp_path: Path
+) -> None:
+    here = repository(tmp_path / "r", document)
+    env = job_env(clone, venv, WORKSPACE_TMP=str(workspace_tmp))
+    steps = re.findall(r"\bsh '(.*)'", JENKINS)
+    assert len(steps) == 2
+    for step in steps:
+        done = run(["sh", "-xe", "-c", step], here, env)
+        assert done.returncode == 0, done.stderr
+    (report,) = re.findall(r"\bjunit '(.*)'", JENKINS)
+    assert JUnitXml.fromfile(str(here / report)).failures == failures

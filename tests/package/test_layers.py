@@ -1,0 +1,155 @@
+"""The house rules: imports run one way, heavy packages stay out, the public names are complete."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+import multibot_rewrite
+from multibot_rewrite import model
+
+PACKAGE = Path(multibot_rewrite.__file__).parent
+# The order of the floors: a module imports from floors below its own, or from its own folder.
+FLOORS = (
+    ("model", "bulk", "version", "lazy"),
+    ("rosnames", "naming", "config"),
+    ("rewriters",),
+    ("steps",),
+    ("checks", "sources"),
+    ("pipeline",),
+    ("reports",),
+    ("library",),
+    ("remap",),
+    ("graph", "lint", "companions"),
+    ("fleets",),
+    ("__init__", "launch"),
+    ("cli",),
+)
+HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro")
+# What a start pays for without need; the commands import these where they use them.
+LATE = (*HEAVY, "yaml", "rich", "numpy", "difflib")
+SOURCES = {
+    path.relative_to(PACKAGE).as_posix(): ast.parse(path.read_text())
+    for path in sorted(PACKAGE.rglob("*.py"))
+}
+
+
+def imports(tree: ast.AST) -> Iterator[str]:
+    """Full names of what a module imports, anywhere in it."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "imports are absolute"
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def room(file: str) -> str:
+    """The module or folder right below the package that a file belongs to."""
+    return file.partition("/")[0].removesuffix(".py")
+
+
+def floor(room_: str) -> int:
+    found = [level for level, rooms in enumerate(FLOORS) if room_ in rooms]
+    assert found, f"{room_} has no floor yet: give it one in FLOORS"
+    return found[0]
+
+
+def inner(file: str) -> set[str]:
+    """The files of the package that a file imports."""
+    found = set()
+    for name in imports(SOURCES[file]):
+        parts = name.split(".")
+        if parts[0] != PACKAGE.name:
+            continue
+        paths = ["/".join(parts[1:end]) for end in range(len(parts), 0, -1)]
+        files_ = [f"{path}{end}".lstrip("/") for path in paths for end in (".py", "/__init__.py")]
+        found.add(next(path for path in files_ if path in SOURCES))
+    return found
+
+
+@pytest.mark.parametrize("file", SOURCES)
+def test_imports_run_one_way(file: str) -> None:
+    own = room(file)
+    wrong = [
+        other for other in inner(file) if room(other) != own and floor(room(other)) >= floor(own)
+    ]
+    assert wrong == []
+
+
+def test_no_module_imports_itself_by_a_detour() -> None:
+    TopologicalSorter({file: inner(file) for file in SOURCES}).prepare()
+
+
+def test_the_check_sees_the_imports_there_are() -> None:
+    assert inner("library.py") >= {"model.py", "naming.py", "pipeline.py"}
+    assert inner("__init__.py") == {"fleets/scripts.py", "library.py", "model.py", "version.py"}
+
+
+def test_heavy_packages_have_one_door_each() -> None:
+    doors = defaultdict(set)
+    for file, tree in SOURCES.items():
+        for name in imports(tree):
+            doors[name.split(".")[0]].add(file)
+    assert {name: doors[name] for name in HEAVY if len(doors[name]) > 1} == {}
+
+
+def loaded(code: str) -> set[str]:
+    """The modules a fresh interpreter has after running ``code``, beyond those of a bare start."""
+    end = "; import sys; print(*sys.modules)"
+    run = [sys.executable, "-c"]
+    after = subprocess.run([*run, code + end], capture_output=True, text=True, check=True)
+    bare = subprocess.run([*run, "pass" + end], capture_output=True, text=True, check=True)
+    return set(after.stdout.split()) - set(bare.stdout.split())
+
+
+def test_a_start_loads_no_more_than_it_needs() -> None:
+    there = loaded("import multibot_rewrite as m; m.rewrite('<robot name=\"r\"/>', 'r1')")
+    assert "multibot_rewrite.library" in there
+    assert sorted(there & set(LATE)) == []
+
+
+def test_the_package_alone_loads_nothing() -> None:
+    there = {name for name in loaded("import multibot_rewrite") if name.startswith(PACKAGE.name)}
+    assert there == {PACKAGE.name, f"{PACKAGE.name}.version"}
+
+
+def test_all_names_what_is_there() -> None:
+    missing = [name for name in multibot_rewrite.__all__ if not hasattr(multibot_rewrite, name)]
+    assert missing == []
+    assert sorted(set(multibot_rewrite.__all__)) == multibot_rewrite.__all__
+
+
+def test_all_is_complete() -> None:
+    offered = {name.rpartition(".")[2] for name in imports(SOURCES["__init__.py"])}
+    assert offered - {"annotations", "import_module", "TYPE_CHECKING", "__version__"} == set(
+        multibot_rewrite.__all__
+    )
+
+
+def test_every_error_is_public_and_one_family() -> None:
+    errors = {n for n, v in vars(model).items() if isinstance(v, type) and issubclass(v, Exception)}
+    assert errors <= set(multibot_rewrite.__all__)
+    family = [getattr(multibot_rewrite, name) for name in errors]
+    assert all(issubclass(error, multibot_rewrite.MultibotError) for error in family)
+
+
+def test_the_package_ships_its_types_and_its_data() -> None:
+    assert files("multibot_rewrite").joinpath("py.typed").is_file()
+    assert files("multibot_rewrite").joinpath("vocabulary/urdf.vocab").is_file()
+
+
+@pytest.mark.parametrize("file", SOURCES)
+def test_every_module_says_what_it_is_for(file: str) -> None:
+    name = file.removesuffix(".py").replace("/", ".").removesuffix("__init__").rstrip(".")
+    module = importlib.import_module(f"multibot_rewrite.{name}".rstrip("."))
+    assert module.__doc__

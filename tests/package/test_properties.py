@@ -1,0 +1,247 @@
+"""What holds for any robot at all, tried on random ones with nasty names and odd spelling."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from lxml import etree
+from robots import (
+    LAYOUTS,
+    PARAMETERS,
+    ROBOT,
+    SEPARATORS,
+    Names,
+    Options,
+    Robot,
+    bare,
+    changed_slots,
+    graph_problems,
+    is_insertion,
+    new_names,
+    random_robots,
+    robot_names,
+    slots,
+    spelled,
+)
+
+from multibot_rewrite import (
+    Rewrite,
+    RewriteRefused,
+    UsageError,
+    pipeline,
+    rewrite,
+    rewrite_all,
+    strip,
+)
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rosnames import check_robot_name, propose_token
+
+PLAIN = b'<robot name="r"><link name="base"/></robot>'
+RENAMED_ATTRIBUTES = {"name", "link", "joint", "reference"}
+
+options = st.fixed_dictionaries(
+    {},
+    optional={
+        "layout": st.sampled_from(LAYOUTS),
+        "affix": st.sampled_from(("postfix", "prefix")),
+        "topics": st.sampled_from(("postfix", "prefix", "namespace")),
+        "separators": st.fixed_dictionaries(
+            {},
+            optional={kind: st.sampled_from(marks.split()) for kind, marks in SEPARATORS.items()},
+        ),
+        "shared_frames": st.sampled_from(((), ("world",), ("odom", "base_link", "x"))),
+    },
+)
+
+
+def attempt(robot: Robot, words: Options, name: str = ROBOT) -> Rewrite | None:
+    """The rewrite, or None where it was refused for a reason that is true."""
+    try:
+        return rewrite(robot.text, name, **words)
+    except RewriteRefused as error:
+        codes = {finding.code for finding in error.findings if finding.level == "error"}
+        assert codes <= true_reasons(robot, words, name), str(error)
+        return None
+
+
+def true_reasons(robot: Robot, words: Options, name: str) -> set[str]:
+    """The codes with which this robot may be refused."""
+    root = etree.fromstring(robot.text)
+    table = new_names(root, words, name)
+    reasons = {"MB104"} if robot.style.escapes or b"&" in robot.text else set()
+    if any(len(set(kind.values())) < len(kind) for kind in table) or dangling_meets(root, table):
+        reasons.add("MB420")
+    if all(rewritten(old, new, name) for kind in table for old, new in kind.items()):
+        reasons.add("MB106")
+    return reasons
+
+
+def dangling_meets(root: etree._Element, table: Names) -> bool:
+    """Would something that is named but not declared be declared after the rewrite?"""
+    come = {new for kind in table for new in kind.values() if new not in kind}
+    return any(slot.value in come for slot in slots(root))
+
+
+def rewritten(old: str, new: str, robot: str) -> bool:
+    """Does the old name already carry the robot's affix, or does it keep its name anyway?"""
+    return old == new or robot in old
+
+
+@given(random_robots(), options)
+@settings(max_examples=400)
+def test_it_is_the_same_robot_under_new_names(robot: Robot, words: Options) -> None:
+    result = attempt(robot, words)
+    if result:
+        assert graph_problems(robot.text, result.data, words) == []
+
+
+@given(random_robots(), options, robot_names)
+@settings(max_examples=300)
+def test_strip_gives_the_input_back(robot: Robot, words: Options, name: str) -> None:
+    result = attempt(robot, words, name)
+    if result:
+        naming = make_naming(**words)  # type: ignore[arg-type]
+        assert strip(result.data, name, naming=naming) == robot.text
+
+
+@given(random_robots(), options)
+@settings(max_examples=300)
+def test_changes_are_the_difference(robot: Robot, words: Options) -> None:
+    result = attempt(robot, words)
+    if result:
+        listed = [c for c in result.changes if c.rule != "inserted"]
+        found = changed_slots(robot.text, result.data)
+        wanted = Counter((" ".join(c.old.split()), " ".join(c.new.split())) for c in listed)
+        assert Counter((old.value, new) for old, new in found) == wanted
+
+
+@given(random_robots(), options)
+@settings(max_examples=300)
+def test_names_are_the_only_thing_that_changes(robot: Robot, words: Options) -> None:
+    result = attempt(robot, words)
+    for (tag, attribute, old), new in changed_slots(robot.text, result.data) if result else ():
+        assert is_insertion(old, new)
+        assert attribute in RENAMED_ATTRIBUTES if attribute else tag in PARAMETERS
+        assert tag != "note"
+
+
+@given(random_robots(), options, st.lists(robot_names, min_size=2, max_size=2, unique=True))
+@settings(max_examples=300)
+def test_two_robots_share_no_renamed_name(robot: Robot, words: Options, two: list[str]) -> None:
+    try:
+        results = list(rewrite_all(robot.text, two, **words))  # type: ignore[arg-type]
+    except RewriteRefused:
+        return
+    for kind in ("link", "joint"):
+        first, second = (renamed(robot.text, result, kind) for result in results)
+        assert not first & second
+
+
+def renamed(source: bytes, result: Rewrite, kind: str) -> set[str]:
+    """The names of one kind that are the robot's own."""
+    before = [item.get("name", "") for item in etree.fromstring(source).iterchildren(kind)]
+    after = [item.get("name", "") for item in bare(result.data, result.robot).iterchildren(kind)]
+    return {new for old, new in zip(before, after, strict=True) if old != new}
+
+
+@given(random_robots(), options, st.lists(robot_names, min_size=1, max_size=4, unique=True))
+@settings(max_examples=200)
+def test_many_at_once_are_each_alone(robot: Robot, words: Options, fleet: list[str]) -> None:
+    try:
+        together = list(rewrite_all(robot.text, fleet, **words))  # type: ignore[arg-type]
+    except RewriteRefused:
+        return
+    alone = [rewrite(robot.text, name, **words) for name in fleet]
+    assert [r.data for r in together] == [r.data for r in alone]
+    assert [r.changes for r in together] == [r.changes for r in alone]
+    assert [r.robot for r in together] == fleet
+
+
+@given(random_robots())
+@settings(max_examples=200)
+def test_a_policy_that_renames_nothing_changes_no_byte(robot: Robot) -> None:
+    nothing = make_naming()._replace(separators={})
+    template = pipeline.prepare(robot.text, "robot", nothing, builtin_tree())
+    assert list(pipeline.render(template, [ROBOT, "r2"], again=True)) == [robot.text] * 2
+
+
+@given(random_robots(extras=False))
+@settings(max_examples=100)
+def test_bare_frames_leave_a_plain_description_alone(robot: Robot) -> None:
+    assert rewrite(robot.text, ROBOT, layout="L1").data == robot.text
+
+
+@given(random_robots(), options)
+@settings(max_examples=150)
+def test_a_second_rewrite_needs_again(robot: Robot, words: Options) -> None:
+    result = attempt(robot, words)
+    assume(result is not None and any(True for _ in etree.fromstring(robot.text).iter("link")))
+    assert result is not None
+    if graph_changed(result):
+        with pytest.raises(RewriteRefused, match="MB106"):
+            rewrite(result.data, ROBOT, **words)
+
+
+def graph_changed(result: Rewrite) -> bool:
+    """Was a link or a joint renamed?"""
+    return any(change.kind in ("link", "joint") for change in result.changes)
+
+
+@given(st.text(max_size=12) | st.text("ab_1- /", max_size=6) | st.just("a" * 246))
+@settings(max_examples=500)
+def test_any_text_is_a_robot_name_or_leads_to_one(text: str) -> None:
+    valid = re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", text) is not None and len(text) <= 245
+    if valid and "__" not in text:
+        assert check_robot_name(text) == text
+        assert f"base/{text}" in rewrite(PLAIN, text).text
+        return
+    with pytest.raises(UsageError) as caught:
+        rewrite(PLAIN, text)
+    proposal = str(caught.value).rpartition("use for example ")[2].strip("'")
+    assert check_robot_name(proposal) == proposal == propose_token(text)
+
+
+@given(st.text(max_size=8), st.sampled_from(("layout", "affix", "topics")))
+@settings(max_examples=100)
+def test_an_unknown_word_is_a_usage_error(word: str, option: str) -> None:
+    known = {*LAYOUTS, "postfix", "prefix", "namespace", ""}
+    assume(word not in known)
+    with pytest.raises(UsageError, match=option):
+        rewrite(PLAIN, ROBOT, **{option: word})
+
+
+def test_the_oracle_spells_by_hand() -> None:
+    assert spelled("/x", "/", {"affix": "prefix"}, "r") == "/r/x"
+    assert spelled("x", "_", {}, "r") == "x_r"
+    assert spelled("x", "_", {"layout": "L1"}, "r") == "x"
+    assert is_insertion("a b", "a/robot1 b")
+    assert not is_insertion("a b", "a/robot1 c")
+    assert not is_insertion("a", "a")
+
+
+def test_most_random_robots_are_rewritten() -> None:
+    taken: list[bool] = []
+
+    @given(random_robots(), options)
+    @settings(max_examples=100)
+    def count(robot: Robot, words: Options) -> None:
+        taken.append(attempt(robot, words) is not None)
+
+    count()
+    assert sum(taken) > 0.7 * len(taken)
+
+
+@pytest.mark.deep
+@given(random_robots(), options, robot_names)
+@settings(max_examples=10_000)
+def test_thousands_of_robots(robot: Robot, words: Options, name: str) -> None:
+    result = attempt(robot, words, name)
+    if result:
+        assert graph_problems(robot.text, result.data, words, name) == []
+        naming = make_naming(**words)  # type: ignore[arg-type]
+        assert strip(result.data, name, naming=naming) == robot.text

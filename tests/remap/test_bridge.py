@@ -1,0 +1,127 @@
+"""The bridge of a fleet carries each robot's gz topics once, under the names ROS nodes use."""
+
+from __future__ import annotations
+
+import pytest
+import yaml
+from robots import FIXTURES
+
+from multibot_rewrite.library import rewrite_all
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.bridge import Bridged, as_yaml, bridge, known_topics
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.document import read_document
+
+ROBOTS = ("robot1", "robot2")
+ROBOT = """\
+<robot name="rover">
+  <link name="base"/>
+  <gazebo reference="base">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+    <sensor name="eye" type="camera"><topic>eye/image</topic></sensor>
+    <sensor name="mute" type="imu"/>
+    <sensor name="old" type="imu"><plugin name="old" filename="libgazebo_ros_imu_sensor.so"/></sensor>
+  </gazebo>
+  <gazebo>
+    <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+      <odom_topic>odom</odom_topic>
+    </plugin>
+    <plugin filename="gz-sim-joint-state-publisher-system" name="gz::sim::systems::JointState"/>
+  </gazebo>
+</robot>
+"""
+
+
+def fleet(layout: str, source: str | bytes = ROBOT):
+    rewrites = rewrite_all(source, ROBOTS, layout=layout)
+    inventories = {
+        one.robot: collect(read_document(one.data, "rover"), builtin_tree()) for one in rewrites
+    }
+    return bridge(inventories, make_naming(layout))
+
+
+def names(layout: str) -> dict[str, str]:
+    """gz name -> ROS name of robot1's topics."""
+    return {item.gz: item.ros for item in fleet(layout)[0] if item.robot == "robot1"}
+
+
+def test_topics_of_the_default_layout() -> None:
+    assert names("L4") == {
+        "scan/robot1": "/scan/robot1",
+        "scan/robot1/points": "/scan/robot1/points",
+        "eye/image/robot1": "/eye/image/robot1",
+        "eye/camera_info/robot1": "/eye/camera_info/robot1",
+        "/model/rover_robot1/cmd_vel": "/cmd_vel/robot1",
+        "odom/robot1": "/odom/robot1",
+        "/model/rover_robot1/tf": "/tf/robot1",
+    }
+
+
+@pytest.mark.parametrize(
+    ("layout", "model", "tf"),
+    [
+        ("L1", "robot1", "/robot1/tf"),
+        ("L2", "rover_robot1", "/tf"),
+        ("L3", "rover_robot1", "/robot1/tf"),
+    ],
+)
+def test_topics_below_a_namespace(layout: str, model: str, tf: str) -> None:
+    found = names(layout)
+    assert found["robot1/scan"] == "/robot1/scan"
+    assert found["robot1/eye/camera_info"] == "/robot1/eye/camera_info"
+    assert found[f"/model/{model}/cmd_vel"] == "/robot1/cmd_vel"
+    assert found[f"/model/{model}/tf"] == tf
+
+
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3", "L4"])
+def test_two_robots_share_the_clock_and_nothing_else(layout: str) -> None:
+    carried, _ = fleet(layout)
+    shared = [item for item in carried if not item.robot]
+    assert shared == [
+        Bridged("", "/clock", "/clock", "rosgraph_msgs/msg/Clock", "gz.msgs.Clock", "GZ_TO_ROS")
+    ]
+    gz = {robot: {item.gz for item in carried if item.robot == robot} for robot in ROBOTS}
+    assert gz["robot1"].isdisjoint(gz["robot2"])
+    assert all(gz.values())
+
+
+def test_one_tf_for_all_is_carried_once() -> None:
+    source = ROBOT.replace("<odom_topic>", "<tf_topic>/tf</tf_topic><odom_topic>")
+    carried = [item for item in fleet("L2", source)[0] if item.ros == "/tf"]
+    assert [(item.robot, item.gz) for item in carried] == [("", "/tf")]
+    apart = [item for item in fleet("L3", source)[0] if item.ros.endswith("/tf")]
+    assert [(item.robot, item.gz) for item in apart] == [(it, f"/{it}/tf") for it in ROBOTS]
+
+
+def test_the_info_of_an_rgbd_camera_is_below_its_topic() -> None:
+    source = ROBOT.replace('type="camera"><topic>eye/image', 'type="rgbd_camera"><topic>eye')
+    carried = [item.gz for item in fleet("L2", source)[0] if item.robot == "robot1"]
+    assert "robot1/eye/camera_info" in carried
+    assert "robot1/eye/depth_image" in carried
+
+
+def test_what_hangs_on_the_world_is_said() -> None:
+    _, left = fleet("L2")
+    assert [(item.robot, item.line, item.what) for item in left if item.robot == "robot1"] == [
+        ("robot1", 6, "sensor mute_robot1"),
+        ("robot1", 13, "<topic> of gz-sim-joint-state-publisher-system"),
+    ]
+
+
+def test_the_file_is_what_the_bridge_reads() -> None:
+    rows = yaml.safe_load(
+        as_yaml(fleet("L4", (FIXTURES / "robots" / "rover_gz.urdf").read_bytes())[0])
+    )
+    keys = {"ros_topic_name", "gz_topic_name", "ros_type_name", "gz_type_name", "direction"}
+    assert rows and all(row.keys() == keys for row in rows)
+    assert {row["direction"] for row in rows} <= {"GZ_TO_ROS", "ROS_TO_GZ"}
+    assert len({row["ros_topic_name"] for row in rows}) == len(rows)
+
+
+def test_the_data_names_sections_and_elements_that_the_vocabulary_has() -> None:
+    vocabulary = load_vocabulary(packages=False)
+    for section, topics in known_topics()["plugins"].items():
+        (rewriter,) = vocabulary.find("plugin", section)
+        assert {topic[0] for topic in topics} <= {site.path for site in rewriter.sites}, section

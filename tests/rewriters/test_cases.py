@@ -1,0 +1,291 @@
+"""Every case file, byte by byte, and what must hold for any rewrite whatever the case."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import pytest
+import yourdfpy
+from case_files import Case, CaseError, load_cases
+from lxml import etree
+
+from multibot_rewrite import Rewrite, RewriteRefused, pipeline, rewrite, strip
+from multibot_rewrite.library import rewrite_all
+from multibot_rewrite.model import ERROR, Finding, Site
+from multibot_rewrite.naming import POSTFIX, Naming, make_naming
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.vocabulary import Rewriter, load_vocabulary
+from multibot_rewrite.steps.apply import fill
+
+ROBOTS = ("robot1", "robot2")
+CASES = load_cases()
+BY_NAME = {case.name: case for case in CASES}
+REWRITTEN = [case for case in CASES if case.expect != "refused"]
+CHANGED = [case for case in CASES if case.expect == "changed"]
+REFUSED = [case for case in CASES if case.expect == "refused"]
+# An element that holds others and no name of its own has nothing to show.
+REWRITERS = [
+    rewriter
+    for rewriter in load_vocabulary().rewriters("element", "plugin", "hardware", "sensor")
+    if rewriter.type != "element" or any(site.role != "keep" for site in rewriter.sites)
+]
+BLOCKS = load_vocabulary().rewriters("block")
+LEAST_CASES = 1050
+LEAST_REFEREED = 980
+# Not a word of rewrite's naming policy.
+NO_POLICY = ("again", "file", "urdf")
+# Rows of the vocabulary, by section and path, at which no case renames anything.
+UNEXERCISED: set[tuple[str, str]] = set()
+# A plugin's parameter may be called <joint> or <link> too.
+NAMELESS = {("model", ""), ("link", ""), ("joint", "")}
+# A row of the vocabulary: its section, path and line.
+Row = tuple[str, str, int]
+
+every = pytest.mark.parametrize("case", REWRITTEN, ids=lambda case: case.name)
+every_rewriter = pytest.mark.parametrize("rewriter", REWRITERS, ids=lambda rewriter: rewriter.name)
+
+
+def run(case: Case, source: bytes | None = None) -> Rewrite:
+    """The rewrite of the case's input, or of another ``source``, for the first robot."""
+    return _run(case.name, case.source if source is None else source)
+
+
+@cache
+def _run(name: str, source: bytes) -> Rewrite:
+    return rewrite(source, ROBOTS[0], **BY_NAME[name].options)
+
+
+def policy(case: Case) -> Naming:
+    """The naming policy that the case's options ask for."""
+    words = {key: value for key, value in case.options.items() if key not in NO_POLICY}
+    return make_naming(**words)
+
+
+def beside(case: Case) -> dict[str, bytes]:
+    """The rewritten URDF that the rewritten SRDF of a case belongs to, as an option of ``strip``."""
+    options = dict(case.options)
+    urdf = options.pop("urdf", None)
+    return {} if urdf is None else {"urdf": rewrite(urdf, ROBOTS[0], **options).data}
+
+
+def outside(case: Case) -> Declared:
+    """What the URDF beside an SRDF declares."""
+    urdf = case.options.get("urdf")
+    return {} if urdf is None else pipeline.declarations(urdf.read_bytes(), "", builtin_tree())
+
+
+def places(findings: tuple[Finding, ...]) -> list[str]:
+    """Findings the way case files write them."""
+    return sorted(f"{finding.code}@{finding.line}" for finding in findings)
+
+
+# ---------------------------------------------------------------- each case
+
+
+def test_no_case_was_lost() -> None:
+    assert len(CASES) >= LEAST_CASES
+
+
+@every
+def test_output_is_byte_exact(case: Case) -> None:
+    result = run(case)
+    assert result.data == case.output
+    assert places(result.findings) == sorted(case.finds)
+
+
+@pytest.mark.parametrize("case", REFUSED, ids=lambda case: case.name)
+def test_refused_with_that_code(case: Case) -> None:
+    with pytest.raises(RewriteRefused) as caught:
+        run(case)
+    errors = {finding.code for finding in caught.value.findings if finding.level == ERROR}
+    assert errors == {case.refusal}
+
+
+@every
+def test_identity(case: Case) -> None:
+    naming = policy(case)._replace(separators={}, topics=POSTFIX)
+    template = pipeline.prepare(case.source, case.name, naming, builtin_tree(), outside(case))
+    assert fill(template.pieces, ROBOTS[0]) == case.source
+    assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)
+
+
+@every
+def test_strip_gives_the_input_back(case: Case) -> None:
+    stripped = strip(run(case).data, ROBOTS[0], naming=policy(case), **beside(case))
+    assert stripped == case.source
+
+
+@every
+def test_two_robots_are_disjoint(case: Case) -> None:
+    first, second = (result.data for result in rewrite_all(case.source, ROBOTS, **case.options))
+    old = declared(case.source)
+    assert (declared(first) - old).isdisjoint(declared(second) - old)
+    if not any(robot.encode() in case.source for robot in ROBOTS):
+        assert first.replace(b"robot1", b"robot2") == second
+
+
+def declared(data: bytes) -> set[tuple[str, str]]:
+    """Tag and name of every model, link and joint, nested or not."""
+    found = etree.fromstring(data).iter("model", "link", "joint")
+    return {(str(element.tag), element.get("name", "")) for element in found} - NAMELESS
+
+
+@every
+def test_line_ends_stay_crlf(case: Case) -> None:
+    assert run(case, crlf(case.source)).data == crlf(case.output)
+
+
+def crlf(data: bytes) -> bytes:
+    """The text with every line end written as Windows does."""
+    return data.replace(b"\r\n", b"\n").replace(b"\n", b"\r\n")
+
+
+@every
+def test_only_lines_with_edits_change(case: Case) -> None:
+    result = run(case)
+    plan = result.template.plan
+    if plan.insertions:
+        return  # they have lines of their own
+    pairs = zip(case.source.split(b"\n"), result.data.split(b"\n"), strict=True)
+    changed = {number for number, (old, new) in enumerate(pairs) if old != new}
+    assert changed == {case.source.count(b"\n", 0, edit.start) for edit in plan.edits}
+
+
+# ---------------------------------------------------------------- another reader
+
+
+@every
+def test_yourdfpy_sees_the_same(case: Case) -> None:
+    before = sizes(case.source) if is_urdf(case) else None
+    assert before is None or sizes(run(case).data) == before
+
+
+def is_urdf(case: Case) -> bool:
+    """Is the input what yourdfpy reads? An SRDF is a ``<robot>`` too, an SDF it takes for empty."""
+    return "urdf" not in case.options and etree.fromstring(case.source).tag == "robot"
+
+
+def test_yourdfpy_refereed_enough_cases() -> None:
+    refereed = [case for case in REWRITTEN if is_urdf(case) and sizes(case.source) is not None]
+    assert len(refereed) >= LEAST_REFEREED
+
+
+@cache
+def sizes(data: bytes) -> tuple[int, int] | None:
+    """How many links and joints yourdfpy sees; None where it cannot load the description."""
+    scenes = dict.fromkeys(("build_scene_graph", "build_collision_scene_graph"), False)
+    try:
+        robot = yourdfpy.URDF.load(io.BytesIO(data), load_meshes=False, **scenes)
+    except Exception:  # whatever it may stumble over
+        return None
+    return len(robot.robot.links), len(robot.robot.joints)
+
+
+# ---------------------------------------------------------------- what the cases cover
+
+
+@every
+def test_the_named_rewriter_is_at_work(case: Case) -> None:
+    _, claims, hosts, *_ = run(case).template.inventory
+    served = {host.node.rewriter.name for host in hosts if host.node.rewriter is not None}
+    assert case.rewriter in served | {claim.site.section for claim in claims}
+
+
+@every_rewriter
+def test_every_rewriter_has_a_changed_and_a_same_case(rewriter: Rewriter) -> None:
+    renames = any(site.role != "keep" for site in rewriter.sites)
+    wanted = {"changed", "same"} if renames else {"same"}
+    assert wanted <= {case.expect for case in CASES if case.rewriter == rewriter.name}
+
+
+@every_rewriter
+def test_every_default_and_hard_wired_topic_is_inserted(rewriter: Rewriter) -> None:
+    cases = [case for case in REWRITTEN if case.rewriter == rewriter.name]
+    inserted = {item.old for case in cases for item in run(case).template.plan.insertions}
+    assert not rewriter.inserts or literals(rewriter) <= inserted
+
+
+def literals(rewriter: Rewriter) -> set[str]:
+    """What the consumer falls back to or hard-wires, private topics aside."""
+    stated = {site.default.rpartition("?")[2] for site in rewriter.sites}
+    defaults = {default for default in stated if "/../" not in default}
+    return defaults - {"", "/"} | {topic for topic in rewriter.topics if topic[0] != "~"}
+
+
+def test_every_row_of_the_vocabulary_renames_something() -> None:
+    touched = {row for case in CHANGED for row in touched_rows(case)}
+    wanted = {place(site): site for rewriter in REWRITERS + BLOCKS for site in rows(rewriter)}
+    left = {(site.section, site.path) for row, site in wanted.items() if row not in touched}
+    assert left == UNEXERCISED
+
+
+def rows(rewriter: Rewriter) -> list[Site]:
+    """The rows of its own section at which something may be renamed."""
+    own = f"{rewriter.type} {rewriter.names[0]}"
+    return [site for site in rewriter.sites if site.role != "keep" and site.section == own]
+
+
+def touched_rows(case: Case) -> Iterator[Row]:
+    """The rows at which the case renames a value."""
+    _, plan, *_ = template = run(case).template
+    for claim, spelling in zip(template.inventory.claims, plan.spellings, strict=True):
+        if spelling:
+            yield place(claim.site)
+    for claim, _ in plan.collisions:
+        yield place(claim.site)
+
+
+def place(site: Site) -> Row:
+    """Where the vocabulary has this site; two flavours of a plugin share section and path."""
+    return site.section, site.path, site.line
+
+
+# ---------------------------------------------------------------- the loader
+
+HEAD = b"about: a test\nrewriter: element robot\n"
+SAME = HEAD + b"expect: same\n----\n<robot/>\n"
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        pytest.param(b"colour: red\n" + SAME, "'colour: red' is unknown", id="header"),
+        pytest.param(b"about: it\n" + SAME, "there twice", id="header-twice"),
+        pytest.param(SAME.partition(b"\n")[2], "header about is missing", id="no-about"),
+        pytest.param(HEAD + b"expect: same\n----\n", "same needs", id="no-input"),
+        pytest.param(SAME.replace(b"same", b"changed"), "input, output", id="no-output"),
+        pytest.param(SAME + b"----\n<robot/>\n", "same needs", id="same-with-output"),
+        pytest.param(HEAD + b"expect: refused\n----\n<robot/>\n", "refused CODE", id="no-code"),
+        pytest.param(
+            SAME.replace(b"same", b"changed") + b"----\n<robot/>\n",
+            "the output equals the input",
+            id="nothing-changed",
+        ),
+        pytest.param(b"options: layout\n" + SAME, "'layout' is not key=value", id="option"),
+        pytest.param(b"options: urdf=no.urdf\n" + SAME, "there is no .*no.urdf", id="urdf"),
+    ],
+)
+def test_a_wrong_case_is_refused(tmp_path: Path, data: bytes, words: str) -> None:
+    write(tmp_path / "odd" / "mine.case", data)
+    with pytest.raises(CaseError, match=words) as caught:
+        load_cases(tmp_path)
+    assert "odd/mine" in str(caught.value)
+
+
+@pytest.mark.parametrize("other", ["plain/mine.case", "odd/notes.txt"])
+def test_a_wrong_folder_is_refused(tmp_path: Path, other: str) -> None:
+    write(tmp_path / "odd" / "mine.case", SAME)
+    assert [case.name for case in load_cases(tmp_path)] == ["odd/mine"]
+    write(tmp_path / other, SAME)
+    with pytest.raises(CaseError, match=r"there is a case odd/mine already|something else"):
+        load_cases(tmp_path)
+
+
+def write(path: Path, data: bytes) -> None:
+    """A file, and the folder it stands in."""
+    path.parent.mkdir(exist_ok=True)
+    path.write_bytes(data)
