@@ -427,7 +427,7 @@ def test_every_code_is_on_the_page() -> None:
     home = Path(__file__).parents[2]
     source = "".join(
         (home / "multibot_rewrite" / "companions" / f"{name}.py").read_text()
-        for name in ("moveit", "behavior_tree", "lua")
+        for name in ("moveit/rewrite", "behavior_tree", "lua")
     )
     page = (home / "docs" / "moveit.md").read_text()
     assert set(re.findall(r'"(MF\d{3})"', source)) == set(re.findall(r"MF\d{3}", page))

@@ -699,8 +699,8 @@ def test_the_page_has_the_table_and_every_code() -> None:
     text = (ROOT / "docs" / "params.md").read_text()
     assert text.endswith(page(built_in_params()))
     source = "".join(
-        (ROOT / "multibot_rewrite" / "companions" / name).read_text()
-        for name in ("sections.py", "respelled_params.py", "inserted_params.py")
+        (ROOT / "multibot_rewrite" / "companions" / "params" / name).read_text()
+        for name in ("sections.py", "values.py", "inserted.py")
     )
     assert set(re.findall(r"MF1\d\d", text)) == set(re.findall(r'"(MF1\d\d)"', source))
 

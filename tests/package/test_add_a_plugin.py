@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import pytest
 
-from multibot_rewrite import vocabulary
+from multibot_rewrite.rewriters import vocabulary
 from multibot_rewrite.rewriters.vocabulary import FORMS, KINDS, TYPES
 from multibot_rewrite.rewriters.vocabulary.grammar import OPTIONS, ROLES, SETTINGS
 

@@ -145,7 +145,7 @@ def test_every_error_is_public_and_one_family() -> None:
 
 def test_the_package_ships_its_types_and_its_data() -> None:
     assert files("multibot_rewrite").joinpath("py.typed").is_file()
-    assert files("multibot_rewrite").joinpath("vocabulary/urdf.vocab").is_file()
+    assert files("multibot_rewrite").joinpath("rewriters/vocabulary/urdf.vocab").is_file()
 
 
 @pytest.mark.parametrize("file", SOURCES)

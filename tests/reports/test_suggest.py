@@ -16,7 +16,7 @@ from multibot_rewrite.rewriters.vocabulary import Vocabulary, load_vocabulary
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
-HERE = Path(multibot_rewrite.__file__).parent / "vocabulary"
+HERE = Path(multibot_rewrite.__file__).parent / "rewriters" / "vocabulary"
 ROBOT = """<robot name="bot"><link name="base"/><link name="arm"/><link name="both"/>
 <joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>
 <joint name="knee" type="fixed"><parent link="base"/><child link="both"/></joint>
