@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
@@ -64,7 +64,7 @@ def fleet(robots: int, topics: int) -> Expectation:
     return Expectation(
         "both",
         tuple(
-            WantedRobot(
+            PlannedRobot(
                 robot,
                 (f"/{robot}/driver", f"/{robot}/planner"),
                 (f"{robot}/base_link", f"{robot}/laser"),
@@ -79,13 +79,13 @@ def fleet(robots: int, topics: int) -> Expectation:
     )
 
 
-def _topic(robot: str, at: int) -> tuple[Wanted, Wanted]:
+def _topic(robot: str, at: int) -> tuple[PlannedEndpoint, PlannedEndpoint]:
     ends = (f"/{robot}/driver", f"/{robot}/planner")
     name = f"/{robot}/topic{at}"
     giver, taker = ends if at % 2 else ends[::-1]
     return (
-        Wanted(giver, TOPIC, PUBLISHES, name, TEXT, f"topic{at}"),
-        Wanted(taker, TOPIC, SUBSCRIBES, name, TEXT, f"topic{at}"),
+        PlannedEndpoint(giver, TOPIC, PUBLISHES, name, TEXT, f"topic{at}"),
+        PlannedEndpoint(taker, TOPIC, SUBSCRIBES, name, TEXT, f"topic{at}"),
     )
 
 
@@ -109,7 +109,7 @@ def healthy(plan: Expectation) -> Snapshot:
     )
 
 
-def _chain(robot: WantedRobot) -> Iterable[Frame]:
+def _chain(robot: PlannedRobot) -> Iterable[Frame]:
     """map, then the robot's frames below one another."""
     static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
     yield Frame(robot.frames[0], "map", robot.tf, False, ())
@@ -159,9 +159,9 @@ def spoiled(plan: Expectation) -> Snapshot:
 def nasty(plan: Expectation) -> tuple[Expectation, Snapshot]:
     """A plan and a graph where robots, nodes, topics, types, frames and caveats have names that
     bite; the odd robot talks across."""
-    odd = WantedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
+    odd = PlannedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
     first = plan.robots[0].nodes[0]
-    missed = (Wanted(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY)
+    missed = (PlannedEndpoint(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY)
     worse = plan._replace(
         layout=odd.name, robots=(*plan.robots, odd), endpoints=(*plan.endpoints, *missed)
     )

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from multibot_rewrite.cli.multibot import main as multibot
-from multibot_rewrite.graph.expectation import Expectation, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
     Caveat,
@@ -90,7 +90,7 @@ def as_planned(plan: Expectation) -> Snapshot:
     return sent(Snapshot(tuple(nodes), tuple(ends), tuple(edges), environment()))
 
 
-def robot_edges(robot: WantedRobot) -> Iterator[Frame]:
+def robot_edges(robot: PlannedRobot) -> Iterator[Frame]:
     """Its frames in one tree: a rover's as its description has them, else all below the first."""
     bare = {unspelled(frame, robot.name): frame for frame in robot.frames}
     root = bare.get("odom") or robot.frames[0]

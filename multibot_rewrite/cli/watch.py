@@ -11,7 +11,7 @@ from multibot_rewrite.cli.tables import Grid, renderable
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
-from multibot_rewrite.graph.watching import Moment, Verdict, next_moment
+from multibot_rewrite.graph.watching import WatchState, Verdict, next_state
 
 WORDS = {
     Verdict.PLANNED: "as planned",
@@ -20,18 +20,18 @@ WORDS = {
 }
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
-Show = Callable[[Moment], None]
+Show = Callable[[WatchState], None]
 
 
-def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> Moment | None:
+def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
-    moment: Moment | None = None
+    moment: WatchState | None = None
     with ExitStack() as stack:
         stack.enter_context(closing(snapshots))
         show = stack.enter_context(_screen()) if sys.stdout.isatty() else _print_lines
         try:
             for graph in snapshots:
-                moment = next_moment(plan, graph, moment)
+                moment = next_state(plan, graph, moment)
                 show(moment)
         except KeyboardInterrupt:
             # The usual way to end it.
@@ -39,7 +39,7 @@ def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> Mom
     return moment
 
 
-def _print_lines(moment: Moment) -> None:
+def _print_lines(moment: WatchState) -> None:
     """What changed, for a log: findings come with + and go with -."""
     at = f"{moment.graph.environment.seconds:7.1f} s"
     changes = (("+", moment.appeared), ("-", moment.solved)) if moment.whole else ()
@@ -57,7 +57,7 @@ def _screen() -> Iterator[Show]:
         yield lambda moment: live.update(Group(*map(renderable, _parts(moment))), refresh=True)
 
 
-def _parts(moment: Moment) -> Iterator[str | Grid]:
+def _parts(moment: WatchState) -> Iterator[str | Grid]:
     yield _headline(moment)
     yield ""
     per_robot = {robot.robot: 0 for robot in moment.robots}
@@ -84,7 +84,7 @@ def _more(count: int, what: str) -> Iterator[str]:
         yield f"and {count - _SHOWN} more {what}"
 
 
-def _headline(moment: Moment) -> str:
+def _headline(moment: WatchState) -> str:
     """One line: how much is there, and what it comes to."""
     nodes = _of(_sum(it.nodes for it in moment.robots))
     names = _of(_sum(it.names for it in moment.robots))

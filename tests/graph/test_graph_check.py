@@ -25,9 +25,9 @@ from graph_cases import (
 )
 
 from multibot_rewrite.graph.check import ABSENCE, check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect, spelled
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
-from multibot_rewrite.graph.rules.owners import name_owners
+from multibot_rewrite.graph.rules.ownership import name_ownership
 from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphEndpoint, GraphNode, Qos, Snapshot
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
@@ -146,7 +146,7 @@ def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
 
 def test_a_name_that_the_plan_has_for_two_robots_is_a_leak_too() -> None:
     ends = [
-        Wanted(f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm")
+        PlannedEndpoint(f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm")
         for robot in ROBOTS
     ]
     wanted = plan()._replace(endpoints=(*plan().endpoints, *ends))
@@ -282,7 +282,7 @@ def test_absence_codes_are_codes_of_rules(code: str) -> None:
     ],
 )
 def test_the_owner_of_a_name(name: str, robot: str) -> None:
-    assert name_owners(plan()).of(name) == robot
+    assert name_ownership(plan()).of(name) == robot
 
 
 # ---------------------------------------------------------------- causes
@@ -339,7 +339,7 @@ def test_the_rule_of_the_postfix_layout() -> None:
 
 
 def test_an_action_needs_more_than_one_rule() -> None:
-    end = Wanted("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
+    end = PlannedEndpoint("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
     wanted = plan()._replace(endpoints=(*plan().endpoints, end))
     there = GraphEndpoint("action", "serves", "/go", "a/action/B", "", end.node, None, "")
     hidden = there._replace(
@@ -353,7 +353,7 @@ def test_an_action_needs_more_than_one_rule() -> None:
 
 def test_a_managed_node_may_not_be_configured() -> None:
     name = "/robot1/driver/get_state"
-    end = Wanted("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
+    end = PlannedEndpoint("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
     wanted = plan()._replace(endpoints=(*plan().endpoints, end))
     state = GraphEndpoint(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
     kept = (e for e in healthy().endpoints if e.name != "/robot1/reset")
@@ -598,7 +598,7 @@ def test_a_teleop_of_one_robot_is_no_fault_of_the_other() -> None:
 def with_pilot(name: str) -> tuple[Expectation, Snapshot]:
     """A planned pilot of robot1 that is not there, and one that is, with another topic."""
     first, second = plan().robots
-    end = Wanted("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
+    end = PlannedEndpoint("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
     wanted = plan()._replace(
         robots=(first._replace(nodes=(*first.nodes, "/robot1/pilot")), second),
         endpoints=(*plan().endpoints, end),
@@ -651,7 +651,7 @@ def test_a_topic_that_fell_below_a_costmap() -> None:
 def test_a_topic_that_is_planned_above_is_enough() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan", published="/robot1/other")
     assert check(wanted, graph) == []
-    end = Wanted(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
+    end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
     found = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
     assert [f.code for f in found] == ["MG102", "MG110"]
     assert "falls below the node's own namespace" in found[0].cause
@@ -659,7 +659,7 @@ def test_a_topic_that_is_planned_above_is_enough() -> None:
 
 def test_a_costmap_whose_plan_is_wrong_is_told_too() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan")
-    end = Wanted(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
+    end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
     (found,) = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
     assert found.code == "MG110"
 
@@ -672,7 +672,7 @@ def test_a_costmap_that_is_not_planned() -> None:
 def test_a_planned_name_below_a_namespace_of_another_node_is_meant_so() -> None:
     first, second = plan().robots
     arm = "/robot1/arm/controller"
-    end = Wanted(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
+    end = PlannedEndpoint(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
     wanted = plan()._replace(
         robots=(first._replace(nodes=(*first.nodes, arm)), second),
         endpoints=(*plan().endpoints, end),
@@ -843,7 +843,7 @@ def robots_called(*names: str, layout: str = "L2") -> Expectation:
     ],
 )
 def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot: str) -> None:
-    assert name_owners(robots_called(*robots, layout=layout)).of(name) == robot
+    assert name_ownership(robots_called(*robots, layout=layout)).of(name) == robot
 
 
 @pytest.mark.parametrize(
@@ -859,7 +859,7 @@ def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot:
     ],
 )
 def test_a_name_without_the_robots(layout: str, name: str, bare: str) -> None:
-    assert name_owners(plan(layout)).bare(name, "robot1") == bare
+    assert name_ownership(plan(layout)).bare(name, "robot1") == bare
 
 
 # ---------------------------------------------------------------- size

@@ -26,14 +26,14 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.graph.pictures.lighter import plain, rest
-from multibot_rewrite.graph.pictures.marks import (
+from multibot_rewrite.graph.pictures.simplify import plain, rest
+from multibot_rewrite.graph.pictures.states import (
     CLASH,
     CROSS_TALK,
     LEAK,
     MISSING,
     OK,
-    TROUBLE,
+    FAULTY,
     UNEXPECTED,
 )
 from multibot_rewrite.graph.pictures.mermaid import MOST_EDGES, MOST_LETTERS, to_mermaid
@@ -106,7 +106,7 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
     assert {edge.state for group in scene.groups for edge in group.edges} == {OK}
     assert set(node_states(scene).values()) == {OK}
     assert [group.robot for group in scene.groups] == ["robot1", "robot2", ""]
-    assert scene.reaches == ()
+    assert scene.crossings == ()
     for robot in plan.robots:
         own = {n.name for n in group(scene, robot.name).nodes if n.robot == robot.name}
         assert own == set(robot.nodes)
@@ -121,7 +121,7 @@ def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> Non
     assert states(scene, "")["/scan"] == {LEAK}
     assert "/scan" not in states(scene, "robot2")
     assert node_states(scene)[own.node] == LEAK
-    assert [(r.source, r.target, r.names) for r in scene.reaches] == [
+    assert [(r.source, r.target, r.names) for r in scene.crossings] == [
         ("robot1", "", ("subscribes /scan",))
     ]
 
@@ -138,7 +138,7 @@ def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None
     scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), *CROSSED))
     assert CROSS_TALK in states(scene, "robot1")["/robot1/scan"]
     assert states(scene, "robot2")["/robot1/scan"] == {CROSS_TALK}
-    assert scene.reaches == (("robot2", "", "robot1", CROSS_TALK, ("subscribes /robot1/scan",)),)
+    assert scene.crossings == (("robot2", "", "robot1", CROSS_TALK, ("subscribes /robot1/scan",)),)
     drawing = pick(page(scene), "svg", "overview")[0]
     assert len(pick(drawing, "path", "reach bad")) == 1
     assert [tile.get("class") for tile in pick(drawing, "g", "tile")] == ["tile odd", "tile bad"]
@@ -170,7 +170,7 @@ def test_what_a_plan_leaves_open_is_not_drawn_as_missing() -> None:
     loose = plan._replace(robots=(first._replace(optional=("/robot1/amcl",)), *others))
     scene = drawn.scene(loose, drawn.without_node(drawn.healthy(plan), "/robot1/amcl"))
     assert "/robot1/amcl" not in node_states(scene)
-    assert TROUBLE.isdisjoint(edge.state for edge in group(scene, "robot1").edges)
+    assert FAULTY.isdisjoint(edge.state for edge in group(scene, "robot1").edges)
 
 
 def test_a_node_and_a_topic_that_nobody_planned() -> None:
@@ -231,7 +231,7 @@ def test_among_what_is_shared_a_robot_is_one_box() -> None:
     plan = drawn.nav2()
     shared = group(drawn.scene(plan, drawn.healthy(plan)), "")
     assert {node.name for node in shared.nodes} == {"robot1", "robot2"}
-    assert all(node.whole for node in shared.nodes)
+    assert all(node.is_robot for node in shared.nodes)
     assert {name.name for name in shared.names} >= {"/rosout", "/diagnostics", "/tf"}
 
 
@@ -257,7 +257,7 @@ def test_the_light_picture_and_the_rest_are_the_whole() -> None:
         assert merged <= {name.name for name in more.names}
         assert not any(name in shown for name in ("/rosout", "/parameter_events"))
         # What is wrong is never put away.
-        assert {e.name for e in more.edges if e.state in TROUBLE - {MISSING}} == set()
+        assert {e.name for e in more.edges if e.state in FAULTY - {MISSING}} == set()
 
 
 # ---------------------------------------------------------------- places
@@ -324,7 +324,7 @@ def crossings(edges: list[tuple[float, float]]) -> int:
 
 def test_each_robots_tree_stands_by_itself_below_a_shared_root() -> None:
     plan = drawn.nav2("L2")
-    trees = drawn.scene(plan, drawn.healthy(plan)).outlines
+    trees = drawn.scene(plan, drawn.healthy(plan)).trees
     assert [(tree.topic, tree.robot, tree.rows[0].frame) for tree in trees] == [
         ("/tf", "robot1", "map"),
         ("/tf", "robot2", "map"),
@@ -334,7 +334,7 @@ def test_each_robots_tree_stands_by_itself_below_a_shared_root() -> None:
 
 def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
     plan = drawn.nav2("L1")
-    trees = drawn.scene(plan, drawn.healthy(plan)).outlines
+    trees = drawn.scene(plan, drawn.healthy(plan)).trees
     assert [tree.topic for tree in trees] == ["/robot1/tf", "/robot2/tf"]
     assert {row.robot for row in trees[0].rows} == {"robot1"}
     assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
@@ -348,17 +348,17 @@ def with_frames(plan: Expectation, *more: Frame) -> Scene:
 def test_a_frame_with_two_parents_is_red_where_it_hangs() -> None:
     scene = with_frames(drawn.nav2(), Frame("imu_link/robot1", "map", "/tf", False, ()))
     (first, second) = (
-        row for tree in scene.outlines for row in tree.rows if row.frame == "imu_link/robot1"
+        row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
     )
     assert (first.state, first.words) == (CLASH, ("two parents",))
-    assert second.again and not first.again
-    red = [row.frame for tree in scene.outlines for row in tree.rows if row.state == CLASH]
+    assert second.repeated and not first.repeated
+    red = [row.frame for tree in scene.trees for row in tree.rows if row.state == CLASH]
     assert set(red) == {"imu_link/robot1"}
 
 
 def test_bare_frames_are_red_on_one_robots_topic_only() -> None:
     scene = with_frames(drawn.nav2("L1"), Frame("imu_link", "map", "/robot1/tf", False, ()))
-    red = {t.topic for t in scene.outlines for row in t.rows if row.state == CLASH}
+    red = {t.topic for t in scene.trees for row in t.rows if row.state == CLASH}
     assert red == {"/robot1/tf"}
 
 
@@ -367,7 +367,7 @@ def test_a_declared_frame_that_was_not_heard() -> None:
     graph = drawn.healthy(plan)
     last = plan.robots[1].frames[-1]
     silent = graph._replace(frames=tuple(f for f in graph.frames if f.child != last))
-    unheard = drawn.scene(plan, silent).outlines[-1]
+    unheard = drawn.scene(plan, silent).trees[-1]
     assert (unheard.heard, unheard.robot) == (False, "robot2")
     assert [(row.frame, row.state) for row in unheard.rows] == [(last, MISSING)]
 
@@ -375,7 +375,7 @@ def test_a_declared_frame_that_was_not_heard() -> None:
 def test_without_any_tf_no_frame_is_called_missing() -> None:
     plan = drawn.nav2()
     scene = drawn.scene(plan, drawn.healthy(plan)._replace(frames=()))
-    assert scene.outlines == ()
+    assert scene.trees == ()
     assert "No tf was heard" in section(page(scene), "tf").text_content()
 
 
@@ -383,7 +383,7 @@ def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
     ring = [Frame(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
     chain = [Frame(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
     scene = with_frames(drawn.nav2(), *ring, *chain)
-    rows = {row.frame: row for tree in scene.outlines for row in tree.rows}
+    rows = {row.frame: row for tree in scene.trees for row in tree.rows}
     assert rows["c3000"].depth == 3000
     assert {"r0", "r1", "r2"} <= set(rows)
     assert to_html(scene)

@@ -20,7 +20,7 @@ from multibot_rewrite.graph.environment import (
     settings,
     view_caveats,
 )
-from multibot_rewrite.graph.live.gather import (
+from multibot_rewrite.graph.live.assemble import (
     Changes,
     Heard,
     frames,

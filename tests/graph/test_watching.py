@@ -8,7 +8,7 @@ import pytest
 from test_graph_check import environment, healthy, moved, plan, without_node
 
 from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.graph.watching import Moment, There, Verdict, final, next_moment
+from multibot_rewrite.graph.watching import WatchState, Progress, Verdict, final, next_state
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
@@ -38,10 +38,10 @@ def clash() -> Snapshot:
     return graph._replace(endpoints=(*graph.endpoints, end))
 
 
-def watched(graphs: Iterable[Snapshot]) -> list[Moment]:
-    moments: list[Moment] = []
+def watched(graphs: Iterable[Snapshot]) -> list[WatchState]:
+    moments: list[WatchState] = []
     for graph in graphs:
-        moments.append(next_moment(plan(), graph, moments[-1] if moments else None))
+        moments.append(next_state(plan(), graph, moments[-1] if moments else None))
     return moments
 
 
@@ -96,7 +96,7 @@ def test_how_much_of_a_robot_is_there(
     graph: Snapshot, robot2: tuple[tuple[int, int], tuple[int, int]]
 ) -> None:
     (moment,) = watched([graph])
-    assert moment.robots == (There("robot1", (2, 2), (5, 5)), There("robot2", *robot2))
+    assert moment.robots == (Progress("robot1", (2, 2), (5, 5)), Progress("robot2", *robot2))
 
 
 def test_an_unplanned_node_is_not_counted() -> None:
