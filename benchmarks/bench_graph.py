@@ -91,7 +91,9 @@ def ends(size: Size) -> Iterator[PlannedEndpoint]:
                 full = f"/robot{robot}/{name}"
                 type_ = f"std_msgs/msg/{TYPES[topic % 2]}"
                 for role in (PUBLISHES, SUBSCRIBES):
-                    yield PlannedEndpoint(f"/robot{robot}/node{node}", TOPIC, role, full, type_, name)
+                    yield PlannedEndpoint(
+                        f"/robot{robot}/node{node}", TOPIC, role, full, type_, name
+                    )
 
 
 def plan_of(size: Size) -> Expectation:

@@ -28,7 +28,14 @@ from multibot_rewrite.graph.check import ABSENCE, check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect, spelled
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.rules.ownership import name_ownership
-from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphEndpoint, GraphNode, Qos, Snapshot
+from multibot_rewrite.graph.snapshot import (
+    Caveat,
+    GraphEndpoint,
+    GraphFrame,
+    GraphNode,
+    Qos,
+    Snapshot,
+)
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
     PUBLISHES,
@@ -82,7 +89,7 @@ def healthy(layout: str = "L2") -> Snapshot:
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        Frame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
+        GraphFrame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
         for robot in plan(layout).robots
     )
     return sent(graph._replace(frames=(*graph.frames, *odometry)))
@@ -146,7 +153,9 @@ def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
 
 def test_a_name_that_the_plan_has_for_two_robots_is_a_leak_too() -> None:
     ends = [
-        PlannedEndpoint(f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm")
+        PlannedEndpoint(
+            f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm"
+        )
         for robot in ROBOTS
     ]
     wanted = plan()._replace(endpoints=(*plan().endpoints, *ends))
@@ -170,7 +179,7 @@ def test_one_robot_listening_to_another() -> None:
 
 
 def test_what_hangs_on_a_parameter_is_not_missed() -> None:
-    assert not [w for w in plan().endpoints if w.asked == "extra"]
+    assert not [w for w in plan().endpoints if w.code_name == "extra"]
 
 
 def test_two_nodes_of_one_name() -> None:
@@ -213,7 +222,9 @@ def test_qos_that_cannot_connect(offered: Qos | None, wanted: Qos | None, clash:
 # ---------------------------------------------------------------- tf
 
 
-def edges(change: Callable[[Sequence[Frame]], Sequence[Frame]], layout: str = "L2") -> list[str]:
+def edges(
+    change: Callable[[Sequence[GraphFrame]], Sequence[GraphFrame]], layout: str = "L2"
+) -> list[str]:
     graph = healthy(layout)
     return codes(graph._replace(frames=tuple(change(graph.frames))), layout)
 
@@ -262,7 +273,7 @@ def test_a_leak_stays_a_leak_in_an_incomplete_view() -> None:
 
 @pytest.mark.parametrize("code", ABSENCE)
 def test_absence_codes_are_codes_of_rules(code: str) -> None:
-    rules = ("nodes", "names", "ends", "frames")
+    rules = ("nodes", "topics", "type_and_qos", "frames")
     folder = ROOT / "multibot_rewrite" / "graph" / "rules"
     assert any(f'"{code}"' in (folder / f"{rule}.py").read_text() for rule in rules)
 
@@ -282,7 +293,7 @@ def test_absence_codes_are_codes_of_rules(code: str) -> None:
     ],
 )
 def test_the_owner_of_a_name(name: str, robot: str) -> None:
-    assert name_ownership(plan()).of(name) == robot
+    assert name_ownership(plan()).robot(name) == robot
 
 
 # ---------------------------------------------------------------- causes
@@ -752,7 +763,9 @@ def test_a_name_put_in_twice(layout: str, name: str) -> None:
 def with_frame(layout: str, child: str, parent: str, static: bool = True) -> Snapshot:
     graph = healthy(layout)
     topic = next(f.topic for f in graph.frames if f.static)
-    return sent(graph._replace(frames=(*graph.frames, Frame(child, parent, topic, static, ()))))
+    return sent(
+        graph._replace(frames=(*graph.frames, GraphFrame(child, parent, topic, static, ())))
+    )
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -843,7 +856,7 @@ def robots_called(*names: str, layout: str = "L2") -> Expectation:
     ],
 )
 def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot: str) -> None:
-    assert name_ownership(robots_called(*robots, layout=layout)).of(name) == robot
+    assert name_ownership(robots_called(*robots, layout=layout)).robot(name) == robot
 
 
 @pytest.mark.parametrize(
@@ -859,7 +872,7 @@ def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot:
     ],
 )
 def test_a_name_without_the_robots(layout: str, name: str, bare: str) -> None:
-    assert name_ownership(plan(layout)).bare(name, "robot1") == bare
+    assert name_ownership(plan(layout)).without_robot(name, "robot1") == bare
 
 
 # ---------------------------------------------------------------- size

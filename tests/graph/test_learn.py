@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from robots import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.learning.choosing import choose, strays
-from multibot_rewrite.graph.learning.learn import Learned, learn
+from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner
+from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.snapshot import (
     QUIET,
@@ -108,14 +108,14 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 
 def learned(
     seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN
-) -> tuple[Learned, ...]:
+) -> tuple[LearnedNode, ...]:
     """What is learned, proved to survive the file."""
-    found = learn(seen, choose(seen, names, base), base, library)
+    found = learn(seen, choose_nodes(seen, names, base), base, library)
     assert to_yaml(found, "mine", library)
     return found
 
 
-def one(seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN) -> Learned:
+def one(seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN) -> LearnedNode:
     (found,) = learned(seen, *names, base=base, library=library)
     return found
 
@@ -132,7 +132,7 @@ def subscribes(name: str, type_: str = TEXT) -> Endpoint:
     return Endpoint(TOPIC, SUBSCRIBES, name, type_)
 
 
-def spelled(found: Learned) -> list[tuple[str, str]]:
+def spelled(found: LearnedNode) -> list[tuple[str, str]]:
     return [(end.role, end.name) for end in found.own]
 
 
@@ -506,8 +506,8 @@ def test_a_helper_of_several_nodes_is_given_to_each_and_it_is_said() -> None:
 def test_a_helper_of_another_process_is_not_taken() -> None:
     seen = graph(node(publishes("x")), LISTENER)
     assert one(seen).parts == ()
-    assert strays(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
-    assert strays(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
+    assert helpers_without_owner(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
+    assert helpers_without_owner(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
 
 
 def test_what_a_node_asks_for_itself_is_not_its_helpers() -> None:
@@ -542,14 +542,14 @@ def test_half_a_listener_is_written_out_as_a_helpers() -> None:
 def test_all_nodes_but_tools_are_learned() -> None:
     tools = ("_ros2cli_7", "launch_ros_12", "rqt_gui_py_node_3", "rviz2", "rosbag2_recorder")
     seen = graph(*(node(name=name) for name in ("b", "a", *tools, "foxglove_bridge")), LISTENER)
-    assert choose(seen, (), "/") == ("/a", "/b")
-    assert choose(seen, ("/rviz2",), "/") == ("/rviz2",)
+    assert choose_nodes(seen, (), "/") == ("/a", "/b")
+    assert choose_nodes(seen, ("/rviz2",), "/") == ("/rviz2",)
 
 
 def test_all_nodes_of_a_namespace_are_learned() -> None:
     seen = graph(node(name="r1/a"), node(name="r1/eye/b"), node(name="r11/c"), node(name="r1"))
     for namespace in ("/r1", "/r1/"):
-        assert choose(seen, (), namespace) == ("/r1/a", "/r1/eye/b")
+        assert choose_nodes(seen, (), namespace) == ("/r1/a", "/r1/eye/b")
 
 
 @pytest.mark.parametrize(
@@ -567,7 +567,7 @@ def test_all_nodes_of_a_namespace_are_learned() -> None:
 def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: str) -> None:
     seen = graph(*(node(name=name) for name in ("driver", "r1/planner", "twin", "twin")))
     with pytest.raises(UsageError) as caught:
-        choose(seen, names, namespace)
+        choose_nodes(seen, names, namespace)
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
 

@@ -26,23 +26,23 @@ from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
-from multibot_rewrite.graph.pictures.simplify import plain, rest
-from multibot_rewrite.graph.pictures.states import (
-    CLASH,
-    CROSS_TALK,
-    LEAK,
-    MISSING,
-    OK,
-    FAULTY,
-    UNEXPECTED,
-)
 from multibot_rewrite.graph.pictures.mermaid import MOST_EDGES, MOST_LETTERS, to_mermaid
 from multibot_rewrite.graph.pictures.page import to_html
 from multibot_rewrite.graph.pictures.scene import Group, Scene, make_scene
+from multibot_rewrite.graph.pictures.simplify import only_common, without_common
+from multibot_rewrite.graph.pictures.states import (
+    CLASH,
+    CROSS_TALK,
+    FAULTY,
+    LEAK,
+    MISSING,
+    OK,
+    UNEXPECTED,
+)
 from multibot_rewrite.graph.pictures.text import clipped, columns, visible
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
-from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphNode, Snapshot, to_json
+from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, GraphNode, Snapshot, to_json
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.remap.records import PUBLISHES
 
@@ -115,7 +115,7 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
 @pytest.mark.parametrize("layout", drawn.LAYOUTS)
 def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
     plan = drawn.nav2(layout)
-    own = next(w for w in plan.endpoints if "collision_monitor" in w.node and "scan" in w.asked)
+    own = next(w for w in plan.endpoints if "collision_monitor" in w.node and "scan" in w.code_name)
     scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), own.name, "/scan", own.node))
     assert states(scene, "robot1")["/scan"] == {LEAK}
     assert states(scene, "")["/scan"] == {LEAK}
@@ -151,7 +151,9 @@ def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
     own = {e.name for e in plan.endpoints if e.node == ABSENT}
     missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
     assert missing == {name for name in own if "robot2" in name} | {"/tf", "/tf_static"}
-    shown = {edge.name for edge in plain(group(scene, "robot2")).edges if edge.state == MISSING}
+    shown = {
+        edge.name for edge in without_common(group(scene, "robot2")).edges if edge.state == MISSING
+    }
     # Nobody misses the life cycle of a node that is not there.
     assert shown == {name for name in missing if "/bt_navigator/" not in name and "tf" not in name}
 
@@ -191,8 +193,8 @@ def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not()
         seen = (*graph.nodes, GraphNode(node, ""))
         graph = graph._replace(nodes=seen, endpoints=(*graph.endpoints, log))
     scene = drawn.scene(plan, graph)
-    light = {n.name for one in scene.groups for n in plain(one).nodes}
-    more = {n.name for one in scene.groups for n in rest(one).nodes}
+    light = {n.name for one in scene.groups for n in without_common(one).nodes}
+    more = {n.name for one in scene.groups for n in only_common(one).nodes}
     assert "/robot1/gripper" in light and "/rqt_gui" not in light and "/rqt_gui" in more
 
 
@@ -250,7 +252,7 @@ def test_in_an_incomplete_view_the_verdict_is_open() -> None:
 def test_the_light_picture_and_the_rest_are_the_whole() -> None:
     plan = drawn.nav2()
     for one in drawn.scene(plan, drawn.spoiled(plan)).groups:
-        light, more = plain(one), rest(one)
+        light, more = without_common(one), only_common(one)
         merged = {name for it in light.names for name in it.merged}
         shown = {n.name for n in light.names if not n.merged}
         assert shown | {name.name for name in more.names} == {name.name for name in one.names}
@@ -276,7 +278,7 @@ def scenes() -> Iterable[Scene]:
 def test_nothing_overlaps_and_everything_has_a_place() -> None:
     for scene in scenes():
         for one in scene.groups:
-            for part in (one, plain(one), rest(one)):
+            for part in (one, without_common(one), only_common(one)):
                 place = lay_out(part)
                 assert {name.name for name, _ in place.names} == {n.name for n in part.names}
                 both = {node.name for node, _ in (*place.left, *place.right)}
@@ -296,13 +298,13 @@ def assert_apart(places: list[float], gap: float) -> None:
 def test_what_is_wrong_stands_on_top() -> None:
     plan = drawn.nav2()
     scene = drawn.scene(plan, drawn.spoiled(plan))
-    order = [name for name, _ in lay_out(plain(group(scene, "robot1"))).names]
+    order = [name for name, _ in lay_out(without_common(group(scene, "robot1"))).names]
     assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/scan"]
 
 
 def test_the_order_leaves_fewer_crossings_than_the_alphabet() -> None:
     plan = drawn.nav2()
-    one = plain(group(drawn.scene(plan, drawn.healthy(plan)), "robot1"))
+    one = without_common(group(drawn.scene(plan, drawn.healthy(plan)), "robot1"))
     place = lay_out(one)
     rows = {(n.kind, n.name): y for n, y in place.names}
     left = {n.name: y for n, y in place.left}
@@ -340,24 +342,24 @@ def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
     assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
 
 
-def with_frames(plan: Expectation, *more: Frame) -> Scene:
+def with_frames(plan: Expectation, *more: GraphFrame) -> Scene:
     graph = drawn.healthy(plan)
     return drawn.scene(plan, graph._replace(frames=(*graph.frames, *more)))
 
 
 def test_a_frame_with_two_parents_is_red_where_it_hangs() -> None:
-    scene = with_frames(drawn.nav2(), Frame("imu_link/robot1", "map", "/tf", False, ()))
+    scene = with_frames(drawn.nav2(), GraphFrame("imu_link/robot1", "map", "/tf", False, ()))
     (first, second) = (
         row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
     )
-    assert (first.state, first.words) == (CLASH, ("two parents",))
+    assert (first.state, first.faults) == (CLASH, ("two parents",))
     assert second.repeated and not first.repeated
     red = [row.frame for tree in scene.trees for row in tree.rows if row.state == CLASH]
     assert set(red) == {"imu_link/robot1"}
 
 
 def test_bare_frames_are_red_on_one_robots_topic_only() -> None:
-    scene = with_frames(drawn.nav2("L1"), Frame("imu_link", "map", "/robot1/tf", False, ()))
+    scene = with_frames(drawn.nav2("L1"), GraphFrame("imu_link", "map", "/robot1/tf", False, ()))
     red = {t.topic for t in scene.trees for row in t.rows if row.state == CLASH}
     assert red == {"/robot1/tf"}
 
@@ -380,8 +382,8 @@ def test_without_any_tf_no_frame_is_called_missing() -> None:
 
 
 def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
-    ring = [Frame(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
-    chain = [Frame(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
+    ring = [GraphFrame(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
+    chain = [GraphFrame(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
     scene = with_frames(drawn.nav2(), *ring, *chain)
     rows = {row.frame: row for tree in scene.trees for row in tree.rows}
     assert rows["c3000"].depth == 3000
@@ -568,7 +570,7 @@ def test_any_text_may_be_a_name(words: list[str]) -> None:
     first = plan.robots[0]._replace(name=robot or "r")
     graph = drawn.with_end(drawn.healthy(plan), f"/{node}", f"/{topic}")
     ends = tuple(e._replace(type=type_) if e.name == f"/{topic}" else e for e in graph.endpoints)
-    frame = Frame(child, parent, f"/{topic}", True, (node,))
+    frame = GraphFrame(child, parent, f"/{topic}", True, (node,))
     odd = graph._replace(endpoints=ends, frames=(*graph.frames, frame))
     assert_harmless(drawn.scene(plan._replace(robots=(first, *plan.robots[1:])), odd))
 

@@ -192,7 +192,7 @@ def test_a_node_under_a_condition_is_optional(
 
 def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
     ends = from_yaml(plan.read_bytes(), "plan").endpoints
-    (end,) = (e for e in ends if (e.node, e.asked) == ("/robot1/velocity_smoother", "cmd_vel"))
+    (end,) = (e for e in ends if (e.node, e.code_name) == ("/robot1/velocity_smoother", "cmd_vel"))
     assert (end.type, *end.also) == ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 

@@ -203,7 +203,8 @@ def _frame(frame: str, x: float, y: float, looks: str, id_attributes: str) -> st
     wide = columns(text) * LETTER + 22
     return (
         f'<g class="f {looks}"{id_attributes}>'
-        f'<rect x="{x}" y="{y - 10:g}" width="{wide:.0f}" height="20" rx="4"/><rect class="bar" x="{x}" y="{y - 10:g}" width="5" height="20" rx="2"/>'
+        f'<rect x="{x}" y="{y - 10:g}" width="{wide:.0f}" height="20" rx="4"/>'
+        f'<rect class="bar" x="{x}" y="{y - 10:g}" width="5" height="20" rx="2"/>'
         f'<text x="{x + 12}" y="{y + 4:g}">{escape(text)}</text></g>'
     )
 

@@ -101,7 +101,7 @@ def frames_without_robot_name(view: View) -> Iterator[GraphFinding]:
         for robot, found in own.items():
             expected = _by_plain_name(view, view.robots[robot])[found[0]]
             message = f"frames {shorten(found)} on {tree.topic} do not have the name of {robot}"
-            cause = f"expected is {expected}: load the rewritten description in "
+            cause = f"expected {expected}: load the rewritten description in "
             cause += shorten(tree.senders.get(robot, ())) or "its robot_state_publisher"
             yield GraphFinding("MG207", ERROR, robot, "", message, cause, tuple(found))
 
@@ -272,7 +272,7 @@ def _doubled(view: View, robot: PlannedRobot, names: Sequence[str]) -> GraphFind
         "frame_prefix of robot_state_publisher or tf_frame_prefix_enable of a controller (on by "
     )
     if _has_plain_frames(view, robot):
-        message = f"{_frames(names)} the name of {robot.name}, but frames of the layout have none"
+        message = f"{_frames(names)} the name of {robot.name}, which this layout does not add"
         cause += "default), or a description rewritten for another layout: set them to '' and false"
     else:
         message = f"{_frames(names)} the name of {robot.name} twice"

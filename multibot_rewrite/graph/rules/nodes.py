@@ -97,4 +97,4 @@ def _foreign_names(view: View, node: str, robot: str) -> str:
     shared = {*view.plan.shared_topics, *EVERYWHERE}
     names = dict.fromkeys(e.name for e in view.by_node.get(node, ()) if "/_" not in e.name)
     foreign = [n for n in names if n not in shared and view.ownership.robot(n) != robot]
-    return f"; it uses {shorten(foreign)}, not a name of {robot}" if foreign else ""
+    return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""

@@ -65,7 +65,7 @@ def _why_missing(view: View, planned: PlannedEndpoint, robot: str) -> str:
         return f"{instead}: {_use_absolute(planned.name)}"
     other = view.ownership.robot(used)
     if other and other != robot:
-        return f"{instead}, which belongs to {other}: a remap rule or parameter has the wrong robot"
+        return f"{instead}, a name of {other}: a remap rule or parameter names the wrong robot"
     return f"{instead}: is the name misspelled in a remap rule or parameter?"
 
 
@@ -119,7 +119,10 @@ def leaks(view: View) -> Iterator[GraphFinding]:
         for name in dict.fromkeys(e.name for e in view.unplanned_endpoints.get(node, ())):
             if name in shared or view.ownership.robot(name):
                 continue
-            message = f"uses {name}, not a name of {robot}: other robots' nodes use the same name"
+            message = (
+                f"uses {name}, which is not a name of {robot}: the same node of another robot uses"
+                " it too"
+            )
             cause = _why_leaked(view, node, name, not_remapped.get((node, name)))
             yield GraphFinding("MG103", ERROR, robot, node, message, cause, (name,))
 
@@ -186,7 +189,7 @@ def cross_talk(view: View) -> Iterator[GraphFinding]:
             other = view.ownership.robot(end.name)
             if other and other != robot:
                 message = f"{DOES[end.role]} {end.name}, which belongs to {other}"
-                cause = f"a remap rule or parameter of {robot} has the name of {other}"
+                cause = f"a remap rule or parameter of {robot} names {other}"
                 yield GraphFinding("MG104", ERROR, robot, node, message, cause, (end.name,))
 
 
@@ -238,7 +241,7 @@ def _without_publisher(
 
 
 def _use_absolute(name: str) -> str:
-    return f"a relative name is resolved in the node's own namespace: set its parameter to {name}"
+    return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
 
 
 def _in_namespaces_above(node: str, name: str) -> Iterator[str]:
