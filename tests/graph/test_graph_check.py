@@ -118,7 +118,7 @@ def test_a_node_started_without_its_namespace_is_told_so() -> None:
     (found,) = check(plan(), graph)
     assert found.code == "MG101"
     assert found.cause == (
-        "/driver is there: it was started without the robot's namespace; give namespace='robot1' "
+        "/driver is running: it was started without the robot's namespace; use namespace='robot1' "
         "in the launch file, or --ros-args -r __ns:=/robot1"
     )
 
@@ -139,15 +139,17 @@ def test_why_we_never_get_cmd_vel() -> None:
     ]
     assert "/robot1/cmd_vel" in found[0].message
     assert found[0].cause == (
-        "it subscribes /cmd_vel instead: its rule /cmd_vel:=cmd_vel did not reach it; give "
-        "--ros-args -r /cmd_vel:=cmd_vel, or remappings=[('/cmd_vel', 'cmd_vel')]"
+        "it subscribes to /cmd_vel instead: the remap rule /cmd_vel:=cmd_vel is not applied; pass "
+        "it with --ros-args -r /cmd_vel:=cmd_vel, or with remappings=[('/cmd_vel', 'cmd_vel')] in "
+        "the launch file"
     )
 
 
 def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
     found = check(plan(), moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
     assert found[0].cause == (
-        "it publishes /robot1/joint_state instead: a rule or parameter spells it otherwise"
+        "it publishes /robot1/joint_state instead: is the name misspelled in a remap rule or "
+        "parameter?"
     )
 
 
@@ -195,7 +197,7 @@ def test_two_types_of_one_topic() -> None:
     other = first._replace(type="std_msgs/msg/String", node="/robot1/driver")
     (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, other)))
     assert found.code == "MG106"
-    assert "/robot1/driver subscribes std_msgs/msg/String" in found.message
+    assert "/robot1/driver subscribes to std_msgs/msg/String" in found.message
 
 
 @pytest.mark.parametrize(
@@ -304,17 +306,17 @@ def test_a_plugin_is_named_with_its_line() -> None:
     graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
     missing, leak = check(plan()._replace(sources=place), graph)
     assert missing.cause == (
-        "it subscribes /cmd_vel instead: plugin driver has no rule /cmd_vel:=cmd_vel: "
+        "it subscribes to /cmd_vel instead: plugin driver has no remap rule /cmd_vel:=cmd_vel, "
         "see rover.urdf:120"
     )
-    assert leak.cause == "plugin driver has no rule /cmd_vel:=cmd_vel: see rover.urdf:120"
+    assert leak.cause == "plugin driver has no remap rule /cmd_vel:=cmd_vel, see rover.urdf:120"
 
 
 def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
     graph = renamed_node(healthy(), "/robot1/driver", "/driver")
     wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
     (found,) = check(wanted, graph)
-    assert found.cause == "/driver is there: plugin driver has no namespace, see rover.urdf:120"
+    assert found.cause == "/driver is running: plugin driver has no namespace, see rover.urdf:120"
     (found,) = check(wanted, without_node(healthy(), "/robot1/driver"))
     assert "see rover.urdf:120" in found.cause
 
@@ -326,7 +328,7 @@ def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
     wanted = plan()._replace(sources=(("/robot1/robot_state_publisher", "rover.urdf:120"),))
     (found,) = check(wanted, graph)
     assert (found.code, found.robot) == ("MG109", "robot1")
-    assert "has no namespace, see rover.urdf:120; 1 more of its nodes likewise" in found.cause
+    assert "has no namespace, see rover.urdf:120; the same for 1 more of its nodes" in found.cause
 
 
 def test_a_robot_of_conditions_only_is_never_silent() -> None:
@@ -340,7 +342,7 @@ def test_a_plugin_of_the_postfix_layout() -> None:
     wanted = plan("L4")._replace(sources=(("/driver_robot1", "rover.urdf:120"),))
     (found,) = check(wanted, renamed_node(healthy("L4"), "/driver_robot1", "/driver"))
     assert found.code == "MG101"
-    assert "plugin driver has no name of its own for each robot, see rover.urdf:120" in found.cause
+    assert "plugin driver has no separate name for each robot, see rover.urdf:120" in found.cause
 
 
 def test_the_rule_of_the_postfix_layout() -> None:
@@ -359,7 +361,7 @@ def test_an_action_needs_more_than_one_rule() -> None:
     graph = healthy()._replace(endpoints=(*healthy().endpoints, there, hidden))
     found = check(wanted, graph)
     assert [f.code for f in found] == ["MG102", "MG103"]
-    assert "one for each of its _action/ names" in found[0].cause
+    assert "one rule for each of its _action/ names" in found[0].cause
 
 
 def test_a_managed_node_may_not_be_configured() -> None:
@@ -369,7 +371,7 @@ def test_a_managed_node_may_not_be_configured() -> None:
     state = GraphEndpoint(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
     kept = (e for e in healthy().endpoints if e.name != "/robot1/reset")
     (found,) = check(wanted, healthy()._replace(endpoints=(*kept, state)))
-    assert found.message == "it should serve service /robot1/reset, and does not"
+    assert found.message == "should offer service /robot1/reset, but does not"
     assert "ros2 lifecycle get /robot1/driver" in found.cause
 
 
@@ -379,7 +381,7 @@ def test_a_robot_under_another_namespace() -> None:
         graph = renamed_node(graph, f"/robot1/{node}", f"/robot_1/{node}")
     found = [f for f in check(plan(), graph) if f.code != "MG203"]
     assert [f.code for f in found] == ["MG109"]
-    assert "/robot_1/robot_state_publisher is there" in found[0].cause
+    assert "/robot_1/robot_state_publisher is running" in found[0].cause
 
 
 # ---------------------------------------------------------------- what nobody planned
@@ -395,7 +397,7 @@ def test_an_unplanned_node_of_a_robot_is_one_finding() -> None:
 def test_an_unplanned_node_with_names_of_no_robot() -> None:
     graph = with_node(healthy(), "/robot1/gripper", (PUBLISHES, "/grip", "std_msgs/msg/Bool"))
     (found,) = check(plan(), graph)
-    assert "it has /grip, not robot1's own" in found.message
+    assert "it uses /grip, without the name of robot1" in found.message
 
 
 def test_an_unplanned_node_by_its_affix() -> None:
@@ -406,7 +408,7 @@ def test_an_unplanned_node_by_its_affix() -> None:
 def test_one_more_of_a_planned_node_is_called_that() -> None:
     (found,) = check(plan(), with_node(healthy(), "/driver"))
     assert (found.code, found.robot) == ("MG108", "")
-    assert "one more" in found.cause
+    assert "a second one" in found.cause
 
 
 def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
@@ -439,7 +441,7 @@ def test_a_tool_may_be_the_planned_one_without_its_namespace() -> None:
     )
     (found,) = check(wanted, with_node(healthy(), "/joy_node"))
     assert (found.code, found.node) == ("MG101", "/robot1/joy_node")
-    assert found.cause.startswith("/joy_node is there")
+    assert found.cause.startswith("/joy_node is running")
     twice = with_node(with_node(healthy(), "/robot1/joy_node"), "/robot1/joy_node")
     assert [f.code for f in check(wanted, twice)] == ["MG105"]
 
@@ -480,7 +482,9 @@ def test_another_type_than_planned() -> None:
     graph = with_type(healthy(), "/robot1/cmd_vel", "/robot1/driver", "std_msgs/msg/String")
     (found,) = check(plan(), graph)
     assert found.code == "MG106"
-    assert "as std_msgs/msg/String, planned is geometry_msgs/msg/Twist" in found.message
+    assert (
+        "with type std_msgs/msg/String, but the plan has geometry_msgs/msg/Twist" in found.message
+    )
 
 
 def test_a_type_that_it_may_have_as_well() -> None:
@@ -577,7 +581,7 @@ def test_many_publishers_are_one_finding_for_a_listener() -> None:
     driver = next(e for e in graph.endpoints if e.name == "/robot1/joint_states" and e.qos == qos())
     more = tuple(driver._replace(node=f"/robot1/_more{at}") for at in range(5))
     (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, *more)))
-    assert "/robot1/driver (as 5 more) offers VOLATILE" in found.message
+    assert "/robot1/driver (and 5 more) offers VOLATILE" in found.message
 
 
 # ---------------------------------------------------------------- nobody on the other side
@@ -596,7 +600,8 @@ def test_a_teleop_without_a_robot_is_told_to_each() -> None:
         ("MG111", "/robot2/driver"),
     ]
     assert found[0].message == (
-        "nobody publishes /robot1/cmd_vel; /teleop_twist_keyboard publishes /cmd_vel"
+        "subscribes to /robot1/cmd_vel, which has no publisher; /teleop_twist_keyboard publishes "
+        "/cmd_vel"
     )
     assert "/cmd_vel:=/robot1/cmd_vel" in found[0].cause
 
@@ -654,7 +659,8 @@ def test_a_topic_that_fell_below_a_costmap() -> None:
     (found,) = check(*with_costmap("/robot1/local_costmap/scan"))
     assert (found.code, found.node) == ("MG110", COSTMAP)
     assert found.message == (
-        "it subscribes /robot1/local_costmap/scan, where nobody publishes; /robot1/scan is meant"
+        "subscribes to /robot1/local_costmap/scan, which has no publisher; did you mean "
+        "/robot1/scan?"
     )
     assert "write /robot1/scan" in found.cause
 
@@ -665,7 +671,7 @@ def test_a_topic_that_is_planned_above_is_enough() -> None:
     end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
     found = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
     assert [f.code for f in found] == ["MG102", "MG110"]
-    assert "falls below the node's own namespace" in found[0].cause
+    assert "resolves a relative name in its own namespace" in found[0].cause
 
 
 def test_a_costmap_whose_plan_is_wrong_is_told_too() -> None:
@@ -784,7 +790,7 @@ def test_what_a_camera_sees_is_silent() -> None:
 def test_a_frame_that_is_nearly_the_declared_one() -> None:
     (found,) = check(plan(), with_frame("L2", "lasr/robot1", "base_link/robot1"))
     assert found.code == "MG204"
-    assert "is laser/robot1 meant?" in found.cause
+    assert "did you mean laser/robot1?" in found.cause
     (found,) = check(plan("L1"), with_frame("L1", "laser_link", "base_link"))
     assert (found.code, found.robot) == ("MG204", "robot1")
 

@@ -370,7 +370,7 @@ def test_a_declared_frame_that_was_not_heard() -> None:
     last = plan.robots[1].frames[-1]
     silent = graph._replace(frames=tuple(f for f in graph.frames if f.child != last))
     unheard = drawn.scene(plan, silent).trees[-1]
-    assert (unheard.heard, unheard.robot) == (False, "robot2")
+    assert (unheard.received, unheard.robot) == (False, "robot2")
     assert [(row.frame, row.state) for row in unheard.rows] == [(last, MISSING)]
 
 
@@ -378,7 +378,7 @@ def test_without_any_tf_no_frame_is_called_missing() -> None:
     plan = drawn.nav2()
     scene = drawn.scene(plan, drawn.healthy(plan)._replace(frames=()))
     assert scene.trees == ()
-    assert "No tf was heard" in section(page(scene), "tf").text_content()
+    assert "No tf messages were received" in section(page(scene), "tf").text_content()
 
 
 def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:

@@ -128,7 +128,7 @@ def test_what_is_wrong_is_told_first(show: Open) -> None:
     assert every(driver, "h1")[0].text.lower() == "not as planned"
     texts = [it.text for it in seen(driver, "#findings tbody tr")]
     assert len(texts) == len(drawn.scene(drawn.nav2(), drawn.spoiled(drawn.nav2())).findings)
-    assert any("/cmd_vel is not robot1's own" in text for text in texts)
+    assert any("uses /cmd_vel, which is not a name of robot1" in text for text in texts)
     assert in_view(driver, every(driver, "#findings tbody tr")[0])
 
 

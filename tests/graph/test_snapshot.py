@@ -133,7 +133,7 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"{", "g.json:1:2: not JSON"),
+        (b"{", "g.json:1:2: not valid JSON"),
         (b"\xff", "g.json: cannot be read as JSON"),
         (b"[" * 100_000, "g.json: cannot be read as JSON"),
         (b"[]", "g.json: not a snapshot, but []"),
@@ -145,7 +145,7 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
         (changed("nodes", 1, to="x"), 'g.json: nodes[1]: expected an object, not "x"'),
         (changed("nodes", 1, "name"), "g.json: nodes[1].name: missing"),
         (changed("nodes", 0, "name", to="a"), "nodes[0].name: expected a full name that starts"),
-        (changed("nodes", 0, "pid", to=3), "g.json: nodes[0].pid: not a key of a snapshot"),
+        (changed("nodes", 0, "pid", to=3), "g.json: nodes[0].pid: unknown key"),
         (changed("endpoints", 0, "kind", to="topik"), "one of topic, service, action, not"),
         (changed("endpoints", 0, "role", to=None), "endpoints[0].role: expected one of publishes"),
         (changed("endpoints", 0, "qos", "depth", to="1"), "qos.depth: expected a whole number"),

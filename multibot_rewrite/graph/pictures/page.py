@@ -175,7 +175,7 @@ def _graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator
             yield from _group(section, ids)
     if hidden:
         title = f"{counted(len(hidden), 'more robot')} as planned"
-        yield f'<details><summarize class="good"><b>{title}</b></summarize>\n<div>\n'
+        yield f'<details><summary class="good"><b>{title}</b></summary>\n<div>\n'
         yield from (line for section in hidden for line in _group(section, ids))
         yield "</div></details>\n"
     yield "</div>\n</section>\n"
@@ -236,7 +236,7 @@ def _panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
     opened = " open" if wrong or len(scene.robots) <= SMALL_FLEET else ""
     looks = "bad" if wrong else "good" if tree.received else "odd"
     return (
-        f'<details{opened}><summarize class="{looks}">{title}</summarize>\n'
+        f'<details{opened}><summary class="{looks}">{title}</summary>\n'
         f'<div class="wide">{tree_svg(tree, scene.robots, ids)}</div></details>\n'
     )
 
