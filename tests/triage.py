@@ -15,7 +15,7 @@ from typing import NamedTuple
 from robots import CORPUS, FIXTURES, corpus_files, wheel_files
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.pairing import named_urdfs
+from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files

@@ -11,11 +11,11 @@ from typing import NoReturn
 
 from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
+from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.lint.settings import Settings, level_of
-from multibot_rewrite.lint.subjects import Failed, read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError, VocabularyError
 from multibot_rewrite.sources.read import read_file

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.elements import Elements
-from multibot_rewrite.lint.robot import Robot
-from multibot_rewrite.lint.schema import Fault
+from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.lint.facts.robot import Robot
+from multibot_rewrite.lint.schema.faults import Fault
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR, WARNING, Edit
 from multibot_rewrite.rewriters.tree import Tree

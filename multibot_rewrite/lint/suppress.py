@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.directives import (
+from multibot_rewrite.lint.config.directives import (
     ALWAYS_TOLD,
     IGNORE_FILE,
     MARK,

@@ -8,8 +8,14 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.lint.baseline import FORMAT, Baseline, baseline_text, beyond, read_baseline
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.baseline import (
+    FORMAT,
+    Baseline,
+    baseline_text,
+    beyond,
+    read_baseline,
+)
 from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 

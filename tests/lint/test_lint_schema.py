@@ -6,7 +6,7 @@ import time
 
 import pytest
 
-from multibot_rewrite.lint.schema import Fault, read_faults, schema
+from multibot_rewrite.lint.schema.faults import Fault, read_faults, schema
 from multibot_rewrite.steps.document import read_document
 
 LINKS = '<link name="a"/><link name="b"/>'

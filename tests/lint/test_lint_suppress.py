@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.directives import ALWAYS_TOLD, read_directives
+from multibot_rewrite.lint.config.directives import ALWAYS_TOLD, read_directives
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
 from multibot_rewrite.lint.registry import RULES

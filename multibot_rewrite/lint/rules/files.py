@@ -12,8 +12,8 @@ from lxml import etree
 from multibot_rewrite.checks.audit import leftover_xacro, nearest, worlds
 from multibot_rewrite.checks.robots import already_rewritten
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.elements import Elements
-from multibot_rewrite.lint.numbers import numbers
+from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.lint.facts.numbers import numbers
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.model import ERROR, WARNING, Edit, Finding
 

@@ -11,10 +11,10 @@ from urllib.parse import unquote
 from lxml.etree import _Element
 
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.elements import Elements
-from multibot_rewrite.lint.packages import entries, find_in, package_folders
+from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.lint.facts.source_values import is_fixed, starts_of
+from multibot_rewrite.lint.files.packages import entries, find_in, package_folders
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.lint.written import is_fixed, starts_of
 from multibot_rewrite.model import ERROR, WARNING
 
 _SCHEME = regex(r"([A-Za-z][A-Za-z0-9+.-]+)://")

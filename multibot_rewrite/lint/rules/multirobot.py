@@ -9,8 +9,8 @@ from lxml.etree import _Element
 from multibot_rewrite.checks import hazards, robots
 from multibot_rewrite.checks.remarks import Remark
 from multibot_rewrite.lazy import regex
+from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.lint.records import NOTE, SRDF, XACRO, Problem, Subject, rule
-from multibot_rewrite.lint.written import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.model import ERROR, WARNING, Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, TF_TOPICS, make_naming, overlap
 from multibot_rewrite.rewriters.insert import insertions

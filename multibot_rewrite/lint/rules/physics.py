@@ -8,10 +8,10 @@ from math import acos, cos, hypot, pi, sqrt
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.elements import Elements
-from multibot_rewrite.lint.numbers import Vector, numbers, vector
+from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.lint.facts.numbers import Vector, numbers, vector
+from multibot_rewrite.lint.facts.robot import MOMENTS, WORLD, Inertial, Link, Robot, reached
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.lint.robot import MOMENTS, WORLD, Inertial, Link, Robot, reached
 from multibot_rewrite.model import ERROR, WARNING
 
 # What MuJoCo takes for nothing (mjMINVAL).

@@ -25,8 +25,8 @@ from multibot_rewrite.checks.references import (
     where,
 )
 from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.lint.facts.robot import Joint
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.lint.robot import Joint
 from multibot_rewrite.model import ERROR, WARNING, Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in

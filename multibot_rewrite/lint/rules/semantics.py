@@ -9,9 +9,9 @@ from math import isfinite
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.references import nearest, repeated
+from multibot_rewrite.lint.facts.robot import Joint, Robot
 from multibot_rewrite.lint.groups import chain, groups_of, joints_of, links_of, text_of
 from multibot_rewrite.lint.records import NOTE, SRDF, Problem, Subject, rule
-from multibot_rewrite.lint.robot import Joint, Robot
 from multibot_rewrite.lint.rules.references import undeclared
 from multibot_rewrite.model import ERROR, WARNING
 

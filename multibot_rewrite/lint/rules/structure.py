@@ -8,9 +8,9 @@ from math import hypot, pi
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.audit import nearest
-from multibot_rewrite.lint.numbers import number, value_of, vector
+from multibot_rewrite.lint.facts.numbers import number, value_of, vector
+from multibot_rewrite.lint.facts.robot import Joint, Robot, loops, reached, roots
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.lint.robot import Joint, Robot, loops, reached, roots
 from multibot_rewrite.model import ERROR, WARNING
 
 TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
