@@ -1,1 +1,1 @@
-"""What a lint is asked to report: patterns of files, comments that silence, known findings, changed files."""
+"""What a lint is asked to report: patterns of files, ignore comments, known findings, changed files."""
