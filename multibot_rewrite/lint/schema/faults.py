@@ -1,48 +1,33 @@
-"""A URDF against the schema of what its readers look for: one pass, every fault of its shape.
-
-The schema is data (``urdf.schema``). Elements are alike in their attributes and children, so what
-the schema says about a combination is worked out once and then looked up.
-"""
+"""A URDF against the schema of what its readers look for: one pass, every fault of its shape."""
 
 from __future__ import annotations
 
-import re
 from bisect import bisect_right
 from collections import Counter, defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
-from math import isfinite
-from pathlib import Path
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.checks.audit import nearest
 from multibot_rewrite.lazy import regex
+from multibot_rewrite.lint.schema.sections import (
+    ROBOT,
+    Kind,
+    Section,
+    is_own,
+    schema,
+    section_of,
+    sections_below,
+    sections_once,
+    typed_attributes,
+)
+from multibot_rewrite.lint.schema.values import COUNTS, FINE, is_fine, shortened, wrong_numbers
 from multibot_rewrite.steps.document import Document, tag_end
 
-_FILE = Path(__file__).parent / "urdf.schema"
-ROBOT = "robot"
 # What a child of <robot> can be a misspelling of: anything else there is an extension of its own.
 _CORE = ("link", "joint", "material", "transmission", "ros2_control", "gazebo")
-# Combinations longer than this are not worth remembering: the children of <robot>.
-_FEW = 40
-_SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
-_UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
-# One look tells that a usual value is fine. urdfdom takes blanks in front of a lone number and none
-# behind it.
-_FINE = {
-    "number": regex(rf" *{_SCALAR}", re.ASCII),
-    "numbers": regex(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
-    "rgba": regex(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
-    "version": regex(r"0*1\.0+", re.ASCII),
-}
-_LONG = 200
-_COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
-_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-_INFINITE = regex(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
-_UNITS = regex(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
-# The parts of a robot that hold text somewhere, which is quickly asked, and where.
+# The parts of a robot that hold text somewhere, which is quick to ask, and where.
 _TOPS = etree.XPath(
     "/robot[text()[normalize-space()]] | /robot/link[normalize-space()]"
     " | /robot/joint[normalize-space()] | /robot/material[normalize-space()]"
@@ -59,32 +44,8 @@ _ASSIGNED = regex(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
 _AXIS_FREE = ("fixed", "floating")
 
 
-class Kind(NamedTuple):
-    """What an attribute must hold: a type of ``urdf.schema``, or one of ``choices``."""
-
-    type: str
-    required: bool
-    choices: tuple[str, ...]
-
-
-class Child(NamedTuple):
-    """A child: its section, empty where nobody looks inside, and how often it may stand there."""
-
-    section: str
-    times: str
-
-
-class Section(NamedTuple):
-    """One element of the schema."""
-
-    name: str
-    attributes: Mapping[str, Kind]
-    children: Mapping[str, Child]
-    text: bool
-
-
 class Fault(NamedTuple):
-    """A fault of the document's shape; ``kind`` is the name of the rule that tells it.
+    """A fault of the document's shape; ``kind`` is the name of the rule that reports it.
 
     ``attribute`` is as in ``Problem``.
     """
@@ -107,7 +68,7 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
         below: dict[str, list[etree._Element]] = defaultdict(list)
         for name, elements in level.items():
             for element in _doubtful(name, elements):
-                faults += _attributes(element, schema()[name])
+                faults += _attributes(element, schema().sections[name])
             faults += _sorted_children(name, elements, below)
         level = below
     return tuple(faults)
@@ -118,17 +79,17 @@ def _sorted_children(
 ) -> Iterator[Fault]:
     """Adds the children of a section's elements to theirs; what is wrong with which are there."""
     families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
-    for parent in parents if name in _parents() else filter(len, parents):
+    for parent in parents if name in schema().parents else filter(len, parents):
         family = [parent, *parent]
         families[tuple([it.tag for it in family])].append(family)
     for (_, *tags), alike in families.items():
         known = tuple(tags)
-        sections = _below(name, known) if len(known) < _FEW else _below.__wrapped__(name, known)
+        sections = sections_below(name, known)
         above, *columns = zip(*alike, strict=True)
         if sections is None:
             for parent in above:
-                yield from _children(parent, schema()[name])
-            sections = _sections(name, known)
+                yield from _children(parent, schema().sections[name])
+            sections = sections_once(name, known)
         for section, children in zip(sections, columns, strict=True):
             if section:
                 below[section] += children
@@ -141,7 +102,7 @@ def _doubtful(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._
         kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
     found: list[etree._Element] = []
     for keys, alike in kinds.items():
-        typed = _typed(name, keys)
+        typed = typed_attributes(name, keys)
         if typed is None:
             found += alike
         elif typed:
@@ -156,15 +117,11 @@ def _with_odd_values(
     columns = list(zip(*[it.values() for it in alike], strict=True))
     found: dict[etree._Element, None] = {}
     for at, kind in typed:
-        odd = {value for value in set(columns[at]) if not _is_fine(kind, value)}
+        odd = {value for value in set(columns[at]) if not is_fine(kind, value)}
         if odd:
             pairs = zip(alike, columns[at], strict=True)
             found |= {element: None for element, value in pairs if value in odd}
     return found
-
-
-def _is_fine(kind: str, value: str) -> bool:
-    return len(value) <= _LONG and kind in _FINE and bool(_FINE[kind].fullmatch(value))
 
 
 def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
@@ -177,115 +134,6 @@ def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
             yield from _value(element, kind, key, element.get(key, ""))
 
 
-# ------------------------------------------------------------------ the schema
-
-
-@lru_cache
-def schema() -> Mapping[str, Section]:
-    """The sections of ``urdf.schema``."""
-    found: dict[str, Section] = {}
-    attributes: dict[str, Kind] = {}
-    children: dict[str, Child] = {}
-    name = ""
-    for line in _FILE.read_text(encoding="utf-8").splitlines():
-        head, *words = line.partition("#")[0].split() or [""]
-        if head.startswith("["):
-            name, attributes, children = head.strip("[]"), {}, {}
-            found[name] = Section(name, attributes, children, False)
-        elif head == "text":
-            found[name] = found[name]._replace(text=True)
-        elif head.startswith("@"):
-            attributes[head[1:]] = _kind(words)
-        elif head:
-            children[head] = _child(head, words)
-    return found
-
-
-def _kind(words: Sequence[str]) -> Kind:
-    choices = next((it[4:].split("|") for it in words if it.startswith("one:")), [])
-    types = [it for it in words if it in _FINE]
-    return Kind(types[0] if types else "one" * bool(choices), "required" in words, tuple(choices))
-
-
-def _child(tag: str, words: Sequence[str]) -> Child:
-    section = next((it[1:] for it in words if it.startswith("=")), tag)
-    times = next(it for it in words if it in ("required", "once", "many", "either"))
-    return Child("" if "open" in words else section, times)
-
-
-@lru_cache
-def _tags() -> frozenset[str]:
-    """Every element that stands somewhere in the schema."""
-    return frozenset(tag for section in schema().values() for tag in section.children)
-
-
-@lru_cache
-def _parents() -> frozenset[str]:
-    """The sections that must have a child."""
-    known = schema().items()
-    return frozenset(
-        name for name, it in known if any(c.times == "required" for c in it.children.values())
-    )
-
-
-def _is_own(name: object) -> bool:
-    """Is it URDF's own name: no comment, no name of another program's namespace?"""
-    return isinstance(name, str) and "{" not in name and ":" not in name
-
-
-# ------------------------------------------------- combinations, each worked out once
-
-
-@lru_cache(maxsize=2048)
-def _typed(name: str, keys: tuple[str, ...]) -> tuple[tuple[int, str], ...] | None:
-    """Which attributes have a type, and it; None where one of them is strange or missing."""
-    known = schema()[name].attributes
-    if any(key not in known and key != "name" and _is_own(key) for key in keys):
-        return None
-    if any(kind.required and key not in keys for key, kind in known.items()):
-        return None
-    types = [known[key].type if key in known else "" for key in keys]
-    return tuple((at, kind) for at, kind in enumerate(types) if kind)
-
-
-@lru_cache(maxsize=2048)
-def _below(name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
-    """The sections of children, empty for those left alone; None where the children have a fault."""
-    known = schema()[name].children
-    count = {tag: times for tag, times in Counter(tags).items() if _is_own(tag)}
-    if any(tag not in known for tag in count):
-        return None
-    if any(child.times == "required" and tag not in count for tag, child in known.items()):
-        return None
-    single = [tag for tag in count if known[tag].times != "many"]
-    slots = {_slot(tag, known[tag]) for tag in single}
-    if len(slots) < sum(count[tag] for tag in single):
-        return None
-    sections = {tag: known[tag].section for tag in count}
-    return tuple([sections.get(tag, "") for tag in tags])
-
-
-def _sections(name: str, tags: tuple[str, ...]) -> tuple[str, ...]:
-    """The section of each child; the second of what is read once is not looked at."""
-    known = schema()[name].children
-    seen: set[str] = set()
-    found: list[str] = []
-    for tag in tags:
-        child = known.get(tag)
-        key = "" if child is None or child.times == "many" else _slot(tag, child)
-        found.append(child.section if child is not None and key not in seen else "")
-        seen |= {key} if key else set()
-    return tuple(found)
-
-
-def _slot(tag: str, child: Child) -> str:
-    """What a child that is read once takes up: shapes have one place among them."""
-    return child.times if child.times == "either" else tag
-
-
-# ------------------------------------------------------------------ what is wrong
-
-
 def _strange_attributes(
     element: etree._Element, section: Section, keys: Sequence[str]
 ) -> Iterator[Fault]:
@@ -295,7 +143,7 @@ def _strange_attributes(
     empty = section.name == ROBOT and element.find("link") is None
     missing = [key for key in known if known[key].required and key not in keys and not empty]
     for key in keys:
-        if key in known or key == "name" or not _is_own(key):
+        if key in known or key == "name" or not is_own(key):
             continue
         meant = _near(key, [it for it in known if it not in keys])
         hint = f"did you mean {meant!r}?" if meant else ""
@@ -318,7 +166,7 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
     count = Counter(tags)
     missing = [tag for tag in known if known[tag].times == "required" and tag not in count]
     for child in element.iterchildren("*"):
-        if child.tag in known or not _is_own(child.tag):
+        if child.tag in known or not is_own(child.tag):
             continue
         meant = _near(str(child.tag), _CORE if section.name == ROBOT else known)
         if meant in missing:
@@ -342,11 +190,11 @@ def _strange(
     if section.name == "ros2_control":
         yield Fault("unknown-component", child, None, f"<{child.tag}> in <ros2_control>", hint)
     elif section.name == "geometry":
-        return  # MB615 tells it
+        return  # MB615 reports it
     elif meant:
         yield Fault("misspelled-element", child, None, message, hint)
-    elif child.tag in _tags():
-        homes = [it.name for it in schema().values() if child.tag in it.children]
+    elif child.tag in schema().tags:
+        homes = [it.name for it in schema().sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes})
         hint = f"it belongs in {' or '.join(f'<{tag}>' for tag in tags)}"
         yield Fault("misplaced-element", child, None, message, hint)
@@ -390,7 +238,7 @@ def _near(name: str, known: Collection[str]) -> str:
 
 def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:
     """What is wrong with a value that is not fine at first sight."""
-    where = f"{element.tag}@{attribute} is {_short(value)!r}"
+    where = f"{element.tag}@{attribute} is {shortened(value)!r}"
     if kind.type == "one":
         if value not in kind.choices:
             meant = _near(value.strip(), kind.choices)
@@ -398,71 +246,23 @@ def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> I
             message = f"{where}, not one of {', '.join(kind.choices)}"
             yield Fault("bad-choice", element, attribute, message, hint)
     elif kind.type == "version":
-        if _FINE["version"].fullmatch(value):
+        if FINE["version"].fullmatch(value):
             return
         message = f"{where}, urdfdom knows 1.0 alone"
         yield Fault(
             "bad-choice", element, attribute, message, 'write version="1.0", or leave it out'
         )
     elif not _is_unread(element):
-        said, problem, hint = _wrong(value, kind.type)
+        said, problem, hint = wrong_numbers(value, kind.type)
         if said:
             named = "bad-colour" if kind.type == "rgba" else said
             yield Fault(named, element, attribute, f"{where}{problem}", hint)
-
-
-def _short(text: str) -> str:
-    return text if len(text) < 60 else f"{text[:56]} ..."
 
 
 def _is_unread(element: etree._Element) -> bool:
     """The axis of a joint that has none."""
     joint = element.getparent()
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
-
-
-def _wrong(value: str, kind: str) -> tuple[str, str, str]:
-    """(kind of fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
-    words = value.split()
-    odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
-    if not words:
-        return "not-a-number", ", which is no number", ""
-    if odd is not None and not _INFINITE.fullmatch(odd):
-        return (
-            "not-a-number",
-            f": {_short(odd)!r} is no number" * (odd != value),
-            _number_hint(value, odd),
-        )
-    if odd is not None or not all(isfinite(float(word)) for word in words):
-        return "not-finite", ", which is not finite", "write a large number, or leave it out"
-    return _miscounted(value, [float(word) for word in words], kind)
-
-
-def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, str, str]:
-    """The same for a value of nothing but numbers."""
-    wanted = _COUNTS[kind]
-    if len(numbers) != wanted:
-        count = f"{len(numbers)} numbers" if len(numbers) != 1 else "1 number"
-        return "wrong-count", f": {count} of {wanted}", ""
-    if kind == "rgba" and not all(0 <= it <= 1 for it in numbers):
-        return kind, ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
-    if kind == "number" and value.endswith(" "):
-        return "blank-behind-number", ", with a blank behind it", "delete the blank"
-    return "", "", ""
-
-
-def _number_hint(value: str, odd: str) -> str:
-    if "," in value:
-        alone = re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
-        return "write a point for the comma" if alone else "separate numbers by blanks, not commas"
-    if "$" in value:
-        return "expand it with xacro first"
-    if _UNITS.fullmatch(odd):
-        return "leave the unit out: lengths are metres, angles radians, masses kilograms"
-    return ""
-
-
-# ------------------------------------------------------------------ what only the text shows
 
 
 def _texts(root: etree._Element) -> Iterator[Fault]:
@@ -474,7 +274,7 @@ def _texts(root: etree._Element) -> Iterator[Fault]:
         pieces = [element.text, *(child.tail for child in element)]
         said = next(" ".join(it.split()) for it in pieces if it and it.strip())
         inside = "" if element.text and element.text.strip() else None
-        message = f"text {_short(said)!r} in <{element.tag}>, where nobody reads it"
+        message = f"text {shortened(said)!r} in <{element.tag}>, where nobody reads it"
         yield Fault("stray-text", element, inside, message)
 
 
@@ -484,22 +284,6 @@ def _texts_in(top: etree._Element) -> list[etree._Element]:
 
 def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
     return path(element)  # type: ignore[return-value]
-
-
-def section_of(element: etree._Element) -> Section | None:
-    """The section of the schema that an element of a document belongs to."""
-    parent = element.getparent()
-    path = [element]
-    while parent is not None:
-        path.append(parent)
-        parent = parent.getparent()
-    name = ROBOT
-    for it in path[-2::-1]:
-        child = schema()[name].children.get(str(it.tag))
-        if child is None or not child.section:
-            return None
-        name = child.section
-    return schema()[name]
 
 
 def _broken(document: Document) -> Iterator[Fault]:
@@ -514,6 +298,6 @@ def _broken(document: Document) -> Iterator[Fault]:
         section = section_of(elements[number])
         found = _ASSIGNED.search(source, starts[number], at)
         key = found[1].decode() if found else ""
-        if section and key in section.attributes and section.attributes[key].type in _COUNTS:
+        if section and key in section.attributes and section.attributes[key].type in COUNTS:
             message = f"{elements[number].tag}@{key} has a tab or a line end behind a number"
             yield Fault("blank-behind-number", elements[number], key, message, "write one blank")
