@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lxml.etree import _Element
 
@@ -35,6 +35,7 @@ class Subject(NamedTuple):
     robot that an SRDF belongs to, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
     ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's shape.
+    ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
     """
 
     format: str
@@ -44,6 +45,7 @@ class Subject(NamedTuple):
     tree: Tree
     robot: Robot
     settings: Settings
+    memo: dict[object, Any]
     beside: Robot | None = None
     origins: tuple[Origin | None, ...] = ()
     sources: Mapping[str, bytes] = {}

@@ -13,7 +13,7 @@ _ByTag = Mapping[str, Sequence[_Element]]
 
 
 class Elements:
-    """The elements of one document; as the key of a cache equal to itself only."""
+    """The elements of one document."""
 
     __slots__ = ("_every", "_tops", "root")
 

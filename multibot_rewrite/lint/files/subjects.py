@@ -109,7 +109,7 @@ def _subject(document: Document, settings: Settings) -> Subject:
     elements, robot = Elements(document), read_robot(document.root)
     # The source of a xacro file has names that are not made yet.
     if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
-        return Subject(URDF, document, elements, inventory, tree, robot, settings)
+        return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
     inventory = collect(document, tree, pair.declared or NO_URDF)
-    return Subject(SRDF, document, elements, inventory, tree, robot, settings, pair.robot)
+    return Subject(SRDF, document, elements, inventory, tree, robot, settings, {}, pair.robot)

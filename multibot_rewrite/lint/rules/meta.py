@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
-from multibot_rewrite.lint.records import Problem, Subject, rule
+from multibot_rewrite.lint.records import rule
+from multibot_rewrite.lint.rules.shared import found_elsewhere
 from multibot_rewrite.model import ERROR, WARNING
 
-
-@rule(
+# Reported where rules are asked: see ``failures``.
+rule_crashed = rule(
     "MB001",
     "rule-crashed",
     ERROR,
@@ -18,13 +17,10 @@ from multibot_rewrite.model import ERROR, WARNING
     bad="",
     good="",
     formats=(),
-)
-def rule_crashed(subject: Subject) -> Iterator[Problem]:
-    """Found where rules are asked: see ``failures``."""
-    return iter(())
+)(found_elsewhere)
 
-
-@rule(
+# Reported when all rules were asked: see ``suppress``.
+unused_suppression = rule(
     "MB002",
     "unused-suppression",
     WARNING,
@@ -37,13 +33,10 @@ def rule_crashed(subject: Subject) -> Iterator[Problem]:
     bad='<link name="a"/>\n<!-- urdf-lint: ignore MB501 - bolted on by the launch file -->\n',
     good='\n<!-- urdf-lint: ignore MB501 - bolted on by the launch file -->\n<link name="a"/>\n',
     formats=(),
-)
-def unused_suppression(subject: Subject) -> Iterator[Problem]:
-    """Found when all rules were asked: see ``suppress``."""
-    return iter(())
+)(found_elsewhere)
 
-
-@rule(
+# Reported when comments are read: see ``config.directives``.
+broken_suppression = rule(
     "MB003",
     "broken-suppression",
     ERROR,
@@ -55,13 +48,10 @@ def unused_suppression(subject: Subject) -> Iterator[Problem]:
     bad='<!-- urdf-lint: disable MB501 -->\n<link name="a"/>',
     good='<!-- urdf-lint: ignore MB501 -->\n<link name="a"/>',
     formats=(),
-)
-def broken_suppression(subject: Subject) -> Iterator[Problem]:
-    """Found when comments are read: see ``directives``."""
-    return iter(())
+)(found_elsewhere)
 
-
-@rule(
+# Reported by the clock: see ``failures``.
+took_too_long = rule(
     "MB004",
     "took-too-long",
     ERROR,
@@ -71,7 +61,4 @@ def broken_suppression(subject: Subject) -> Iterator[Problem]:
     bad="",
     good="",
     formats=(),
-)
-def took_too_long(subject: Subject) -> Iterator[Problem]:
-    """Found by the clock: see ``failures``."""
-    return iter(())
+)(found_elsewhere)
