@@ -1,6 +1,6 @@
-"""Findings that a project has already: only what comes on top of them is told.
+"""Findings that a project has already: only new ones are reported.
 
-A finding is known again by its code, its file and its message, so lines may move.
+A finding is recognised by its code, its file and its message, so lines may move.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from multibot_rewrite.model import UsageError
 
 FORMAT = "urdf-lint-baseline"
 VERSION = 1
-# Of a message that names another line of the file only that much stays.
+# The number of a line in a message may change.
 _LINE = re.compile(r"\bline \d+")
 FIELDS = {"code": str, "file": str, "message": str, "count": int}
 
 
 class Key(NamedTuple):
-    """What a finding is known by; ``file`` is relative to the baseline's folder."""
+    """What a finding is recognised by; ``file`` is relative to the baseline's folder."""
 
     code: str
     file: str
@@ -77,7 +77,7 @@ def beyond(
     path: str,
     linted: Collection[str] | None = None,
 ) -> tuple[list[LintFinding], int]:
-    """The findings that the baseline at ``path`` does not have, and how many of its are gone.
+    """The findings that the baseline at ``path`` lacks, and how many of its findings are gone.
 
     ``linted`` are the files that were looked at, None for all: of a file that is still there and
     was not looked at nothing is gone.

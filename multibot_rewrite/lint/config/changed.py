@@ -14,7 +14,7 @@ from multibot_rewrite.model import UsageError
 _INCLUDE = re.compile(
     rb"<xacro:include\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?filename\s*=\s*(\"[^\"]*\"|'[^']*')"
 )
-# Only xacro can fill these in: any name may stand there.
+# Only xacro can fill these in: it may be any name.
 _UNKNOWN = re.compile(rb"\$.*[)}]|&#?\w+;", re.DOTALL)
 # A word in a file, or the end of its name -> what it reads without naming it.
 _YAML = (b"load_yaml", ("*.yaml", "*.yml"))
@@ -31,7 +31,7 @@ class Changes(NamedTuple):
 
 
 def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
-    """Those of ``paths`` that are not what they were where HEAD and ``rev`` parted.
+    """Those of ``paths`` that changed since HEAD and ``rev`` had a commit in common.
 
     That is a commit since then, the working tree, a file git does not have, or a xacro file that
     includes such a one. The repository is that of the working directory; what is outside of it, or
@@ -62,7 +62,7 @@ def _changes(rev: str) -> Changes:
 
 
 def _base(rev: str) -> str:
-    """The commit where HEAD and the revision parted."""
+    """The last commit that HEAD and the revision have in common."""
     try:
         _git([], "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
     except UsageError:
@@ -88,26 +88,26 @@ def _git(where: Sequence[str], *words: str) -> bytes:
 
 
 def _names(listed: bytes) -> frozenset[str]:
-    """Of a list with zeros; a repository in the repository ends in a slash."""
+    """The names in a list with zeros between them; a nested repository ends in a slash."""
     return frozenset(os.fsdecode(it).rstrip("/") for it in listed.split(b"\0") if it)
 
 
 def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
-    """Which files changed, in themselves or in what they read; what they include is asked, too."""
+    """Which files changed, or read one that did; included files are looked at, too."""
     reads = _reads(paths, changes)
-    told = {path: _is_changed(path, changes) for path in reads}
+    changed_by_path = {path: _is_changed(path, changes) for path in reads}
     names = set(_base_names(changes))
-    names.update(os.path.basename(path) for path, it in told.items() if it)
-    left = {path: patterns for path, patterns in reads.items() if not told[path]}
+    names.update(os.path.basename(path) for path, it in changed_by_path.items() if it)
+    left = {path: patterns for path, patterns in reads.items() if not changed_by_path[path]}
     while more := [path for path, patterns in left.items() if _reach(patterns, names)]:
-        told.update(dict.fromkeys(more, True))
+        changed_by_path.update(dict.fromkeys(more, True))
         names.update(os.path.basename(path) for path in more)
-        left = {path: patterns for path, patterns in left.items() if not told[path]}
-    return told
+        left = {path: patterns for path, patterns in left.items() if not changed_by_path[path]}
+    return changed_by_path
 
 
 def _base_names(changes: Changes) -> Iterator[str]:
-    """The names of what changed; a repository in the repository changed as a whole."""
+    """The names of what changed; a nested repository changed as a whole."""
     for path in changes.changed:
         yield os.path.basename(path)
         for _, _, files in os.walk(os.path.join(changes.top, path)):
@@ -115,14 +115,14 @@ def _base_names(changes: Changes) -> Iterator[str]:
 
 
 def _is_changed(path: str, changes: Changes) -> bool:
-    """In itself: where it stands, or where a link leads."""
+    """Did the file itself change, or the one that a link leads to?"""
     folder, name = os.path.split(path)
     places = {os.path.realpath(path), os.path.join(os.path.realpath(folder), name)}
     return any(_is_other(os.path.relpath(it, changes.top), changes) for it in places)
 
 
 def _is_other(name: str, changes: Changes) -> bool:
-    # A repository in the repository is listed as its folder.
+    # A nested repository is listed as its folder.
     parts = name.split(os.sep)
     names = {os.sep.join(parts[:end]) for end in range(1, len(parts) + 1)}
     return not names.isdisjoint(changes.changed) or names.isdisjoint(changes.tracked)
@@ -153,7 +153,7 @@ def _includes(path: str) -> Iterator[str]:
     try:
         with open(path, "rb") as file:
             data = file.read()
-    except (OSError, ValueError):  # told when it is linted
+    except (OSError, ValueError):  # reported when it is linted
         return
     if _YAML[0] in data:
         yield from _YAML[1]
@@ -168,7 +168,7 @@ def _located(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> It
         beside = os.path.join(os.path.dirname(path), it)
         if os.path.isfile(beside):
             yield beside
-        # A name of which nothing is known is reached by every change as it is.
+        # A name that is all wildcard matches every change anyway.
         if name.strip("*"):
             yield from (file for known in _matching(name, there) for file in there[known])
 

@@ -1,4 +1,4 @@
-"""``urdf-lint:`` comments of a file: what they say, and which part of the file they are about.
+"""``urdf-lint:`` comments of a file: what they silence, and in which part of the file.
 
 <!-- urdf-lint: ignore MB401, MB402 - a reason -->
 <!-- urdf-lint: ignore-file MB401: a reason -->
@@ -17,7 +17,7 @@ from multibot_rewrite.lint.registry import RULES
 
 MARK = b"urdf-lint"
 IGNORE, IGNORE_FILE = "ignore", "ignore-file"
-# What tells that the lint did not look at a file, or that a comment is wrong, is always told.
+# No comment silences these: the lint did not look at a file, or a comment is wrong.
 ALWAYS_TOLD = frozenset({"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103"})
 _OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
 _PART = regex(
@@ -29,7 +29,7 @@ _DIRECTIVE = regex(rb"<!--\s*urdf-lint\s*(:?)\s*([^\s:]*)(.*)-->", re.DOTALL)
 _REASON = regex(rb"\s*:(?=\s|$)|\s+(?:-|\xe2\x80\x93|\xe2\x80\x94)(?=\s|$)")
 _WORD = regex(rb"[^\s,]+")
 _LIKE_A_CODE = regex(r"[A-Za-z]{1,3}-?\d+")
-# What of a xacro file only some expansions hold.
+# What only some expansions of a xacro file hold.
 _SOMETIMES = frozenset({b"xacro:macro", b"xacro:if", b"xacro:unless"})
 _HOW = "write urdf-lint: ignore CODE, CODE - reason"
 
@@ -52,7 +52,7 @@ class Fault(NamedTuple):
 
 
 class Code(NamedTuple):
-    """A rule's code in a comment, and where it stands."""
+    """A rule's code in a comment, and its place."""
 
     text: str
     start: int
@@ -62,8 +62,8 @@ class Code(NamedTuple):
 class Directive(NamedTuple):
     """A comment from ``start`` to ``end``, and the lines it is on as byte offsets.
 
-    ``element`` is the span of the element it is about, if any. ``sometimes``: its reach is or holds
-    what not every expansion of the file has. ``idle``: nothing is there that could be found.
+    ``element`` is the span of the element below it, if any. ``sometimes``: not every expansion of the
+    file has what it is about. ``idle``: there is nothing that a finding could be at.
     """
 
     start: int
@@ -78,7 +78,7 @@ class Directive(NamedTuple):
 
 
 def read_directives(source: bytes) -> list[Directive]:
-    """The comments of a file that are for the lint, in their order."""
+    """The comments of a file that address the lint, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
     spans = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
@@ -148,7 +148,7 @@ def _unknown_word(word: str, start: int) -> Fault:
 
 
 def _codes(source: bytes, said: re.Match[bytes]) -> tuple[list[Code], list[Fault]]:
-    """The codes that can be followed, and what is wrong with the others."""
+    """The valid codes, and what is wrong with the others."""
     reason = _REASON.search(source, said.start(3), said.end(3))
     end = reason.start() if reason else said.end(3)
     codes: list[Code] = []
@@ -183,7 +183,7 @@ def _fault(text: str, start: int) -> Fault | None:
 def _below(
     source: bytes, parts: Sequence[Part], at: int, ends: dict[int, int]
 ) -> tuple[int, int] | None:
-    """The element that follows a comment which stands alone; other comments may be in between."""
+    """The element after a comment on lines of its own; other comments may be in between."""
     comment = parts[at]
     before = source[source.rfind(b"\n", 0, comment.start) + 1 : comment.start]
     after = source[comment.end : _line_end(source, comment.end)]
@@ -201,7 +201,7 @@ def _below(
 
 
 def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
-    """Without effect where an ignore-file stands behind the root's first child."""
+    """An ignore-file has no effect after the root's first child."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
     late = Fault(it.start, f"{IGNORE_FILE} stands behind the first element", "move it to the top")
@@ -209,7 +209,7 @@ def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
 
 
 def _is_idle(it: Directive, tags: Sequence[Part], before: str) -> bool:
-    """Neither an element below nor a tag or the start of a text on the lines."""
+    """Is there no element below the comment, and no tag or text on its lines?"""
     last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
     on_the_lines = last >= 0 and tags[last].end > it.lines[0]
     return not it.element and not on_the_lines and before != _OPEN

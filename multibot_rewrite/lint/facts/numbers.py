@@ -1,4 +1,4 @@
-"""Numbers in attributes. What is no finite number is None: another rule tells of it."""
+"""Numbers in attributes. What is not a finite number is None: another rule reports it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Vector = tuple[float, float, float]
 
 
 def number(text: str | None) -> float | None:
-    """The finite number that a text is; ``1_0`` is one to Python only."""
+    """The finite number that a text is; ``1_0``, which only Python reads, is not one."""
     if text is None or "_" in text:
         return None
     try:
@@ -29,7 +29,7 @@ def value_of(element: _Element, name: str, default: float | None = None) -> floa
 
 @lru_cache(maxsize=4096)  # values come again, and several rules read the same ones
 def numbers(text: str) -> tuple[float, ...] | None:
-    """The finite numbers of a text; None if a part of it is none."""
+    """The finite numbers of a text; None if a part of it is not a number."""
     if "_" in text:
         return None
     try:

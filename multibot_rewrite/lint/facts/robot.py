@@ -31,7 +31,7 @@ class Link(NamedTuple):
 
 
 class Joint(NamedTuple):
-    """A ``<joint>`` below the root; ``parent`` and ``child`` are empty where they are not said.
+    """A ``<joint>`` below the root; ``parent`` and ``child`` are empty where they are missing.
 
     ``parts`` are the first of its elements by tag.
     """
@@ -51,9 +51,9 @@ class Robot(NamedTuple):
     """A URDF's own links and joints, in document order.
 
     ``link`` and ``joint`` hold the first of each name. ``above`` and ``below`` map a link's name to
-    the joints whose child (parent) it is, declared or not. ``body`` maps each link that hangs on a
-    root to the link that a simulator merges it into, itself if none: links on fixed joints become
-    a part of their parent, but of ``world``, as in sdformat.
+    the joints whose child (parent) it is, declared or not. ``body`` maps each link below a
+    root to the link that a simulator merges it into, or to itself: links on fixed joints become a
+    part of their parent, except where that is ``world``, as in sdformat.
     """
 
     links: tuple[Link, ...]
@@ -153,7 +153,7 @@ def roots(robot: Robot) -> list[Link]:
 
 
 def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
-    """The names that hang on ``starts``, themselves first; ``seen`` are left out and grow."""
+    """``starts`` and the names below them; those in ``seen`` are left out, and new ones added."""
     found = [it for it in starts if it not in seen]
     seen.update(found)
     for name in found:  # grows
@@ -164,7 +164,7 @@ def reached(robot: Robot, starts: Iterable[str], seen: set[str]) -> list[str]:
 
 
 def loops(robot: Robot) -> list[list[Joint]]:
-    """Closed ways down the tree, each as its joints; a joint from a link to itself is none.
+    """Loops of joints; a joint from a link to itself is not one.
 
     Of loops that share links one is found.
     """
@@ -184,12 +184,12 @@ def loops(robot: Robot) -> list[list[Joint]]:
 
 
 def _from(way: Mapping[str, Joint], name: str) -> list[Joint]:
-    """The joints of a way from the one above ``name`` on."""
+    """The joints of a way, from the one above ``name`` on."""
     return list(way.values())[list(way).index(name) :]
 
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:
-    """The links of loops and those below them, in document order."""
+    """The links in loops and below them, in document order."""
     open_ = {name: sum(map(_ties, joints)) for name, joints in robot.above.items()}
     ready = [it for it in robot.below if not open_.get(it)]
     for name in ready:  # grows

@@ -14,7 +14,7 @@ from multibot_rewrite.steps.document import tag_end
 
 Starts = Mapping[_Element, int]
 _ATTRIBUTE = regex(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
-# What stands for the same text whoever calls.
+# What is the same text for every caller.
 _CONSTANT = regex(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
 _EXPRESSION = regex(rb"\$\{([^}]*)\}")
 _LITERAL = regex(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
@@ -36,8 +36,8 @@ def starts_of(subject: Subject, elements: Collection[_Element]) -> Starts:
 def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = True) -> bool:
     """The same for a value by the start of its element's tag; ``attribute`` is empty for text.
 
-    Where that cannot be known it is not. ``constants`` tells that $(find ...) and the like, the same
-    for every robot of a machine, count as text.
+    False where that cannot be known. With ``constants`` $(find ...) and the like, which are the same
+    for every robot on a machine, count as text.
     """
     if not subject.origins:
         return True
@@ -64,7 +64,7 @@ def _raw(source: bytes, start: int, attribute: str) -> bytes | None:
 
 
 def _given(raw: bytes, call: Mapping[bytes, bytes]) -> bytes | None:
-    """What a macro's call gives for the names in ``raw``; None for names it does not give."""
+    """What a macro's call passes for the names in ``raw``; None if it does not pass one of them."""
     if b"$(" in raw:
         return None
     words = [_LITERAL.sub(b"", it) for it in _EXPRESSION.findall(raw)]

@@ -10,7 +10,7 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
 _INCLUDE = regex(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
-# What stands before the last substitution of a path is not known.
+# What is before the last substitution of a path is not known.
 _KNOWN = regex(r".*[)}]")
 
 
@@ -34,7 +34,7 @@ def _is_read(path: str) -> bool:
 
 
 def _asked_for(path: str) -> Iterator[str]:
-    """The paths that a file includes, without what only xacro can fill in; never itself."""
+    """The paths that a file includes, without what only xacro can fill in, and without itself."""
     own = os.path.realpath(path)
     for name in _names(path):
         known = _KNOWN.sub("", name)
@@ -46,6 +46,6 @@ def _asked_for(path: str) -> Iterator[str]:
 def _names(path: str) -> Iterable[str]:
     try:
         data = read_file(path)
-    except InputError:  # told when it is linted
+    except InputError:  # reported when it is linted
         return ()
     return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(data))

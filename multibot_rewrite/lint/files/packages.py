@@ -30,7 +30,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
 def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
     """The folder that $(find NAME) stands for in ``file``; empty if there is none.
 
-    Packages of one repository stand side by side: those beside the file's own one are known.
+    The packages beside the file's own one, in the same repository, are found as well.
     """
     known = package_folders(name, file, roots)
     own = _own_package(os.path.dirname(os.path.abspath(file)))
@@ -67,7 +67,7 @@ def _own_package(folder: str) -> tuple[str, str] | None:
 
 @lru_cache(maxsize=8)
 def _below(roots: tuple[str, ...]) -> Mapping[str, tuple[str, ...]]:
-    """Packages below some folders by name; behind those with a manifest, folders so called."""
+    """Packages below some folders by name; a folder of that name counts where no manifest has it."""
     named: dict[str, tuple[str, ...]] = {}
     called: dict[str, tuple[str, ...]] = {}
     for folder in _folders(roots):

@@ -22,14 +22,14 @@ from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
 _NAME = regex(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
-# A root element stands in the first bytes; looking for it must not cost a read of the whole.
+# The root element is in the first bytes: the whole file need not be read.
 HEAD = 4096
 # Where a package of MoveIt has its URDF, from the folder of its SRDF.
 NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
 ENDINGS = ("*.urdf", "*.xacro")
-# So many files are looked into, and so many descriptions are read.
+# How many files are looked into, and how many descriptions are read.
 MOST, TRIED = 200, 6
-# How many of an SRDF's names its URDF may lack: one of so many, or so many of a few.
+# How many of an SRDF's names its URDF may lack: one in PART, or SLIPS where there are few.
 PART, SLIPS = 4, 2
 SRDF_MARK = ".srdf"
 
@@ -43,7 +43,7 @@ class Pair(NamedTuple):
     misses: int = 0
 
 
-NOBODY = Pair(None, NOTHING)
+NO_PAIR = Pair(None, NOTHING)
 
 
 def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
@@ -57,7 +57,7 @@ def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[s
 
 
 def robot_name(path: str) -> str:
-    """The name on the root element as it is written; empty where it cannot be had cheaply."""
+    """The name on the root element as it is written; empty if the first bytes do not have it."""
     try:
         with open(path, "rb") as file:
             found = _NAME.search(file.read(HEAD))
@@ -67,26 +67,26 @@ def robot_name(path: str) -> str:
 
 
 def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
-    """The description that an SRDF belongs to, the one that has most of its names.
+    """The description that an SRDF belongs to: the one that has most of its names.
 
     One that lacks more than a few of them is that of another robot or another variant.
     """
     if settings.urdf:
         return _read(settings.urdf, srdf, settings)
     name = srdf.document.root.get("name", "").strip()
-    best = NOBODY
+    best = NO_PAIR
     for candidate in _candidates(path, name, settings)[:TRIED]:
         try:
             found = _read(candidate, srdf, settings)
-        except InputError:  # told when it is linted itself
+        except InputError:  # reported when it is linted itself
             continue
-        if best is NOBODY or found.misses < best.misses:
+        if best is NO_PAIR or found.misses < best.misses:
             best = found
         if not found.misses:
             break
     names = len(_names(srdf))
     fits = best.misses * PART <= names or (best.misses <= SLIPS and best.misses < names)
-    return best if fits else NOBODY
+    return best if fits else NO_PAIR
 
 
 def _candidates(path: str, name: str, settings: Settings) -> list[str]:
@@ -101,7 +101,7 @@ def _distance(folder: str, path: str) -> int:
 
 
 def _near(path: str, folder: str, name: str) -> list[str]:
-    """Those with the robot's name, then those called as the SRDF is."""
+    """Those with the robot's name, else those with the file name of the SRDF."""
     stem = _stem(path)
     files = [it for it, _ in zip(_files(folder), range(MOST), strict=False)]
     same = [it for it in files if robot_name(it) == name]
@@ -137,7 +137,7 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
     find = partial(package_folder, file=path, roots=settings.roots)
     name = f"{path} (expanded)"
-    # What xacro warns about is told to who runs it.
+    # xacro prints its warnings when a person runs it.
     with redirect_stderr(StringIO()):
         try:
             return expand(path, {}, find), name

@@ -25,7 +25,7 @@ from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.steps.document import Document, read_document
 
-# Tells that the root is that of an SRDF, whatever stands in it.
+# Makes the reader take the root for that of an SRDF, whatever it holds.
 NO_URDF: Declared = {"link": {}}
 EXPANDED = " (expanded)"
 DEFAULT = ArgumentSet("*", ())
@@ -44,8 +44,8 @@ class Failed(NamedTuple):
 def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
     """Every subject of a file; raises InputError where it cannot be read.
 
-    What others include is linted where it is used; a xacro file of that kind, or one that only
-    defines what others use, is not expanded alone, and its root may be called anything.
+    What others include is linted where it is used. Such a xacro file, or one that only defines what
+    others use, is not expanded alone, and may have any root element.
     """
     document = read_document(data, path)
     xacro, included = path.endswith(".xacro"), path in settings.included
@@ -75,7 +75,7 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
 
     trace = Trace({path: data}, path)
     find = partial(package_folder, file=path, roots=settings.roots)
-    # What xacro warns about is no finding, and would stand between those of others.
+    # What xacro warns about is no finding, and would be printed between them.
     with redirect_stderr(StringIO()):
         expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
     subject = _subject(read_document(expanded, path + EXPANDED), settings)
@@ -83,15 +83,15 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
 
 
 def _shaped(subject: Subject) -> Subject:
-    """With the faults of its shape; the source of a xacro file has none yet."""
+    """The subject with the faults of its shape; the source of a xacro file has none yet."""
     urdf = subject.format == URDF
     return subject._replace(faults=read_faults(subject.document)) if urdf else subject
 
 
 def _only_defines(root: _Element) -> bool:
-    """Nothing but definitions for other files: expanded alone it is an empty robot.
+    """Does a file only define what others use? Expanded alone it is an empty robot.
 
-    What only includes may be a whole robot, one that also defines macros is read by others.
+    One that only includes may be a whole robot; one that defines macros as well is read by others.
     """
     tags = {_local(child) for child in root.iterchildren("*")}
     return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)
@@ -107,7 +107,7 @@ def _subject(document: Document, settings: Settings) -> Subject:
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
     elements, robot = Elements(document), read_robot(document.root)
-    # The source of a xacro file has names that are not made yet.
+    # In the source of a xacro file names are not complete yet.
     if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
         return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
     pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)

@@ -9,11 +9,11 @@ from multibot_rewrite.lint.records import Problem, Subject
 
 
 def found_elsewhere(subject: Subject) -> Iterator[Problem]:
-    """The check of a rule that no document is asked about, see its comment for who reports it."""
+    """The check of a rule that is reported by other code, which a comment at the rule names."""
     return iter(())
 
 
 def problems(remarks: Iterable[Remark]) -> Iterator[Problem]:
-    """What a check of the rewrite found, as problems."""
+    """What the checks of the rewrite remark, as problems."""
     for it in remarks:
         yield Problem(it.element, it.message, it.attribute, it.hint)

@@ -25,7 +25,7 @@ from multibot_rewrite.lint.schema.sections import (
 from multibot_rewrite.lint.schema.values import COUNTS, FINE, is_fine, shortened, wrong_numbers
 from multibot_rewrite.steps.document import Document, tag_end
 
-# What a child of <robot> can be a misspelling of: anything else there is an extension of its own.
+# What a child of <robot> can be a misspelling of: anything else there is an extension.
 _CORE = ("link", "joint", "material", "transmission", "ros2_control", "gazebo")
 # The parts of a robot that hold text somewhere, which is quick to ask, and where.
 _TOPS = etree.XPath(
@@ -33,7 +33,7 @@ _TOPS = etree.XPath(
     " | /robot/joint[normalize-space()] | /robot/material[normalize-space()]"
 )
 _TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
-# A number with a line end or tab right behind it.
+# A number with a line end or tab right after it.
 _BROKEN = (
     regex(rb"\n(?<=[\d.]\n)"),
     regex(rb"\t(?<=[\d.]\t)"),
@@ -62,12 +62,12 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
     root = document.root
     if root.tag != ROBOT:
         return ()
-    faults = [*_texts(root), *_broken(document)]
+    faults = [*_stray_texts(root), *_broken_numbers(document)]
     level = {ROBOT: [root]}
     while level:
         below: dict[str, list[etree._Element]] = defaultdict(list)
         for name, elements in level.items():
-            for element in _doubtful(name, elements):
+            for element in _to_check(name, elements):
                 faults += _attributes(element, schema().sections[name])
             faults += _sorted_children(name, elements, below)
         level = below
@@ -77,7 +77,7 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
 def _sorted_children(
     name: str, parents: Iterable[etree._Element], below: dict[str, list[etree._Element]]
 ) -> Iterator[Fault]:
-    """Adds the children of a section's elements to theirs; what is wrong with which are there."""
+    """Sorts the children of elements into their sections; yields what is wrong with the children."""
     families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
     for parent in parents if name in schema().parents else filter(len, parents):
         family = [parent, *parent]
@@ -95,8 +95,8 @@ def _sorted_children(
                 below[section] += children
 
 
-def _doubtful(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._Element]:
-    """Those of a section's elements whose attributes are not fine at one look."""
+def _to_check(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._Element]:
+    """The elements whose attributes need a closer look."""
     kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
     for element in elements:
         kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
@@ -127,17 +127,17 @@ def _with_odd_values(
 def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
     """All that is wrong with an element's attributes."""
     keys = [str(key) for key in element.attrib]
-    yield from _strange_attributes(element, section, keys)
+    yield from _unknown_attributes(element, section, keys)
     for key in keys:
         kind = section.attributes.get(key)
         if kind is not None and kind.type:
             yield from _value(element, kind, key, element.get(key, ""))
 
 
-def _strange_attributes(
+def _unknown_attributes(
     element: etree._Element, section: Section, keys: Sequence[str]
 ) -> Iterator[Fault]:
-    """Attributes that are missing, and those nobody reads."""
+    """Attributes that are missing, and those that no reader knows."""
     known = section.attributes
     # A file of macros has neither a name nor links.
     empty = section.name == ROBOT and element.find("link") is None
@@ -160,7 +160,7 @@ def _strange_attributes(
 
 
 def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
-    """Children that are missing, come twice, or that nobody reads."""
+    """Children that are missing, repeated, or that no reader knows."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
     count = Counter(tags)
@@ -174,17 +174,17 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
             message = f"<{element.tag}> has no <{meant}>"
             yield Fault("missing", child, None, message, f"is <{child.tag}> meant to be it?")
         else:
-            yield from _strange(element, child, section, meant)
+            yield from _unknown_child(element, child, section, meant)
     for tag in missing:
         yield Fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
     yield from _repeated(element, section, count)
     yield from _shapes(element, section)
 
 
-def _strange(
+def _unknown_child(
     element: etree._Element, child: etree._Element, section: Section, meant: str
 ) -> Iterator[Fault]:
-    """A child that the schema does not have there."""
+    """A child that the schema does not have in its parent."""
     message = f"<{child.tag}> in <{element.tag}> is read by nobody"
     hint = f"did you mean <{meant}>?" if meant else ""
     if section.name == "ros2_control":
@@ -203,24 +203,24 @@ def _strange(
 
 
 def _repeated(element: etree._Element, section: Section, count: Counter[str]) -> Iterator[Fault]:
-    """What is read once and comes again with another content."""
+    """Children that are read once and come again with other content."""
     for tag, times in count.items():
         child = section.children.get(tag)
         if times < 2 or child is None or child.times not in ("once", "required"):
             continue
         first, *others = element.findall(tag)
-        other = next((it for it in others if _written(it) != _written(first)), None)
+        other = next((it for it in others if _canonical(it) != _canonical(first)), None)
         if other is not None:
             message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads the first one alone"
             yield Fault("repeated-element", other, None, message)
 
 
-def _written(element: etree._Element) -> bytes:
+def _canonical(element: etree._Element) -> bytes:
     return etree.tostring(element, method="c14n", with_tail=False)
 
 
 def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
-    """A geometry has one shape, and the first element is it."""
+    """Shapes after the first one of a geometry."""
     known = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*known)) if known else []
     if len(shapes) > 1:
@@ -237,7 +237,7 @@ def _near(name: str, known: Collection[str]) -> str:
 
 
 def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> Iterator[Fault]:
-    """What is wrong with a value that is not fine at first sight."""
+    """What is wrong with a value."""
     where = f"{element.tag}@{attribute} is {shortened(value)!r}"
     if kind.type == "one":
         if value not in kind.choices:
@@ -260,14 +260,14 @@ def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> I
 
 
 def _is_unread(element: etree._Element) -> bool:
-    """The axis of a joint that has none."""
+    """Is it the axis of a joint whose axis is not read?"""
     joint = element.getparent()
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 
 
-def _texts(root: etree._Element) -> Iterator[Fault]:
-    """Text where none belongs, a stray ``>`` mostly."""
-    for element in (it for top in _found(_TOPS, root) for it in _texts_in(top)):
+def _stray_texts(root: etree._Element) -> Iterator[Fault]:
+    """Text where no reader expects any, mostly a stray ``>``."""
+    for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
         section = section_of(element)
         if section is None or section.text:
             continue
@@ -278,7 +278,7 @@ def _texts(root: etree._Element) -> Iterator[Fault]:
         yield Fault("stray-text", element, inside, message)
 
 
-def _texts_in(top: etree._Element) -> list[etree._Element]:
+def _elements_with_text(top: etree._Element) -> list[etree._Element]:
     return [top] if top.tag == ROBOT else _found(_TEXTS, top)
 
 
@@ -286,8 +286,8 @@ def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
     return path(element)  # type: ignore[return-value]
 
 
-def _broken(document: Document) -> Iterator[Fault]:
-    """Line ends and tabs behind a number: blanks to XML, and no blanks to urdfdom."""
+def _broken_numbers(document: Document) -> Iterator[Fault]:
+    """Line ends and tabs after a number: white space for XML, but not for urdfdom."""
     source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
     for at in (it.start() for pattern in _BROKEN for it in pattern.finditer(source)):

@@ -31,7 +31,7 @@ class Kind(NamedTuple):
 
 
 class Child(NamedTuple):
-    """A child: its section, empty where nobody looks inside, and how often it may stand there."""
+    """A child: its section, empty where its content is not checked, and how often it may come."""
 
     section: str
     times: str
@@ -47,7 +47,7 @@ class Section(NamedTuple):
 
 
 class Schema(NamedTuple):
-    """All of ``urdf.schema``: the ``tags`` that it has somewhere, and the sections that must have a
+    """All of ``urdf.schema``: every tag in it, and the sections that must have a
     child (``parents``)."""
 
     sections: Mapping[str, Section]
@@ -133,7 +133,7 @@ def typed_attributes(name: str, keys: tuple[str, ...]) -> tuple[tuple[int, str],
 
 
 def sections_below(name: str, tags: tuple[str, ...]) -> tuple[str, ...] | None:
-    """The sections of children, empty where nobody looks; None where the children have a fault."""
+    """The sections of children, empty where not checked; None where the children have a fault."""
     return _known_below(name, tags) if len(tags) < _FEW else _below(name, tags)
 
 
@@ -156,7 +156,7 @@ _known_below = lru_cache(maxsize=2048)(_below)
 
 
 def sections_once(name: str, tags: tuple[str, ...]) -> tuple[str, ...]:
-    """The section of each child; the second of what is read once is not looked at."""
+    """The section of each child; empty from the second one on where one is read."""
     known = schema().sections[name].children
     seen: set[str] = set()
     found: list[str] = []
@@ -169,5 +169,5 @@ def sections_once(name: str, tags: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _slot(tag: str, child: Child) -> str:
-    """What a child that is read once takes up: shapes have one place among them."""
+    """The place that a child which is read once takes: all shapes share one."""
     return child.times if child.times == "either" else tag

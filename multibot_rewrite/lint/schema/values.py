@@ -10,7 +10,7 @@ from multibot_rewrite.lazy import regex
 
 _SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
 _UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
-# A usual value is right at one look. urdfdom takes blanks in front of a lone number and none behind it.
+# What most values look like. urdfdom takes blanks before a lone number and none after it.
 FINE = {
     "number": regex(rf" *{_SCALAR}", re.ASCII),
     "numbers": regex(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
@@ -25,7 +25,7 @@ _UNITS = regex(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
 
 
 def is_fine(kind: str, value: str) -> bool:
-    """Does one look show that a value is right?"""
+    """Does a value look like most correct ones? (Others may be correct as well.)"""
     return len(value) <= _LONG and kind in FINE and bool(FINE[kind].fullmatch(value))
 
 

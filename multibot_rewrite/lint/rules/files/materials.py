@@ -65,7 +65,7 @@ def _looks(subject: Subject) -> list[etree._Element]:
 
 
 def _misspelled(subject: Subject) -> set[etree._Element | None]:
-    """Elements of which another rule says that they, or a child, are wrongly written."""
+    """Elements that another rule reports, for themselves or for a child."""
     elements = [it.element for it in subject.faults]
     return {*elements, *(it.getparent() for it in elements)}
 

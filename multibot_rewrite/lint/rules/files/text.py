@@ -82,7 +82,7 @@ def unused_namespace(subject: Subject) -> Iterator[Problem]:
     tag = _ROOT.match(source, start)
     for found in _NAMESPACE.finditer(source, start, tag.end() if tag else start):
         prefix = found[1] + b":"
-        # What is left of xacro in a plain URDF has a rule of its own, which the prefix belongs to.
+        # What is left of xacro in a plain URDF is reported by MB105, its prefix as well.
         left = b"/xacro" in found[0] and (b"${" in source or b"$(" in source)
         if prefix not in source and not left:
             edit = Edit(found.start(), found.end(), b"", None)

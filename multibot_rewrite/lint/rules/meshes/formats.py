@@ -9,7 +9,7 @@ from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_
 from multibot_rewrite.model import WARNING
 
 READABLE = frozenset(("stl", "dae", "obj"))
-# Who cannot read the rest of what RViz reads through assimp.
+# Programs that cannot read a format which RViz reads (through assimp).
 PARTLY = {
     "gltf": "Gazebo Classic and gz before Garden cannot read glTF",
     "glb": "Gazebo Classic and gz before Garden cannot read glTF",
@@ -30,7 +30,7 @@ PARTLY = {
     good=MESH % "package://arm/meshes/base.stl",
 )
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
-    """Endings that nobody knows; textures are images."""
+    """Endings of meshes that no program knows."""
     for it in _meshes(subject):
         ending = _ending(it)
         if ending not in READABLE and ending not in PARTLY:

@@ -33,7 +33,7 @@ def _lookups(subject: Subject) -> tuple[Lookup, ...]:
     first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
     asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
     folders_of = cache(lambda name: package_folders(name, file, roots))
-    return tuple(_looked_up(it, *_bases(it, file, folders_of)) for it in asked)
+    return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
 
 
 def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
@@ -42,7 +42,7 @@ def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
     return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
 
 
-def _bases(
+def _where(
     it: Used, file: str, folders_of: Callable[[str], tuple[str, ...]]
 ) -> tuple[tuple[str, ...], str]:
     """The folders in which a file may be, and its path below them."""
@@ -54,11 +54,11 @@ def _bases(
         return (), ""
     path = path.lstrip("/")
     first = path.partition("/")[0].lower()
-    # A folder that is only called like the package must look like it.
-    return tuple(it for it in folders_of(package) if _looks_like_it(entries(it), first)), path
+    # A folder without a manifest must at least have the folder that is asked for.
+    return tuple(it for it in folders_of(package) if _may_be_the_package(entries(it), first)), path
 
 
-def _looks_like_it(names: frozenset[str], first: str) -> bool:
+def _may_be_the_package(names: frozenset[str], first: str) -> bool:
     return "package.xml" in names or any(name.lower() == first for name in names)
 
 
@@ -137,7 +137,7 @@ def _package(it: Lookup) -> str:
     },
 )
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
-    """Paths that are there but for capitals."""
+    """Paths that differ from the file only in capitals."""
     for it in _lookups(subject):
         if it.found and it.found != os.path.normpath(it.path):
             message = f"{it.path!r} is called {it.found!r} on the disk"

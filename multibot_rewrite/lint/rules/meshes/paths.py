@@ -12,7 +12,7 @@ from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, and_more, prob
 from multibot_rewrite.model import ERROR, WARNING
 
 
-def _with(subject: Subject, *schemes: str) -> list[Used]:
+def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
     return [it for it in used_files(subject) if it.scheme in schemes]
 
 
@@ -28,8 +28,8 @@ def _with(subject: Subject, *schemes: str) -> list[Used]:
     good=MESH % "package://arm/meshes/base.stl",
 )
 def path_of_one_machine(subject: Subject) -> Iterator[Problem]:
-    """The first absolute path that no xacro substitution makes, and how many there are."""
-    found = [it for it in _with(subject, "file") if "$" not in it.name]
+    """The first absolute path that is written out in the source, and how many there are."""
+    found = [it for it in _with_scheme(subject, "file") if "$" not in it.name]
     starts = starts_of(subject, [it.element for it in found])
     found = [it for it in found if _is_literal(subject, starts[it.element])]
     if found:
@@ -80,7 +80,7 @@ def mesh_without_file(subject: Subject) -> Iterator[Problem]:
 
 
 def _is_shape(mesh: _Element) -> bool:
-    """Does it stand at link/*/geometry?"""
+    """Is it the shape of a visual or collision of a link?"""
     above = [str(it.tag) for it in mesh.iterancestors()][:4]
     return above[:1] + above[2:] == ["geometry", "link", "robot"] and mesh.find("uri") is None
 
@@ -118,7 +118,7 @@ def mixed_schemes(subject: Subject) -> Iterator[Problem]:
 )
 def model_uri(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are."""
-    found = _with(subject, "model")
+    found = _with_scheme(subject, "model")
     if found:
         message = f"RViz cannot load {found[0].name!r}{and_more(len(found))}"
         yield problem(found[0], message, "write package://")
@@ -137,7 +137,7 @@ def model_uri(subject: Subject) -> Iterator[Problem]:
 )
 def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
     """The first of them, and how many there are."""
-    found = _with(subject, "http", "https")
+    found = _with_scheme(subject, "http", "https")
     if found:
         message = f"{found[0].name!r} needs the network{and_more(len(found))}"
         yield problem(found[0], message, "put it into a package")
@@ -154,7 +154,7 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
     good=MESH % "package://arm/meshes/base.stl",
 )
 def find_left_over(subject: Subject) -> Iterator[Problem]:
-    """The first of them, and how many; a xacro file in disguise is for MB105 to tell."""
+    """The first of them, and how many there are; MB105 reports xacro files with a wrong name."""
     if any("xacro" in str(uri) for uri in subject.document.root.nsmap.values()):
         return
     found = [it for it in used_files(subject) if "$(find" in it.name]

@@ -17,7 +17,7 @@ MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visua
 
 
 class Used(NamedTuple):
-    """A mesh or texture; ``scheme`` is what stands before ``://``, ``file`` for a path from the
+    """A mesh or texture; ``scheme`` is what is before ``://``, ``file`` for a path from the
     root of the disk, empty for a relative one. ``path`` is the rest of it."""
 
     element: _Element
@@ -43,8 +43,10 @@ def _read(element: _Element, name: str) -> Used:
 
 
 def problem(it: Used, message: str, hint: str) -> Problem:
+    """A problem at the file's name."""
     return Problem(it.element, message, "filename", hint)
 
 
 def and_more(count: int) -> str:
+    """The rest of a message that is about the first of many."""
     return f" (and {count - 1} more)" if count > 1 else ""

@@ -29,7 +29,7 @@ from multibot_rewrite.rosnames import split_remap
     "<gz_frame_id>laser</gz_frame_id></sensor></gazebo>",
 )
 def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
-    """Frames that are no link, but one with something and a slash in front."""
+    """Frames that are a link with something and a slash in front."""
     links = subject.inventory.declared["link"]
     for claim in subject.inventory.claims if subject.inventory.hosts else ():
         value = claim.value.strip("/")

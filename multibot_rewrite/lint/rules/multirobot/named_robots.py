@@ -1,4 +1,4 @@
-"""What a rewrite for the named robots would refuse or warn about."""
+"""What a rewrite for the named robots refuses or warns about."""
 
 from __future__ import annotations
 
@@ -189,7 +189,7 @@ sensor_names_meet = rule(
     "</remapping></ros></plugin></gazebo>",
 )
 def process_wide_rule(subject: Subject) -> Iterator[Problem]:
-    """Rules that reach other robots' nodes; without robots named, those with absolute targets."""
+    """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""
     settings = subject.settings
     naming = settings.naming if settings.robots else AS_WRITTEN
     yield from problems(hazards.process_wide(subject.inventory, naming))

@@ -29,7 +29,7 @@ DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
 )
 def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
-    """Each literal namespace, where it stands first."""
+    """Each literal namespace, at its first place."""
     found: dict[str, list[Claim]] = {}
     for claim in claims_of(subject, ("namespace",)):
         if is_plain(claim.value) and claim_is_fixed(subject, claim):

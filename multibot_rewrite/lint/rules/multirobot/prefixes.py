@@ -22,7 +22,7 @@ from multibot_rewrite.lint.rules.multirobot.xacro_scopes import (
 from multibot_rewrite.model import WARNING
 from multibot_rewrite.naming import SHARED_FRAMES
 
-# Elements of xacro that call no macro.
+# The elements of xacro itself: all others call a macro.
 _BUILTIN = frozenset(
     {
         *("macro", "arg", "property", "include", "if", "unless"),
@@ -54,7 +54,9 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     for scope in scopes(subject.document.root):
         for kind in ("link", "joint"):
             yield from _forgotten(scope, [it for it in scope.declared if it.element.tag == kind])
-        stems = {without_substitutions(it) for it in scope.declared if it.words & scope.carriers}
+        stems = {
+            without_substitutions(it) for it in scope.declared if it.words & scope.prefix_names
+        }
         bare = {it.text for it in scope.declared if not it.words}
         for it in scope.used if stems else ():
             if not it.words and it.text in stems and it.text not in bare:
@@ -77,7 +79,7 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     formats=(XACRO,),
 )
 def prefix_unused(subject: Subject) -> Iterator[Problem]:
-    """Parameters and arguments that nothing in sight reads and nothing out of sight can."""
+    """Parameters and arguments that nothing in the file reads, and no included file can."""
     root = subject.document.root
     for macro in root.iter("{*}macro"):
         names = prefixes(parameters(macro)) if is_xacro(macro) else []
@@ -91,9 +93,9 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
 
 
 def _forgotten(scope: Scope, declared: list[WrittenName]) -> Iterator[Problem]:
-    """Where most links (joints) have the prefix: those that are nothing but text."""
+    """Literal names, where most links (joints) have the prefix."""
     bare = [it for it in declared if not it.words and it.text.strip("/") not in SHARED_FRAMES]
-    prefixed = sum(1 for it in declared if it.words & scope.carriers)
+    prefixed = sum(1 for it in declared if it.words & scope.prefix_names)
     for it in bare if prefixed >= len(bare) else ():
         message = (
             f"{it.element.tag} {it.text!r} lacks the prefix that {prefixed} other "
@@ -116,7 +118,7 @@ def _unused_arguments(root: _Element) -> Iterator[Problem]:
 
 
 def _calls_others(macro: _Element) -> bool:
-    """A macro that is called sees what its caller was given."""
+    """Does it call macros? They see the parameters of their caller."""
     inside = (it for it in macro.iterdescendants("{*}*") if is_xacro(it))
     return any(str(it.tag).rpartition("}")[2] not in _BUILTIN for it in inside)
 
@@ -126,6 +128,6 @@ def _of(scope: Scope) -> str:
 
 
 def _hint(scope: Scope, text: str) -> str:
-    own = next((it for it in scope.declared if it.words & scope.carriers), None)
+    own = next((it for it in scope.declared if it.words & scope.prefix_names), None)
     found = SUBSTITUTIONS.search(own.text) if own else None
     return f"write {found[0] + text!r}" if found else "put the prefix in front"

@@ -97,7 +97,7 @@ def one_device(subject: Subject) -> Iterator[Problem]:
     "gz_ros2_control/GazeboSimSystem</plugin></hardware></ros2_control>",
 )
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
-    """Asked as long as no robots are named; then MB425 knows whether their names differ."""
+    """Only while no robots are named: then MB425 knows whether their names differ."""
     if subject.settings.robots or not _has_fixed_sensor(subject):
         return
     for it in hazards.bare_lookups(subject.inventory, AS_WRITTEN):

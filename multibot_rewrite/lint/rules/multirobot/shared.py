@@ -12,7 +12,7 @@ from multibot_rewrite.naming import NOT_PLAIN, make_naming
 from multibot_rewrite.rewriters.insert import insertions
 
 TWO = ("robot1", "robot2")
-# Frames, tf and topics all per robot: whatever has to be inserted for that, copies share.
+# Frames, tf and topics all per robot: what a rewrite inserts for that is what copies share.
 APART = make_naming("both")
 AS_WRITTEN = make_naming("tf-per-robot")
 
@@ -25,22 +25,24 @@ def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
 
 
 def is_plain(text: str) -> bool:
-    """A name, no placeholder and no empty text."""
+    """Is it a name: not empty, no placeholder?"""
     return bool(text.strip("/")) and NOT_PLAIN.isdisjoint(text) and not text.startswith("__")
 
 
 def tag_of(claim: Claim) -> str:
+    """How a message names the element of a claim."""
     name = claim.element.get("name") if claim.element.tag == "param" else None
     return f"parameter {name!r}" if name else f"<{claim.element.tag}>"
 
 
 def process_wide_plugins(subject: Subject) -> set[_Element]:
+    """The plugins that hand their remap rules to the whole Gazebo process."""
     hosts = subject.inventory.hosts
     return {it.element for it in hosts if it.node.rewriter and it.node.rewriter.process_wide}
 
 
 def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
-    """Kind, default and tag of what urdf-postfix would insert, but for namespaces."""
+    """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
     declared = subject.inventory.declared
     for host in subject.inventory.hosts:
         rewriter = host.node.rewriter

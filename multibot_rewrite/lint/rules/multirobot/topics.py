@@ -20,8 +20,8 @@ from multibot_rewrite.naming import TF_TOPICS
 from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rosnames import split_remap
 
-SPOKEN = ("topic", "service")
-RULES_OF_TEXT = ("remap", "argument")
+ROS_KINDS = ("topic", "service")
+REMAP_FORMS = ("remap", "argument")
 GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
 GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
 
@@ -41,16 +41,16 @@ GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
     "cmd_vel:=drive</remapping></ros></plugin></gazebo>",
 )
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
-    """ROS names that start with a slash and are not shared on purpose."""
+    """Absolute ROS names that the settings do not call shared."""
     wide = process_wide_plugins(subject)
-    for claim in claims_of(subject, SPOKEN):
+    for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
         if name[:1] != "/" or not is_plain(name) or _is_gz(claim):
             continue
         if name.strip("/") in subject.settings.naming.shared_topics | set(TF_TOPICS):
             continue
-        # There MB426 says more.
-        if claim.site.form in RULES_OF_TEXT and wide and wide.intersection(_above(claim)):
+        # MB426 reports these.
+        if claim.site.form in REMAP_FORMS and wide and wide.intersection(_plugins_around(claim)):
             continue
         if claim_is_fixed(subject, claim):
             message = f"{tag_of(claim)} {name!r} is absolute: a namespace does not move it"
@@ -58,13 +58,13 @@ def absolute_topic(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, hint)
 
 
-def _above(claim: Claim) -> Iterator[_Element]:
+def _plugins_around(claim: Claim) -> Iterator[_Element]:
     return claim.element.iterancestors("plugin")
 
 
 def _target(claim: Claim) -> str:
-    """The topic a claim names: of a remap rule where it leads to."""
-    if claim.site.form not in RULES_OF_TEXT:
+    """The topic that a claim names; of a remap rule, its target."""
+    if claim.site.form not in REMAP_FORMS:
         return claim.value.strip()
     found = split_remap(claim.value)
     return found.target if found else ""
@@ -85,7 +85,7 @@ def _target(claim: Claim) -> str:
 )
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Literal gz topics."""
-    claims = [it for it in claims_of(subject, SPOKEN) if _is_gz(it)]
+    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_gz(it)]
     if not claims or _is_classic(subject):
         return
     for claim in claims:
@@ -127,7 +127,7 @@ def _is_classic(subject: Subject) -> bool:
     '<param name="joint_commands_topic">commands</param></hardware></ros2_control>',
 )
 def default_topic_shared(subject: Subject) -> Iterator[Problem]:
-    """Topics, services and stems that would have to be inserted for a robot."""
+    """Topics, services and beginnings of names that would have to be inserted for a robot."""
     for element, (kind, old, _) in inserted(subject):
         if kind in ("topic", "service", "stem"):
             message = f"without being told another {kind} it uses {old!r}, as every other robot's"

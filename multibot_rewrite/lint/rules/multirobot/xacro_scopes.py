@@ -10,7 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.lazy import regex
 
-# What people call what stands in front of a robot's names.
+# How people call the parameter that is put in front of a robot's names.
 PREFIX = regex(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
 _PARAM = regex(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
 SUBSTITUTIONS = regex(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")
@@ -43,7 +43,7 @@ _REFERENCES = {
 
 
 class WrittenName(NamedTuple):
-    """A name as written: the attribute it stands in (empty for text), and its holes' names."""
+    """A name in the source: its attribute (empty for text), and the names in its substitutions."""
 
     element: _Element
     attribute: str
@@ -52,32 +52,36 @@ class WrittenName(NamedTuple):
 
 
 class Scope(NamedTuple):
-    """What stands in one macro, or outside of all of them (``macro`` is None then)."""
+    """The names in one macro, or outside of all of them (``macro`` is None then).
+
+    ``prefix_names`` are its prefixes and the properties made from them.
+    """
 
     macro: _Element | None
-    carriers: frozenset[str]
+    prefix_names: frozenset[str]
     declared: list[WrittenName]
     used: list[WrittenName]
 
 
 def scopes(root: _Element) -> list[Scope]:
+    """The macros of a file, and what is outside of them; none where nothing takes a prefix."""
     arguments = [it.get("name", "") for it in root.iter("{*}arg") if is_xacro(it)]
     given = frozenset(prefixes(arguments))
     macros = [it for it in root.iter("{*}macro") if is_xacro(it)]
     own = {it: given | frozenset(prefixes(parameters(it))) for it in macros}
     if not given and not any(own.values()):
         return []
-    makes = _made_from(root)
-    carriers = {names: _carriers(names, makes) for names in {given, *own.values()}}
-    scopes: dict[_Element | None, Scope] = {}
+    users = _properties_by_name(root)
+    prefix_names = {names: _with_properties(names, users) for names in {given, *own.values()}}
+    found: dict[_Element | None, Scope] = {}
     for element in root.iter("link", "joint", *_REFERENCES):
         home = next((it for it in element.iterancestors("{*}macro") if is_xacro(it)), None)
-        scope = scopes.get(home)
+        scope = found.get(home)
         if scope is None:
             names = given if home is None else own[home]
-            scope = scopes[home] = Scope(home, carriers[names], [], [])
+            scope = found[home] = Scope(home, prefix_names[names], [], [])
         _add(scope, element)
-    return list(scopes.values())
+    return list(found.values())
 
 
 def _add(scope: Scope, element: _Element) -> None:
@@ -95,7 +99,7 @@ def _add(scope: Scope, element: _Element) -> None:
 
 
 def _declares(element: _Element) -> bool:
-    """A link or joint of the robot itself, inside nothing but the robot and xacro's elements."""
+    """Is it a link or joint of the robot itself: right below the robot or an element of xacro?"""
     if element.tag == "joint" and element.find("parent") is None:
         return False
     above = element.getparent()
@@ -109,46 +113,50 @@ def _name_at(element: _Element, attribute: str, text: str) -> WrittenName:
 
 
 def _names_in(text: str) -> Iterator[str]:
-    """The names in all substitutions of a text, ``$`` for those that hold none of them."""
+    """The names in all substitutions of a text, and ``$`` for substitutions without a name."""
     for expression, argument in SUBSTITUTIONS.findall(text):
         yield from [argument] if argument else _WORD.findall(_LITERAL.sub("", expression))
     yield "$"
 
 
 def without_substitutions(name: WrittenName) -> str:
+    """A name's own text: what is left without its prefix."""
     return SUBSTITUTIONS.sub("", name.text)
 
 
-def _made_from(root: _Element) -> Mapping[str, list[str]]:
-    """For each name the properties whose values it is in."""
-    makes: defaultdict[str, list[str]] = defaultdict(list)
+def _properties_by_name(root: _Element) -> Mapping[str, list[str]]:
+    """Name -> the properties whose values use it."""
+    users: defaultdict[str, list[str]] = defaultdict(list)
     for it in root.iter("{*}property"):
         value = it.get("value", "")
         for word in set(_names_in(value)) if "$" in value and is_xacro(it) else ():
-            makes[word].append(it.get("name", ""))
-    makes.pop("$", None)
-    return makes
+            users[word].append(it.get("name", ""))
+    users.pop("$", None)
+    return users
 
 
-def _carriers(names: frozenset[str], makes: Mapping[str, list[str]]) -> frozenset[str]:
+def _with_properties(names: frozenset[str], users: Mapping[str, list[str]]) -> frozenset[str]:
     """These names, and the properties made from them."""
     found, waiting = set(names), list(names)
     while waiting:
-        new = set(makes.get(waiting.pop(), ())) - found
+        new = set(users.get(waiting.pop(), ())) - found
         found |= new
         waiting += new
     return frozenset(found)
 
 
 def parameters(macro: _Element) -> list[str]:
+    """The names of a macro's parameters."""
     return [it[1] for it in _PARAM.finditer(macro.get("params", ""))]
 
 
 def prefixes(names: list[str]) -> list[str]:
+    """Those of the names that people use for a prefix."""
     return [it for it in names if PREFIX.fullmatch(it)]
 
 
 def is_xacro(element: _Element) -> bool:
+    """Is it an element of xacro?"""
     tag = element.tag
     return isinstance(tag, str) and "xacro}" in tag
 

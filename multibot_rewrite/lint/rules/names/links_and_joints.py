@@ -23,7 +23,7 @@ WORLD = "world"
     good='<link name="a"/>',
 )
 def empty_name(subject: Subject) -> Iterator[Problem]:
-    """Names of blanks alone, too."""
+    """Names that are empty or white space."""
     for kind, name, element in named(subject):
         if not name.strip():
             yield Problem(element, f"a {kind} has an empty name", "name")
@@ -41,7 +41,7 @@ def empty_name(subject: Subject) -> Iterator[Problem]:
     good='<link name="left_wheel"/>',
 )
 def blank_in_name(subject: Subject) -> Iterator[Problem]:
-    """Blanks within it or around it."""
+    """White space in a name or around it."""
     for kind, name, element in named(subject):
         if name.strip() and BLANK.search(name):
             where = "" if name == name.strip() else " around it"
@@ -63,7 +63,7 @@ def blank_in_name(subject: Subject) -> Iterator[Problem]:
     good='<link name="arm_hand"/>',
 )
 def double_colon(subject: Subject) -> Iterator[Problem]:
-    """Names of things that become names of SDF."""
+    """Names that become names in SDF."""
     for kind, name, element in named(subject):
         if "::" in name:
             hint = f"write {name.replace('::', '_')!r}"
@@ -85,7 +85,7 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
     good='<link name="_base_"/>',
 )
 def reserved_name(subject: Subject) -> Iterator[Problem]:
-    """A link called world has a rule of its own."""
+    """Links, joints and the robot; a link called world is MB307."""
     for kind, name, element in named(subject):
         if _is_reserved(name) or (kind == "joint" and name == WORLD):
             yield Problem(element, f"SDF keeps {name!r} for itself: no {kind} may have it", "name")
@@ -114,7 +114,7 @@ def _is_reserved(name: str) -> bool:
     '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
 )
 def world_link(subject: Subject) -> Iterator[Problem]:
-    """What is wrong with it, the worst first."""
+    """One finding, for the worst that is wrong with it."""
     link = subject.robot.link.get(WORLD)
     if link is None:
         return
@@ -144,7 +144,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
     '<parent link="a"/><child link="b"/></joint>',
 )
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
-    """A fixed joint goes when Gazebo merges its links, and so does its child's name."""
+    """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""
     robot = subject.robot
     for joint in robot.joints:
         if joint.name not in robot.link or joint.type == "fixed" or not joint.name.strip():
@@ -192,7 +192,7 @@ def case_twins(subject: Subject) -> Iterator[Problem]:
     good='<link name="fuehler"/>',
 )
 def name_not_ascii(subject: Subject) -> Iterator[Problem]:
-    """With the letter, which may look like another one."""
+    """The message names the letter, which may look like another one."""
     for kind, name, element in named(subject):
         if not name.isascii():
             letter = next(it for it in name if not it.isascii())

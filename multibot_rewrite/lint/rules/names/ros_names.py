@@ -13,9 +13,9 @@ from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN
 from multibot_rewrite.rosnames import check_topic_name, propose_token, split_remap
 from multibot_rewrite.steps.document import value_slot
 
-SPOKEN = frozenset({"topic", "service", "namespace"})
+ROS_KINDS = frozenset({"topic", "service", "namespace"})
 # ROS 1, ROS 2 and both Gazebos agree on these.
-_SPOKEN = regex(r"[\w/~]*", re.ASCII)
+_ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
 
 
 @rule(
@@ -33,7 +33,7 @@ _SPOKEN = regex(r"[\w/~]*", re.ASCII)
     formats=(URDF, SRDF),
 )
 def leading_slash(subject: Subject) -> Iterator[Problem]:
-    """The slash can go where the frame without it is a link of the robot. Plugins know /world."""
+    """With a fix where the frame without the slash is a link. Plugins know /world."""
     shared = subject.settings.naming.shared_frames
     for claim in subject.inventory.claims:
         if claim.value[:1] != "/" or claim.site.form != "whole":
@@ -90,7 +90,7 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     good='<robot name="my_robot"><link name="a"/></robot>',
 )
 def robot_name(subject: Subject) -> Iterator[Problem]:
-    """Names with a rule of their own ('::') are left to it."""
+    """Names with '::' are MB305."""
     name = name_of_robot(subject)
     if name is None or "::" in name or TOKEN.fullmatch(name):
         return
@@ -112,18 +112,18 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     "<namespace>my_robot</namespace></ros></plugin></gazebo>",
 )
 def no_ros_name(subject: Subject) -> Iterator[Problem]:
-    """Claimed values that a ROS namespace reaches; what has a substitution in it is left alone."""
+    """Values that are relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
         site = claim.site
-        if not site.namespaced or site.kinds[0] not in SPOKEN:
+        if not site.namespaced or site.kinds[0] not in ROS_KINDS:
             continue
-        for name in _spoken(claim):
+        for name in _ros_names(claim):
             if fault := _name_fault(name, site.section):
                 message = f"{site.kinds[0]} {name!r} is no ROS name: {fault}"
                 yield Problem(claim.element, message, claim.attribute)
 
 
-def _spoken(claim: Claim) -> list[str]:
+def _ros_names(claim: Claim) -> list[str]:
     """The names in a value: itself, or both sides of a remap rule."""
     sides = [claim.value] if claim.site.form == "whole" else []
     if claim.site.form in ("remap", "argument"):
@@ -133,8 +133,8 @@ def _spoken(claim: Claim) -> list[str]:
 
 
 def _name_fault(name: str, section: str) -> str:
-    """What rcl says of a name; of a plugin that may be ROS 1's or Gazebo's, what none of them takes."""
-    if _SPOKEN.fullmatch(name) and not section.startswith("block ros"):
+    """Why rcl refuses a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
+    if _ALLOWED_EVERYWHERE.fullmatch(name) and not section.startswith("block ros"):
         return ""
     fault = check_topic_name(name.rstrip("/"))
     return fault.reason if fault else ""
@@ -154,7 +154,7 @@ def _name_fault(name: str, section: str) -> str:
     '<joint name="j"><state_interface name="position"/></joint></ros2_control>',
 )
 def odd_interface(subject: Subject) -> Iterator[Problem]:
-    """Components and their interfaces; a joint's own name is told where it is declared."""
+    """Components and their interfaces; the name of a joint is reported at its declaration."""
     for system in subject.elements.every("ros2_control"):
         for it in system.iter(
             "ros2_control", "sensor", "gpio", "command_interface", "state_interface"

@@ -10,7 +10,7 @@ from lxml.etree import _Element
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.records import Subject
 
-# What stands for other text is not looked at: its rule is MB105.
+# Names with a substitution are skipped: MB105 reports them.
 SUBSTITUTION = "$"
 BLANK = regex(r"\s")
 TOKEN = regex(r"[A-Za-z_]\w*", re.ASCII)

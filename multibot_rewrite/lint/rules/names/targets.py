@@ -23,7 +23,7 @@ from multibot_rewrite.model import WARNING
     options={"targets": ("usd",)},
 )
 def no_usd_name(subject: Subject) -> Iterator[Problem]:
-    """With what a converter makes of it, where that is taken."""
+    """The message says what a converter makes of it, and whether that name exists."""
     if "usd" not in subject.settings.targets:
         return
     names = {name for _, name, _ in named(subject)}

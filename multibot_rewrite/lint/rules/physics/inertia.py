@@ -26,8 +26,8 @@ from multibot_rewrite.lint.rules.physics.shared import (
 )
 from multibot_rewrite.model import ERROR, WARNING
 
-# Radius of gyration: no robot under HEAVY kg is so long, no part so compact, none of a known size
-# so much larger or smaller than it. A mass below LIGHT is a stand-in.
+# Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor
+# is it LARGER or SMALLER times the size of the shapes. A mass below LIGHT is a placeholder.
 LONG, SHORT, HEAVY, LIGHT = 5.0, 1e-4, 500.0, 0.01
 LARGER, SMALLER, SMALL_SHAPE = 50.0, 0.01, 0.01
 
@@ -68,7 +68,7 @@ def inertia_missing(subject: Subject) -> Iterator[Problem]:
     good=moving_link(an_inertial()),
 )
 def inertia_zero(subject: Subject) -> Iterator[Problem]:
-    """Bodies of mass without inertia, where nothing fixed to them adds any."""
+    """Bodies with mass and no inertia, also not from a link that is fixed to them."""
     robot = subject.robot
     parts: dict[str, int] | None = None
     for link, inertial in inertials(robot):
@@ -114,7 +114,7 @@ def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.2"))),
 )
 def inertia_triangle(subject: Subject) -> Iterator[Problem]:
-    """Inertias of bodies that no distribution of mass has, by more than rounding."""
+    """Inertias that no distribution of mass has, by more than rounding."""
     for link, inertial, moments in impossible(subject.robot, merged=False):
         if not is_negative(moments):
             message = f"inertia of link {link.name!r} {fault_of(moments)}"
@@ -132,7 +132,7 @@ def inertia_triangle(subject: Subject) -> Iterator[Problem]:
     good=one_link(an_inertial(inertia=diagonal("0.001", "0.001", "0.001"))),
 )
 def inertia_scale(subject: Subject) -> Iterator[Problem]:
-    """Radii of gyration of no robot, or far from the size of a link made of boxes and the like."""
+    """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
     for link, inertial in inertials(subject.robot):
         mass, moments = inertial.mass, inertial.moments
         if mass is None or moments is None or not LIGHT <= mass < HEAVY:
@@ -166,14 +166,14 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
     good=moving_link(an_inertial()).replace("continuous", "fixed"),
 )
 def merged_inertia(subject: Subject) -> Iterator[Problem]:
-    """Impossible inertias that are a part of a sum."""
+    """Impossible inertias of links that simulators merge with others."""
     for link, inertial, moments in impossible(subject.robot, merged=True):
         message = f"inertia of link {link.name!r} {fault_of(moments)}"
         yield Problem(part_of(inertial, "inertia"), message)
 
 
 def _size(link: _Element) -> float:
-    """How far a link's shapes reach from its origin; 0 where that is not known: meshes."""
+    """How far a link's shapes reach from its origin; 0 if it has a mesh, whose size is not known."""
     far = 0.0
     for geometry in link.iter("geometry"):
         shape = next(geometry.iterchildren("*"), None)

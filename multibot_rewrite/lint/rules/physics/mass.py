@@ -53,7 +53,7 @@ def mass_missing(subject: Subject) -> Iterator[Problem]:
     good=one_link(an_inertial("1")),
 )
 def mass_negative(subject: Subject) -> Iterator[Problem]:
-    """Masses that push."""
+    """Masses below 0."""
     for link, inertial in inertials(subject.robot):
         if inertial.mass is not None and inertial.mass < 0:
             message = f"the mass of link {link.name!r} is {inertial.mass:g} kg"
@@ -72,7 +72,7 @@ def mass_negative(subject: Subject) -> Iterator[Problem]:
     good=moving_link(an_inertial()),
 )
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
-    """The uppermost bodies without mass, in a robot that has masses and more than one body."""
+    """The uppermost bodies without mass, if the robot has several bodies and some mass."""
     robot = subject.robot
     mass = _masses(robot)
     if len(mass) < 2 or not any(it > 0 for it in mass.values()):
@@ -83,7 +83,7 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
         if link is None or sum_ > 0 or name in lost or name == WORLD or _negative(link):
             continue
         if name not in robot.above and name not in robot.below:
-            continue  # it hangs on nothing: that is MB501
+            continue  # no joint has it: MB501
         below = len(reached(robot, [name], lost)) - 1
         tail = f", with {below} links below it" if below else ""
         message = f"link {name!r} has no mass, nor anything fixed to it: Gazebo leaves it out{tail}"
@@ -159,7 +159,7 @@ def _negative(link: Link) -> bool:
 
 
 def _masses(robot: Robot) -> dict[str, float]:
-    """Body -> its mass with all that is fixed to it; what is no number counts as much."""
+    """Body -> its mass with all that is fixed to it; what is not a number counts as 1 kg."""
     mass = dict.fromkeys(robot.body.values(), 0.0)
     for link, inertial in inertials(robot):
         body = robot.body.get(link.name)

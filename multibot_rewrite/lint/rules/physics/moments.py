@@ -16,12 +16,12 @@ ROUNDING = 0.01
 def impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Vector]]:
     """The inertias that no body has and their principal moments, the smallest first.
 
-    ``merged`` are those of links that are merged with others that have a mass, or with nothing
-    that moves: ``world``.
+    With ``merged`` those of links that simulators merge with others that have a mass, or with
+    ``world``; without it all others.
     """
     parts: dict[str, int] | None = None
     for link, inertial in inertials(robot):
-        if inertial.moments is None or _is_plain(inertial.moments):
+        if inertial.moments is None or _is_possible(inertial.moments):
             continue
         low, middle, high = moments = eigenvalues(inertial.moments)
         if high < NOTHING or (not is_negative(moments) and high <= (low + middle) * (1 + ROUNDING)):
@@ -32,18 +32,20 @@ def impossible(robot: Robot, merged: bool) -> Iterator[tuple[Link, Inertial, Vec
             yield link, inertial, moments
 
 
-def _is_plain(moments: tuple[float, ...]) -> bool:
-    """A quick look: is it surely possible? Off the diagonal ``off`` shifts the moments at most."""
+def _is_possible(moments: tuple[float, ...]) -> bool:
+    """Is it certainly possible? Values off the diagonal shift the moments by ``off`` at most."""
     xx, xy, xz, yy, yz, zz = moments
     off = abs(xy) + abs(xz) + abs(yz)
     return min(xx, yy, zz) >= off and max(xx, yy, zz) + off <= (xx + yy + zz) / 2
 
 
 def is_negative(moments: Vector) -> bool:
+    """Is the smallest moment below 0, by more than rounding?"""
     return moments[0] < -1e-6 * abs(moments[2])
 
 
 def fault_of(moments: Vector) -> str:
+    """What is wrong with impossible moments."""
     low, middle, high = moments
     if is_negative(moments):
         return f"is not positive definite: a principal moment is {low:.3g}"

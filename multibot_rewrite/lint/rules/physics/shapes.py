@@ -40,7 +40,7 @@ OLD_VERSIONS = ("1.0", "1")
     good=moving_link(f"{an_inertial()}<visual>{BOX}</visual><collision>{BOX}</collision>"),
 )
 def visual_without_collision(subject: Subject) -> Iterator[Problem]:
-    """Bodies; where no link has a collision, the robot is told once."""
+    """Bodies; one finding for the robot where no link has a collision."""
     robot, root = subject.robot, subject.document.root
     if root.tag != "robot" or not robot.joints:
         return
@@ -73,7 +73,7 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     good=visual('<box size="0.1 0.1 0.1"/>'),
 )
 def shape_size(subject: Subject) -> Iterator[Problem]:
-    """Shapes that are not there."""
+    """Shapes with a size of 0 or less."""
     for shape, sizes in _shapes(subject):
         if min(sizes) <= 0:
             words = " x ".join(f"{it:g}" for it in sizes)
@@ -92,7 +92,7 @@ def shape_size(subject: Subject) -> Iterator[Problem]:
     good=visual('<box size="0.3 0.2 0.1"/>'),
 )
 def shape_units(subject: Subject) -> Iterator[Problem]:
-    """Shapes of more than fifty metres every way; a long and thin one may be a rail."""
+    """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
     for shape, sizes in _shapes(subject):
         if min(sizes) >= LONG_SHAPE / 5 and max(sizes) >= LONG_SHAPE:
             words = " x ".join(f"{it:g}" for it in sizes)
@@ -164,7 +164,7 @@ def mesh_flat(subject: Subject) -> Iterator[Problem]:
     good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
 )
 def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
-    """An odd number of negative scales; two of them are a turn."""
+    """An odd number of negative scales: two of them are a rotation."""
     for mesh, scale in _scales(subject):
         if scale[0] * scale[1] * scale[2] < 0:
             words = mesh.get("scale")
@@ -183,7 +183,7 @@ def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
     good=visual('<mesh filename="a.stl" scale="0.001 0.001 0.001"/>'),
 )
 def mesh_scale_units(subject: Subject) -> Iterator[Problem]:
-    """Very large, very small, or of very different scales."""
+    """Very large, very small, or very different scales."""
     for mesh, scale in _scales(subject):
         low, high = min(map(abs, scale)), max(map(abs, scale))
         if low > 0 and (high >= LARGE_SCALE or low < SMALL_SCALE or high >= UNEVEN * low):

@@ -22,10 +22,12 @@ def an_inertial(mass: str = "1", inertia: str = INERTIA) -> str:
 
 
 def diagonal(ixx: str, iyy: str, izz: str, ixy: str = "0") -> str:
+    """An inertia with these moments."""
     return f'<inertia ixx="{ixx}" ixy="{ixy}" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/>'
 
 
 def one_link(inside: str) -> str:
+    """An example: a link."""
     return f'<link name="a">{inside}</link>'
 
 
@@ -38,22 +40,25 @@ def moving_link(inside: str) -> str:
 
 
 def visual(shape: str) -> str:
+    """An example: a link that shows a shape."""
     return one_link(f"<visual><geometry>{shape}</geometry></visual>")
 
 
 def inertials(robot: Robot) -> Iterator[tuple[Link, Inertial]]:
+    """The links that have an inertial, and it."""
     for link in robot.links:
         if link.inertial is not None:
             yield link, link.inertial
 
 
 def part_of(inertial: Inertial, tag: str) -> _Element:
+    """A child of an inertial, the inertial itself where it has none."""
     found = inertial.element.find(tag)
     return inertial.element if found is None else found
 
 
 def moves(robot: Robot, name: str) -> bool:
-    """Does a link hang on a joint that is not fixed?"""
+    """Is a link the child of a joint that is not fixed?"""
     return name in robot.above and robot.above[name][0].type != "fixed"
 
 
@@ -67,5 +72,5 @@ def parts_with_mass(robot: Robot) -> dict[str, int]:
 
 
 def sizes_of(shape: _Element) -> tuple[float, ...]:
-    """The sizes of a shape; none where one is missing or no number."""
+    """The sizes of a shape; empty if one is missing or not a number."""
     return numbers(" ".join([shape.get(name, "?") for name in SHAPES[str(shape.tag)]])) or ()

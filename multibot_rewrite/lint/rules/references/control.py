@@ -11,7 +11,7 @@ from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.rules.references.shared import ARM, PAIR, SYSTEM, name_of
 from multibot_rewrite.model import ERROR, WARNING, Claim
 
-# What moves by itself or is moved by no motor.
+# Types that no motor moves.
 UNDRIVEN = ("fixed", "floating", "planar", "")
 
 
@@ -27,7 +27,7 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
     good=f'{ARM}<transmission name="t"><joint name="j"/><actuator name="m"/></transmission>',
 )
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
-    """Those of the robot; PR2's have joints by other tags."""
+    """Transmissions of the robot; those of the PR2 name joints by other tags."""
     for it in subject.elements.tops("transmission"):
         if not any("joint" in str(child.tag).lower() for child in it.iterchildren("*")):
             message = f"transmission {it.get('name', '')!r} has no joint"
@@ -91,7 +91,7 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     + SYSTEM.format('<joint name="j"/><joint name="k"><state_interface name="position"/></joint>'),
 )
 def commanded_mimic(subject: Subject) -> Iterator[Problem]:
-    """Mimicking joints that are commanded by themselves."""
+    """Mimicking joints with a command interface of their own."""
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
@@ -110,7 +110,7 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     good=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
 )
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
-    """Mimicking joints whose leader is driven elsewhere."""
+    """Mimicking joints whose leader is not in the same <ros2_control>."""
     beside: dict[_Element, set[str]] = {}
     for it, other in _mimicking(subject):
         system = it.getparent()
@@ -138,19 +138,19 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     if not subject.elements.tops("ros2_control", "transmission"):
         return
     claims = subject.inventory.claims
-    named = {it.value for it in claims if it.site.plain == "joint" and _drives(it)}
-    left = [it for it in subject.robot.joints if it.name not in named and _moves(it)]
-    if left and len(left) < sum(map(_moves, subject.robot.joints)):
+    named = {it.value for it in claims if it.site.plain == "joint" and _drives_a_joint(it)}
+    left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
+    if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
         message = f"{len(left)} joints that move are driven by nothing: {names}"
         yield Problem(left[0].element, message, "name", "passive joints need a state, too")
 
 
-def _drives(claim: Claim) -> bool:
+def _drives_a_joint(claim: Claim) -> bool:
     return claim.site.role == "uses" and claim.site.section != "element joint"
 
 
-def _moves(joint: Joint) -> bool:
+def _needs_a_drive(joint: Joint) -> bool:
     return joint.type not in UNDRIVEN and joint.element.find("mimic") is None
 
 

@@ -31,10 +31,10 @@ if TYPE_CHECKING:
     good='<link name="a"/>',
 )
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
-    """Every declaration but the first; all that one macro call repeats is told once."""
+    """Every declaration but the first; one finding for all that one macro call repeats."""
     calls: dict[object, list[tuple[Claim, Claim]]] = {}
     for claim, first in repeated(subject.inventory):
-        cause = _repeating(subject, claim, first) or claim
+        cause = _cause(subject, claim, first) or claim
         calls.setdefault(cause, []).append((claim, first))
     for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
@@ -45,14 +45,14 @@ def duplicate_name(subject: Subject) -> Iterator[Problem]:
 
 
 def _first_at(subject: Subject, start: int) -> str:
-    """Where the first of two stands; in an expanded document no line is one of a file."""
+    """Where the first of two is; empty in an expanded document, whose lines are in no file."""
     if subject.origins:
         return ""
     return f", first at line {locate(subject.document.source, start)[0]}"
 
 
-def _repeating(subject: Subject, claim: Claim, first: Claim) -> object:
-    """What made xacro write one element twice: the macro call, or the file that is included again."""
+def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
+    """What made xacro write an element twice: the macro call, or the file included again."""
     one, other = (_origin(subject, it.start) for it in (first, claim))
     if one is None or other is None or (one.file, one.start) != (other.file, other.start):
         return None
@@ -143,7 +143,7 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     good='<link name="a"/><material name="m"><color rgba="1 0 0 1"/></material>',
 )
 def duplicate_material(subject: Subject) -> Iterator[Problem]:
-    """Those right below the root; a link may repeat one."""
+    """Materials right below the root; a link may repeat one."""
     materials = subject.elements.tops("material")
     for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
         message = f"material {it.get('name')!r} is defined twice"
@@ -188,7 +188,7 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
     good=ARM + '<transmission name="t"><joint name="j"/></transmission>',
 )
 def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
-    """Those of the robot; those of a <ros2_control> are its own."""
+    """Transmissions of the robot, not those of a <ros2_control>."""
     found = subject.elements.tops("transmission")
     for it in _repeated((name_of(it), it) for it in found if name_of(it)):
         yield Problem(it, f"there is another transmission {name_of(it)!r}", "name", "rename one")

@@ -12,8 +12,8 @@ from multibot_rewrite.model import WARNING, Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
 
-# What may stand in a frame parameter though nothing in the file has it: it is made at run time.
-MADE = ("odom", "map", "world")
+# Frames that exist at run time though nothing in the file declares them.
+AT_RUN_TIME = ("odom", "map", "world")
 
 
 @rule(
@@ -30,7 +30,7 @@ MADE = ("odom", "map", "world")
     + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_link</frame_name>"),
 )
 def misspelled_frame(subject: Subject) -> Iterator[Problem]:
-    """Frames one slip away from a link."""
+    """Frames that differ from a link by one typing mistake."""
     for claim, name, near in _frames(subject):
         if near:
             message = f"{where(claim)} names the frame {name!r}, which no link has"
@@ -51,15 +51,15 @@ def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     "</sensor></gazebo>",
 )
 def foreign_frame(subject: Subject) -> Iterator[Problem]:
-    """Frames that the robot does not have, and that are none of a localisation."""
+    """Frames that the robot does not have, and that no localisation publishes."""
     for claim, name, near in _frames(subject):
-        if not near and not claim.site.default and not name.endswith(MADE):
+        if not near and not claim.site.default and not name.endswith(AT_RUN_TIME):
             message = f"{where(claim)} names the frame {name!r}, which no link has"
             yield Problem(claim.element, message, claim.attribute, "somebody else must publish it")
 
 
 def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
-    """Frames that nothing declares, and the link that each was meant for, if that can be told."""
+    """Frames that nothing declares, and the link that was meant, if one is near enough."""
     declared = subject.inventory.declared
     links = declared["link"]
     meant: dict[str, str] = {}
@@ -70,27 +70,27 @@ def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
         if must_be_declared(site) or site.form != "whole":
             continue
         for name in (part.text for part in names_in(claim, declared)):
-            # A frame_prefix or namespace before a link's name is made when the robot is started.
+            # A frame_prefix or namespace may come before the link's name at run time.
             own = name.rpartition("/")[2]
             known = (it in declared[kind] for it in (own, name) for kind in ("link", *site.kinds))
-            if own in MADE or f"/{own}" in links or any(known):
+            if own in AT_RUN_TIME or f"/{own}" in links or any(known):
                 continue
             if name not in meant:
-                meant[name] = _meant(own, links) if len(meant) < HINTED else ""
+                meant[name] = _meant_link(own, links) if len(meant) < HINTED else ""
             yield claim, name, meant[name]
 
 
-def _meant(name: str, known: Iterable[str]) -> str:
-    """The known name that ``name`` is but for one slip in one word of it."""
+def _meant_link(name: str, known: Iterable[str]) -> str:
+    """The known name that differs from ``name`` by one typing mistake in one word."""
     folded = fold(name)
     for it, _ in zip(known, range(COMPARED), strict=False):
         other = fold(it)
-        if folded == other or _one_slip(folded.split("_"), other.split("_")):
+        if folded == other or _one_typo(folded.split("_"), other.split("_")):
             return it
     return ""
 
 
-def _one_slip(words: list[str], others: list[str]) -> bool:
+def _one_typo(words: list[str], others: list[str]) -> bool:
     """Do they differ in one long word without digits, by a letter or two letters swapped?"""
     if len(words) != len(others):
         return False

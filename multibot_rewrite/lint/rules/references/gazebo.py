@@ -8,8 +8,8 @@ from multibot_rewrite.checks.references import ambiguous
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.model import WARNING
 
-# The values of a <gazebo> block that the URDF reader takes over, of which a link has one each
-# (libsdformat parser_urdf.cc); two spellings of one have the same meaning.
+# The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
+# two tags.
 SINGLE = {
     "material": "material",
     "mu1": "mu1",
@@ -75,7 +75,7 @@ def link_and_joint(subject: Subject) -> Iterator[Problem]:
     "<mu2>0.2</mu2></gazebo>",
 )
 def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
-    """The properties a link or joint has one of."""
+    """Properties of which a link or joint has one."""
     values: dict[tuple[str, str], str] = {}
     for block in subject.elements.tops("gazebo"):
         target = block.get("reference", "")

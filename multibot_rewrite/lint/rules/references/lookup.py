@@ -15,7 +15,7 @@ from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.model import Claim
 from multibot_rewrite.steps.collect import Inventory
 
-# Its joints are those of the simulated robot, not of the URDF.
+# Its joints are those of the simulated PROTO, not of the URDF.
 WEBOTS = "webots_ros2_control::"
 
 
@@ -45,14 +45,14 @@ def references(subject: Subject) -> References:
 
 
 def _is_part(inventory: Inventory) -> bool:
-    """A file without a link, or a robot without a name: something else includes it."""
+    """Is it only a part of a description: no link, or a robot without a name?"""
     root = inventory.document.root
     return not inventory.declared["link"] or (root.tag == "robot" and "name" not in root.attrib)
 
 
 def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
-    """Is it declared after all: outside of this part, with the robot's own name as a scope, as
-    Gazebo Classic takes it, or by the PROTO of a Webots robot?"""
+    """Is it declared after all: in another file, with the robot's name as its scope (as in Gazebo
+    Classic), or in the PROTO of a Webots robot?"""
     claim, part = loose
     if _is_part(inventory) and part.kinds[0] != "group":
         return True

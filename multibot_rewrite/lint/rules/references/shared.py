@@ -16,4 +16,5 @@ PLUGIN = '<gazebo><plugin filename="lib{}.so" name="{}">{}</plugin></gazebo>'
 
 
 def name_of(element: _Element) -> str:
+    """The name of an element without the white space around it."""
     return element.get("name", "").strip()

@@ -43,7 +43,7 @@ def srdf_incomplete(subject: Subject) -> Iterator[Problem]:
     good=ARM + APART,
 )
 def srdf_misspelled(subject: Subject) -> Iterator[Problem]:
-    """Elements and attributes close to a known one; others belong to other tools."""
+    """Elements and attributes almost like a known one; all others belong to other tools."""
     for parent, path in ((subject.document.root, ""), *_elements(subject.document.root)):
         children = ELEMENTS[path][2] if path else TOP
         for it in parent.iterchildren("*"):

@@ -27,7 +27,7 @@ PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_dist
     good=ARM + VIRTUAL.format("fixed", "a"),
 )
 def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
-    """A fixed one beside a root link `world` without shape is what Gazebo wants."""
+    """Virtual joints; a fixed one is right where the root link is ``world``, as Gazebo wants it."""
     robot = subject.beside
     root = _root(robot) if robot else ""
     for it in subject.document.root.iterchildren("virtual_joint") if root else ():
@@ -49,7 +49,7 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     good=ARM + '<joint_property joint_name="j" property_name="motion_model" value="holonomic"/>',
 )
 def joint_property(subject: Subject) -> Iterator[Problem]:
-    """Names of properties."""
+    """Names of properties that MoveIt does not know."""
     for it in subject.document.root.iterchildren("joint_property"):
         name = text_of(it, "property_name")
         if name and name not in PROPERTIES:
@@ -69,7 +69,7 @@ def joint_property(subject: Subject) -> Iterator[Problem]:
     good=ARM + VIRTUAL.format("planar", "a"),
 )
 def virtual_joint_type(subject: Subject) -> Iterator[Problem]:
-    """Types, in whatever case."""
+    """Types that are unknown in upper and lower case."""
     for it in subject.document.root.iterchildren("virtual_joint"):
         type_ = text_of(it, "type")
         if "type" in it.attrib and type_.lower() not in VIRTUAL_TYPES:

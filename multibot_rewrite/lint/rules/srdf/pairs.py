@@ -33,8 +33,8 @@ def stale_pair(subject: Subject) -> Iterator[Problem]:
     for it in found:
         more = names.pop(_link(it), 0) - 1
         if more >= 0:
-            told = f"; {more} more pairs name it" if more else ""
-            yield it._replace(message=it.message + told)
+            also = f"; {more} more pairs name it" if more else ""
+            yield it._replace(message=it.message + also)
 
 
 def _link(problem: Problem) -> str:
@@ -99,12 +99,17 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     """One finding a link, at its first pair."""
     robot = subject.beside
-    told = set()
+    reported = set()
     for it in subject.document.root.iterchildren("disable_collisions") if robot else ():
         for attribute in ("link1", "link2"):
             name = text_of(it, attribute)
-            if robot and name in robot.link and name not in told and not _has_shape(robot, name):
-                told.add(name)
+            if (
+                robot
+                and name in robot.link
+                and name not in reported
+                and not _has_shape(robot, name)
+            ):
+                reported.add(name)
                 message = f"{name!r} has no collision geometry"
                 yield Problem(it, message, attribute, "the pair does nothing")
 
@@ -121,14 +126,14 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     good=ARM + APART,
 )
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, where pairs are disabled at all."""
+    """One finding a file, if it disables any pair."""
     root, robot = subject.document.root, subject.beside
     pairs = list(root.iterchildren("disable_collisions"))
     if robot is None or not pairs:
         return
     apart = {frozenset((text_of(it, "link1"), text_of(it, "link2"))) for it in pairs}
     alone = {text_of(it, "link") for it in root.iterchildren("disable_default_collisions")}
-    left = [it for it in robot.joints if _touch(it, robot, alone) and _ends(it) not in apart]
+    left = [it for it in robot.joints if _both_checked(it, robot, alone) and _ends(it) not in apart]
     if left:
         names = ", ".join(f"{it.parent}-{it.child}" for it in left[:SHOWN])
         more = ", ..." if len(left) > SHOWN else ""
@@ -144,8 +149,8 @@ def _ends(joint: Joint) -> frozenset[str]:
     return frozenset((joint.parent, joint.child))
 
 
-def _touch(joint: Joint, robot: Robot, alone: set[str]) -> bool:
-    """Are both of its links checked?"""
+def _both_checked(joint: Joint, robot: Robot, alone: set[str]) -> bool:
+    """Are both links of a joint checked against each other?"""
     ends = _ends(joint)
     return len(ends) == 2 and all(
         it in robot.link and it not in alone and _has_shape(robot, it) for it in ends

@@ -22,7 +22,7 @@ from multibot_rewrite.model import ERROR, WARNING
     good='<group name="arm"><chain base_link="a" tip_link="b"/></group>',
 )
 def broken_chain(subject: Subject) -> Iterator[Problem]:
-    """Chains of links that are there."""
+    """Chains whose links exist."""
     robot = subject.beside
     for it in subject.document.root.iterfind("group/chain") if robot else ():
         base, tip = text_of(it, "base_link"), text_of(it, "tip_link")
@@ -66,7 +66,7 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
     'parent_link="b" parent_group="arm"/>',
 )
 def end_effector_parent(subject: Subject) -> Iterator[Problem]:
-    """End effectors that say their parent group."""
+    """End effectors that name their parent group."""
     robot, groups = subject.beside, groups_of(subject.document.root)
     for it in subject.document.root.iterchildren("end_effector"):
         parent, link = text_of(it, "parent_group"), text_of(it, "parent_link")

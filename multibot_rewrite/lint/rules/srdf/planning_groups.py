@@ -37,10 +37,10 @@ def way_up(robot: Robot, link: str) -> Iterator[Joint]:
 
 
 def chain(robot: Robot, base: str, tip: str) -> list[str] | None:
-    """The joints between two links; None where no way leads from one to the other."""
+    """The joints between two links; None where they are not connected."""
     down = list(way_up(robot, tip))
     links = [tip, *(joint.parent for joint in down)]
-    # How far up each link is, seen from the tip.
+    # How many joints each link is above the tip.
     at = {link: number for number, link in reversed(list(enumerate(links)))}
     up: list[str] = []
     if base not in at:

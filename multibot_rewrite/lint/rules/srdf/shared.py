@@ -7,8 +7,7 @@ from functools import partial
 
 from multibot_rewrite.lint.records import SRDF, rule
 
-# What srdfdom (model.cpp) reads: an element, the attributes without which it is left out, the others
-# and its children.
+# What srdfdom (model.cpp) reads: element -> required attributes, other attributes, children.
 _PAIR = (("link1", "link2"), ("reason",), ())
 ELEMENTS: Mapping[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
     "group": (("name",), (), ("link", "joint", "passive_joint", "chain", "group")),
@@ -37,7 +36,7 @@ URDF = """<robot name="r"><link name="a"><collision/></link><link name="b"><coll
 <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
 <joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint></robot>"""
 BESIDE = {"r.urdf": URDF}
-# Beside it: srdfdom needs no more than this.
+# A complete SRDF for it.
 ARM = '<group name="arm"><joint name="j"/></group>'
 STATE = ARM + '<group_state name="home" group="arm">{}</group_state>'
 VIRTUAL = '<virtual_joint name="v" type="{}" parent_frame="world" child_link="{}"/>'

@@ -53,7 +53,7 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     good=STATE.format('<joint name="j" value="0"/>'),
 )
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
-    """Joints that are there, against those of the group."""
+    """Joints of states that exist and are not in the group."""
     robot = subject.beside
     if robot is None:
         return
@@ -129,7 +129,7 @@ def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:
 
 
 def _numbers(text: str) -> list[float] | None:
-    """The numbers of a value; None where one of them is none."""
+    """The numbers of a value; None where one of them is not a number."""
     try:
         numbers = [float(word) for word in text.split()]
     except ValueError:
@@ -138,7 +138,7 @@ def _numbers(text: str) -> list[float] | None:
 
 
 def _limits(joint: Joint) -> tuple[float, float] | None:
-    """The limits of a joint; None where they are not two numbers, or cannot be kept."""
+    """The limits of a joint; None where they are not two numbers in order."""
     limit = joint.element.find("limit")
     if limit is None:
         return None

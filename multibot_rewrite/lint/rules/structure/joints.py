@@ -37,7 +37,7 @@ FAR = 50.0
     good=one_joint("fixed"),
 )
 def joint_type(subject: Subject) -> Iterator[Problem]:
-    """Types that are not one of the six, letter by letter."""
+    """Types that are not exactly one of the six."""
     for joint in subject.robot.joints:
         if joint.type in TYPES:
             continue
@@ -63,7 +63,7 @@ def joint_type(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", '<axis xyz="0 0 1"/>' + LIMIT),
 )
 def zero_axis(subject: Subject) -> Iterator[Problem]:
-    """Axes without a direction."""
+    """Axes of length 0."""
     for joint, axis, length in _axes(subject.robot):
         if length == 0:
             said = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
@@ -104,7 +104,7 @@ axis_length = rule(
 
 
 def _axes(robot: Robot) -> Iterator[tuple[Joint, _Element, float]]:
-    """The joints that use an <axis>, and its length; one without xyz has none."""
+    """The joints that use an <axis>, and its length; without xyz it is 0."""
     for joint, axis in joints_with(robot, "axis"):
         if joint.type in ONE_AXIS:
             xyz = vector(axis.get("xyz", "0 0 0"))
@@ -123,7 +123,7 @@ def _axes(robot: Robot) -> Iterator[tuple[Joint, _Element, float]]:
     good=one_joint("fixed"),
 )
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
-    """One a joint; <axis> and <dynamics> are what exporters write everywhere."""
+    """One finding a joint; exporters write <axis> and <dynamics> everywhere."""
     for joint in subject.robot.joints:
         if joint.type != "fixed":
             continue
@@ -148,7 +148,7 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
     good=one_joint("fixed"),
 )
 def floating_or_planar(subject: Subject) -> Iterator[Problem]:
-    """Joints of more than one position."""
+    """Joints of these two types."""
     for joint in subject.robot.joints:
         if joint.type in ("floating", "planar"):
             tf = "gets no transform" if joint.type == "floating" else "is fixed in tf"
@@ -166,7 +166,7 @@ def floating_or_planar(subject: Subject) -> Iterator[Problem]:
     good=one_joint("fixed", '<origin xyz="0 0 0.12"/>'),
 )
 def joint_origin_units(subject: Subject) -> Iterator[Problem]:
-    """Origins that are farther than a robot is long."""
+    """Origins that are farther away than any robot is long."""
     for joint, origin in joints_with(subject.robot, "origin"):
         xyz = vector(origin.get("xyz"))
         if xyz and max(map(abs, xyz)) >= FAR:

@@ -19,11 +19,11 @@ from multibot_rewrite.lint.rules.structure.shared import (
 )
 from multibot_rewrite.model import ERROR, WARNING
 
-# More than twice around and a whole number below two turns in degrees; what people write for
-# "no limit" is no angle.
+# Above DEGREES[0] radians (more than two turns) and up to DEGREES[1] degrees (two turns); ENDLESS are
+# numbers that people write for "no limit".
 DEGREES = (4.5 * pi, 720.0)
 ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
-# Longer than a room: the way a gripper goes in millimetres.
+# Metres; a gripper moves so many millimetres.
 LONG_WAY = 25.0
 
 
@@ -38,7 +38,7 @@ LONG_WAY = 25.0
     good=one_joint("revolute", LIMIT),
 )
 def limit_missing(subject: Subject) -> Iterator[Problem]:
-    """Joints that must be bounded and are not."""
+    """Joints that need a <limit>."""
     for joint in subject.robot.joints:
         if joint.type in BOUNDED and "limit" not in joint.parts:
             yield Problem(joint.element, f"{joint.type} joint {joint.name!r} has no <limit>")
@@ -55,7 +55,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", LIMIT),
 )
 def limit_incomplete(subject: Subject) -> Iterator[Problem]:
-    """Limits without what urdfdom insists on."""
+    """Limits without the attributes that urdfdom requires."""
     for joint, limit in joints_with(subject.robot, "limit"):
         missing = [it for it in ("effort", "velocity") if limit.get(it) is None]
         if missing:
@@ -76,7 +76,7 @@ def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", LIMIT),
 )
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
-    """Limits the wrong way round."""
+    """Lower limits above the upper one."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         if lower > upper:
             message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
@@ -96,7 +96,7 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", LIMIT),
 )
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
-    """Limits that are equal: a slip of an exporter, or a frame that Gazebo shall not merge."""
+    """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         if lower == upper:
             message = (
@@ -117,7 +117,7 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", LIMIT),
 )
 def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
-    """Bounds that are read as 0."""
+    """Missing bounds, which are read as 0."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type not in BOUNDED:
             continue
@@ -160,9 +160,9 @@ def negative_limit(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", LIMIT),
 )
 def zero_limit(subject: Subject) -> Iterator[Problem]:
-    """One a joint; those that follow another, or cannot move, need no strength."""
+    """One finding a joint; joints that mimic another one or cannot move need no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
-        if joint.type not in ONE_AXIS or "mimic" in joint.parts or _is_still(joint, limit):
+        if joint.type not in ONE_AXIS or "mimic" in joint.parts or _cannot_move(joint, limit):
             continue
         zero = [it for it in ("effort", "velocity") if value_of(limit, it) == 0]
         if zero:
@@ -183,7 +183,7 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", LIMIT),
 )
 def continuous_limits(subject: Subject) -> Iterator[Problem]:
-    """Bounds that somebody meant; a whole turn is what continuous means."""
+    """Bounds of less than a turn: a whole turn means the same as continuous."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type != "continuous" or limit.get("lower") is None:
             continue
@@ -204,7 +204,7 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
     good=one_joint("prismatic", '<limit lower="0" upper="0.04" effort="1" velocity="1"/>'),
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Long ways; the same to both sides is a virtual joint without real limits."""
+    """Long ways; the same to both sides is mostly a virtual joint without real limits."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         far = max(abs(lower), abs(upper))
         if joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper:
@@ -224,7 +224,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
     good=one_joint("revolute", '<limit lower="-1.5708" upper="1.5708" effort="1" velocity="1"/>'),
 )
 def revolute_degrees(subject: Subject) -> Iterator[Problem]:
-    """Whole numbers between a few turns and what no angle in degrees is above."""
+    """Round numbers that are many turns in radians, and an angle in degrees."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         if joint.type == "revolute" and (_is_degrees(lower) or _is_degrees(upper)):
             message = f"revolute joint {joint.name!r} turns from {lower:g} to {upper:g} radians"
@@ -238,7 +238,7 @@ def _is_degrees(angle: float) -> bool:
 
 
 def _bounds(robot: Robot) -> Iterator[tuple[Joint, _Element, float, float]]:
-    """The joints that have both bounds and need them."""
+    """The joints that need bounds and have both."""
     for joint, limit in joints_with(robot, "limit"):
         if joint.type in BOUNDED:
             lower, upper = number(limit.get("lower")), number(limit.get("upper"))
@@ -246,5 +246,5 @@ def _bounds(robot: Robot) -> Iterator[tuple[Joint, _Element, float, float]]:
                 yield joint, limit, lower, upper
 
 
-def _is_still(joint: Joint, limit: _Element) -> bool:
+def _cannot_move(joint: Joint, limit: _Element) -> bool:
     return joint.type in BOUNDED and value_of(limit, "lower", 0.0) == value_of(limit, "upper", 0.0)

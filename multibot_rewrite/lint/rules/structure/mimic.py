@@ -29,7 +29,7 @@ from multibot_rewrite.model import ERROR, WARNING
     good=two_joints('<mimic joint="j"/>'),
 )
 def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
-    """Mimics of nothing."""
+    """Mimics that name no joint."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if not mimic.get("joint"):
             yield Problem(mimic, f"<mimic> of joint {joint.name!r} names no joint", "joint")
@@ -47,7 +47,7 @@ def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     good=two_joints('<mimic joint="j"/>'),
 )
 def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
-    """Mimics of the joint they stand in."""
+    """Mimics of the joint they are in."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if mimic.get("joint") == joint.name and joint.name:
             yield Problem(mimic, f"joint {joint.name!r} mimics itself", "joint")
@@ -90,7 +90,7 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     good=two_joints('<mimic joint="j"/>'),
 )
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
-    """Mimics of mimics; a circle has its own rule."""
+    """Mimics of mimics; a circle is MB527."""
     leader = _leaders(subject.robot)
     chained = {name: follows for name, follows in leader.items() if follows in leader}
     round_ = {name for circle in _circles(chained) for name in circle}
@@ -113,7 +113,7 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
     good=two_joints('<mimic joint="j"/>'),
 )
 def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
-    """Mimics without a position to follow; of a fixed joint itself nobody asks one."""
+    """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         leader = subject.robot.joint.get(mimic.get("joint", ""))
         if (
@@ -137,7 +137,7 @@ def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     good=two_joints('<mimic joint="j" multiplier="0.5"/>'),
 )
 def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
-    """Mimics that never move."""
+    """Mimics whose joint never moves."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if value_of(mimic, "multiplier", 1.0) == 0 and joint.type in ONE_AXIS:
             message = f"joint {joint.name!r} mimics {mimic.get('joint')!r} 0 times: it never moves"
@@ -154,7 +154,7 @@ def _leaders(robot: Robot) -> dict[str, str]:
 
 
 def _circles(leader: Mapping[str, str]) -> list[list[str]]:
-    """The names that follow each other round and round."""
+    """The joints that follow each other in a circle."""
     done: set[str] = set()
     found = []
     for start in leader:

@@ -37,7 +37,7 @@ Range = tuple[float, float]
     ),
 )
 def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
-    """Safety controllers without what urdfdom insists on."""
+    """Safety controllers without the attribute that urdfdom requires."""
     for joint, safety in joints_with(subject.robot, "safety_controller"):
         if safety.get("k_velocity") is None:
             message = f"<safety_controller> of joint {joint.name!r} has no k_velocity"
@@ -59,7 +59,7 @@ def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     ),
 )
 def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
-    """Soft limits that are empty where the hard ones are not."""
+    """Soft limits that leave no range where the hard ones do."""
     for joint, safety, soft, hard in _soft_and_hard(subject.robot):
         low, high = max(soft[0], hard[0]), min(soft[1], hard[1])
         if low >= high and hard[0] < hard[1]:
@@ -86,7 +86,7 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     ),
 )
 def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
-    """One a joint."""
+    """One finding a joint."""
     for joint, safety, soft, hard in _soft_and_hard(subject.robot):
         if hard[0] < hard[1] and (soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE):
             message = (
@@ -108,7 +108,7 @@ def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
     good=one_joint("continuous", '<dynamics damping="0.1"/>'),
 )
 def dynamics_empty(subject: Subject) -> Iterator[Problem]:
-    """Dynamics without a number."""
+    """Dynamics without a value."""
     for joint, dynamics in joints_with(subject.robot, "dynamics"):
         if dynamics.get("damping") is None and dynamics.get("friction") is None:
             message = f"<dynamics> of joint {joint.name!r} has neither damping nor friction"

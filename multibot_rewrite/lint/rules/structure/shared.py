@@ -9,7 +9,7 @@ from lxml.etree import _Element
 from multibot_rewrite.lint.facts.robot import Joint, Robot
 
 TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
-# The types with one position, which an axis belongs to; those that must say how far they go.
+# The types with one position, which have an axis; the types that need a limit.
 ONE_AXIS = frozenset(("revolute", "continuous", "prismatic"))
 BOUNDED = frozenset(("revolute", "prismatic"))
 TOLERANCE = 1e-3
@@ -33,6 +33,7 @@ def two_joints(inside: str, first: str = "") -> str:
 
 
 def fixed_joint(name: str, parent: str, child: str) -> str:
+    """An example: a fixed joint."""
     return f'<joint name="{name}" type="fixed"><parent link="{parent}"/><child link="{child}"/></joint>'
 
 

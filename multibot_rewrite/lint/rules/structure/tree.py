@@ -18,9 +18,9 @@ from multibot_rewrite.lint.rules.structure.shared import (
 )
 from multibot_rewrite.model import ERROR, WARNING
 
-# Above this many a search for the nearest name is not worth its time.
+# With more than this many pairs of names a search for the nearest one takes too long.
 MANY = 50
-# Files of these alone are read by others than urdfdom, or by xacro.
+# Files of nothing else are not for urdfdom.
 WITHOUT_LINKS = frozenset(("material", "webots"))
 
 
@@ -35,7 +35,7 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
     good=one_joint("fixed"),
 )
 def several_roots(subject: Subject) -> Iterator[Problem]:
-    """Every root but the one that most links hang on; a joint with a misspelled child is MB202."""
+    """Every root but the one with most links below it; a misspelled child link is MB202."""
     robot = subject.robot
     found = roots(robot)
     if len(found) < 2:
@@ -63,7 +63,7 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     good='<link name="a"/>',
 )
 def no_link(subject: Subject) -> Iterator[Problem]:
-    """A robot without links that no xacro file made: a library of macros has none of its own."""
+    """A robot without links that is no expansion: files of macros have no links of their own."""
     root = subject.document.root
     if root.tag != "robot" or subject.robot.links or subject.origins:
         return
@@ -88,7 +88,7 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     + fixed_joint("k", "b", "c"),
 )
 def kinematic_loop(subject: Subject) -> Iterator[Problem]:
-    """Each loop, at the joint that is written last."""
+    """Each loop, at the last of its joints in the file."""
     order: dict[_Element, int] = {}
     for joints in loops(subject.robot):
         order = order or {it.element: at for at, it in enumerate(subject.robot.joints)}
@@ -119,7 +119,7 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     + fixed_joint("k", "a", "c"),
 )
 def several_parents(subject: Subject) -> Iterator[Problem]:
-    """Every joint but the first that has the link as its child; a copy of it has its own rule."""
+    """Every joint but the first that has the link as its child; copies of a joint are MB201."""
     for name, joints in subject.robot.above.items():
         if len(joints) == 1:
             continue
@@ -148,7 +148,7 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
     good='<link name="a"/><link name="b"/>' + fixed_joint("j", "a", "b"),
 )
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
-    """All of them at the first one; the links of the loops themselves are told there."""
+    """One finding, at the first link; links in the loop itself are MB503."""
     robot = subject.robot
     seen: set[str] = set()
     reached(robot, (it for it in (*robot.link, *robot.below) if it not in robot.above), seen)
