@@ -26,9 +26,9 @@ class Finding(NamedTuple):
 
     ``code`` is permanent; ``level`` is one of ``LEVELS``, or ``INCONCLUSIVE``. ``hint`` says what to
     do, in the live graph the likely cause too. ``file``, ``line`` and ``column`` (from 1) are the
-    place in a source file; an empty ``file`` means that there is none. ``calls`` are the xacro macro calls that made
-    the element, the innermost first, as ``file:line: name``; ``arguments`` are the xacro arguments
-    under which it is found, empty for the default ones. ``edits`` fix it in ``file``.
+    place in a source file; an empty ``file`` means that there is none. ``calls`` are the xacro macro
+    calls that made the element, the innermost first, as ``file:line: name``; ``arguments`` are the
+    xacro arguments under which it is found, empty for the default ones. ``edits`` fix it in ``file``.
 
     In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
     ``names`` which topics, services, actions or frames. ``others`` are the further robots of which

@@ -448,9 +448,8 @@ def by_jobs() -> list[list[Finding]]:
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Finding]]) -> None:
-    results = [
-        rendered(form, found, Report("urdf-lint", ["a.urdf"], RULES)).encode() for found in by_jobs
-    ]
+    report = Report("urdf-lint", ["a.urdf"], RULES)
+    results = [rendered(form, found, report).encode() for found in by_jobs]
     assert results[0].count(b"MB") > 20
     assert results[0] == results[1] == results[2]
 
