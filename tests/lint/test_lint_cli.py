@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.lint_usage import SWITCHES, VALUES
 from multibot_rewrite.cli.urdf_lint import main

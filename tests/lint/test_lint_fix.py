@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from robots import spread
+from real_robots import spread
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding

@@ -7,7 +7,7 @@ as well, and nothing else.
 from __future__ import annotations
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.lint.check import lint_file

@@ -13,8 +13,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from robots import FIXTURES, spread
-from test_fuzz import SAMPLE, fixtures, mutant, read_all
+from mutants import SAMPLE, fixtures, mutant, read_all
+from paths import FIXTURES
+from real_robots import spread
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.cli.walk import find_files

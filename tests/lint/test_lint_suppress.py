@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import ROOT
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
@@ -20,7 +21,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.suppress import unsuppressed
 
-PAGE = (Path(__file__).parents[2] / "docs" / "lint-config.md").read_text()
+PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
 QUIET = ("MB502", "MB503", "MB504")
 ON = ("MB501", *QUIET, "MB0")

@@ -1,7 +1,7 @@
 """What the lint finds in public files, counted, and the judgements about it as a page.
 
-python tests/triage.py counts > fixtures/lint_triage_counts.tsv
-python tests/triage.py page > docs/lint-triage.md
+python tests/support/lint_triage.py counts > fixtures/lint_triage_counts.tsv
+python tests/support/lint_triage.py page > docs/lint-triage.md
 """
 
 from __future__ import annotations
@@ -12,7 +12,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from robots import CORPUS, FIXTURES, corpus_files, wheel_files
+from paths import CORPUS, FIXTURES
+from real_robots import corpus_files, wheel_files
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
@@ -29,7 +30,8 @@ SHOWN = 5
 _HEAD = """\
 # What urdf-lint says about public robots
 
-Made by `python tests/triage.py page > docs/lint-triage.md` from `fixtures/lint_triage_*.tsv`.
+Made by `python tests/support/lint_triage.py page > docs/lint-triage.md`
+from `fixtures/lint_triage_*.tsv`.
 
 Every rule that finds an error in {corpus} public files or {wheels} of Python packages was
 judged: at least five of its findings, or all, by reading the file or by what check_urdf,
