@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.lint.records import rule
-from multibot_rewrite.lint.rules.shared import found_elsewhere
-from multibot_rewrite.model import ERROR, WARNING
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import declare
 
 # Reported where rules are asked: see ``failures``.
-rule_crashed = rule(
+rule_crashed = declare(
     "MB001",
     "rule-crashed",
     ERROR,
@@ -17,10 +16,10 @@ rule_crashed = rule(
     bad="",
     good="",
     formats=(),
-)(found_elsewhere)
+)
 
 # Reported when all rules were asked: see ``suppress``.
-unused_suppression = rule(
+unused_suppression = declare(
     "MB002",
     "unused-suppression",
     WARNING,
@@ -32,11 +31,12 @@ unused_suppression = rule(
     "the element.",
     bad='<link name="a"/>\n<!-- urdf-lint: ignore MB501 - bolted on by the launch file -->\n',
     good='\n<!-- urdf-lint: ignore MB501 - bolted on by the launch file -->\n<link name="a"/>\n',
+    line=2,
     formats=(),
-)(found_elsewhere)
+)
 
 # Reported when comments are read: see ``config.directives``.
-broken_suppression = rule(
+broken_suppression = declare(
     "MB003",
     "broken-suppression",
     ERROR,
@@ -48,10 +48,10 @@ broken_suppression = rule(
     bad='<!-- urdf-lint: disable MB501 -->\n<link name="a"/>',
     good='<!-- urdf-lint: ignore MB501 -->\n<link name="a"/>',
     formats=(),
-)(found_elsewhere)
+)
 
 # Reported by the clock: see ``failures``.
-took_too_long = rule(
+took_too_long = declare(
     "MB004",
     "took-too-long",
     ERROR,
@@ -61,4 +61,4 @@ took_too_long = rule(
     bad="",
     good="",
     formats=(),
-)(found_elsewhere)
+)

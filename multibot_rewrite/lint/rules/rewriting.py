@@ -8,9 +8,10 @@ from functools import partial
 from multibot_rewrite.checks.audit import unknown_hardware, unknown_plugins
 from multibot_rewrite.checks.mentions import remark, unclaimed_mentions
 from multibot_rewrite.checks.remarks import Remark
-from multibot_rewrite.lint.records import NOTE, SRDF, URDF, Problem, Subject, rule
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.shared import problems
-from multibot_rewrite.model import WARNING
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import slot_values

@@ -1,16 +1,11 @@
-"""Checks that rules of several groups share."""
+"""What rules of several groups share."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.checks.remarks import Remark
-from multibot_rewrite.lint.records import Problem, Subject
-
-
-def found_elsewhere(subject: Subject) -> Iterator[Problem]:
-    """The check of a rule that is reported by other code, which a comment at the rule names."""
-    return iter(())
+from multibot_rewrite.lint.records import Problem
 
 
 def problems(remarks: Iterable[Remark]) -> Iterator[Problem]:

@@ -8,12 +8,13 @@ from itertools import accumulate, islice
 
 from multibot_rewrite.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.checks.robots import already_rewritten
-from multibot_rewrite.lint.records import Problem, Subject, rule
-from multibot_rewrite.lint.rules.shared import found_elsewhere
-from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import declare, rule
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.model import Finding
 
 # These three are reported where a file is read or expanded: see ``failures``.
-not_xml = rule(
+not_xml = declare(
     "MB101",
     "not-xml",
     ERROR,
@@ -24,9 +25,9 @@ not_xml = rule(
     fix="Mend the XML where the finding points; save the file as UTF-8.",
     bad='<robot name="r"><link name="a"></robot>',
     good='<robot name="r"><link name="a"/></robot>',
-)(found_elsewhere)
+)
 
-unreadable = rule(
+unreadable = declare(
     "MB102",
     "unreadable",
     ERROR,
@@ -36,9 +37,9 @@ unreadable = rule(
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
     '<xacro:include filename="nowhere.xacro"/><link name="a"/></robot>',
     good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>',
-)(found_elsewhere)
+)
 
-xacro_failed = rule(
+xacro_failed = declare(
     "MB103",
     "xacro-failed",
     ERROR,
@@ -51,7 +52,7 @@ xacro_failed = rule(
     '<link name="$(arg side)_arm"/></robot>',
     good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
     '<xacro:arg name="side" default="left"/><link name="$(arg side)_arm"/></robot>',
-)(found_elsewhere)
+)
 
 
 @rule(

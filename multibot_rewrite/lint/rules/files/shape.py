@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from multibot_rewrite.lint.records import NOTE, rule
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.rules.files.shared import faults
-from multibot_rewrite.model import ERROR, WARNING
 
 misspelled_element = rule(
     "MB110",

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.model import WARNING, Edit
+from multibot_rewrite.lint.records import Problem, Subject
 
 BOM = b"\xef\xbb\xbf"
 _DECLARED = regex(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from multibot_rewrite.lint.records import rule
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.rules.files.shared import faults
-from multibot_rewrite.model import ERROR, WARNING
 
 not_a_number = rule(
     "MB120",

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_files
-from multibot_rewrite.model import WARNING
 
 READABLE = frozenset(("stl", "dae", "obj"))
 # Programs that cannot read a format which RViz reads (through assimp).

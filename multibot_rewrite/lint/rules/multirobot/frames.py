@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import inserted, is_plain, tag_of
-from multibot_rewrite.model import WARNING, Claim
+from multibot_rewrite.model import Claim
 from multibot_rewrite.rewriters.switches import switched_off
 from multibot_rewrite.rosnames import split_remap
 

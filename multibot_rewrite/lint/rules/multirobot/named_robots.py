@@ -7,10 +7,11 @@ from functools import partial
 
 from multibot_rewrite.checks import hazards, robots
 from multibot_rewrite.checks.remarks import Remark
-from multibot_rewrite.lint.records import SRDF, Problem, Subject, rule
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import SRDF, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, TWO
 from multibot_rewrite.lint.rules.shared import problems
-from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import HOLE
 from multibot_rewrite.steps.collect import Inventory

@@ -6,7 +6,9 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.records import XACRO, Problem, Subject, rule
+from multibot_rewrite.findings.finding import WARNING
+from multibot_rewrite.findings.rule import XACRO, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.xacro_scopes import (
     PREFIX,
     SUBSTITUTIONS,
@@ -19,7 +21,6 @@ from multibot_rewrite.lint.rules.multirobot.xacro_scopes import (
     without_substitutions,
     words_of,
 )
-from multibot_rewrite.model import WARNING
 from multibot_rewrite.naming import SHARED_FRAMES
 
 # The elements of xacro itself: all others call a macro.

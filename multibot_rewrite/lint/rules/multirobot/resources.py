@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.checks import hazards
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, starts_of
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, process_wide_plugins
-from multibot_rewrite.model import WARNING
 from multibot_rewrite.rewriters.tree import library_key
 
 # gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).

@@ -7,9 +7,11 @@ from math import hypot, sqrt
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import vector
 from multibot_rewrite.lint.facts.robot import MOMENTS
-from multibot_rewrite.lint.records import Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.physics.moments import fault_of, impossible, is_negative
 from multibot_rewrite.lint.rules.physics.shared import (
     NOTHING,
@@ -24,7 +26,6 @@ from multibot_rewrite.lint.rules.physics.shared import (
     parts_with_mass,
     sizes_of,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 # Limits of the radius of gyration: no robot under HEAVY kg is LONG, no part as compact as SHORT; nor
 # is it LARGER or SMALLER times the size of the shapes. A mass below LIGHT is a placeholder.

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import WORLD, Link, Robot, reached
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.physics.shared import (
     INERTIA,
     an_inertial,
@@ -15,7 +17,6 @@ from multibot_rewrite.lint.rules.physics.shared import (
     one_link,
     part_of,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 TINY_MASS = 1e-6
 

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.numbers import Vector, vector
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.physics.shared import (
     BOX,
     SHAPES,
@@ -20,7 +22,6 @@ from multibot_rewrite.lint.rules.physics.shared import (
     sizes_of,
     visual,
 )
-from multibot_rewrite.model import WARNING
 
 LONG_SHAPE = 50.0
 LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0

@@ -6,10 +6,12 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import Joint
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.references.shared import ARM, PAIR, SYSTEM, name_of
-from multibot_rewrite.model import ERROR, WARNING, Claim
+from multibot_rewrite.model import Claim
 
 # Types that no motor moves.
 UNDRIVEN = ("fixed", "floating", "planar", "")

@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.references import repeated
-from multibot_rewrite.lint.records import Problem, Subject, rule
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.references.shared import ARM, IMU, PLUGIN, SYSTEM, name_of
-from multibot_rewrite.model import ERROR, WARNING, Claim
+from multibot_rewrite.model import Claim
 from multibot_rewrite.steps.document import locate
 
 if TYPE_CHECKING:

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.checks.references import COMPARED, HINTED, fold, where
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.references.lookup import references
 from multibot_rewrite.lint.rules.references.shared import PLUGIN
-from multibot_rewrite.model import WARNING, Claim
+from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.checks.references import ambiguous
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
-from multibot_rewrite.model import WARNING
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
 
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags.

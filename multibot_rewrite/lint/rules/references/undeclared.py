@@ -6,10 +6,11 @@ from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.checks.references import where
-from multibot_rewrite.lint.records import Problem, Subject, rule
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.references.lookup import references, undeclared
 from multibot_rewrite.lint.rules.references.shared import ARM, JOINT, PAIR, PLUGIN, SYSTEM
-from multibot_rewrite.model import ERROR, WARNING
 
 undeclared_link = rule(
     "MB202",

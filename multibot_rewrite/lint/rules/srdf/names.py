@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.checks.references import repeated
-from multibot_rewrite.lint.records import NOTE, Problem, Subject
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.references.lookup import undeclared
 from multibot_rewrite.lint.rules.srdf.shared import ARM, srdf_rule
-from multibot_rewrite.model import ERROR, WARNING
 
 
 @srdf_rule(

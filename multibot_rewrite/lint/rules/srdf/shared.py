@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import partial
 
-from multibot_rewrite.lint.records import SRDF, rule
+from multibot_rewrite.findings.rule import SRDF, rule
 
 # What srdfdom (model.cpp) reads: element -> required attributes, other attributes, children.
 _PAIR = (("link1", "link2"), ("reason",), ())

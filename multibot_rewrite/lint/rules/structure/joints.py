@@ -9,9 +9,11 @@ from math import hypot
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.audit import nearest
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import vector
 from multibot_rewrite.lint.facts.robot import Joint, Robot
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     LIMIT,
     ONE_AXIS,
@@ -20,7 +22,6 @@ from multibot_rewrite.lint.rules.structure.shared import (
     joints_with,
     one_joint,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 FAR = 50.0
 

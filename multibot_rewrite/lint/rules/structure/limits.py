@@ -7,9 +7,11 @@ from math import pi
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import number, value_of
 from multibot_rewrite.lint.facts.robot import Joint, Robot
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     BOUNDED,
     LIMIT,
@@ -17,7 +19,6 @@ from multibot_rewrite.lint.rules.structure.shared import (
     joints_with,
     one_joint,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 # Above DEGREES[0] radians (more than two turns) and up to DEGREES[1] degrees (two turns); ENDLESS are
 # numbers that people write for "no limit".

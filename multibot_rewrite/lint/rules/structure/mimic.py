@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import value_of
 from multibot_rewrite.lint.facts.robot import Robot
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     LIMIT,
     ONE_AXIS,
@@ -15,7 +17,6 @@ from multibot_rewrite.lint.rules.structure.shared import (
     joints_with,
     two_joints,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 
 @rule(

@@ -6,9 +6,11 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import value_of
 from multibot_rewrite.lint.facts.robot import Joint, Robot
-from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     BOUNDED,
     LIMIT,
@@ -16,7 +18,6 @@ from multibot_rewrite.lint.rules.structure.shared import (
     joints_with,
     one_joint,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 Range = tuple[float, float]
 

@@ -7,8 +7,10 @@ from collections.abc import Iterator
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.audit import nearest
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import loops, reached, roots
-from multibot_rewrite.lint.records import Problem, Subject, rule
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     SHOWN,
     TWO_LINKS,
@@ -16,7 +18,6 @@ from multibot_rewrite.lint.rules.structure.shared import (
     fixed_joint,
     one_joint,
 )
-from multibot_rewrite.model import ERROR, WARNING
 
 # With more than this many pairs of names a search for the nearest one takes too long.
 MANY = 50
