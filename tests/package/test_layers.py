@@ -21,12 +21,12 @@ PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
     ("model", "bulk", "version", "lazy"),
-    ("rosnames", "naming", "config"),
+    ("rosnames", "naming", "config", "arguments"),
     ("rewriters",),
     ("steps",),
     ("checks", "sources"),
     ("pipeline",),
-    ("reports",),
+    ("reports", "job"),
     ("library",),
     ("remap",),
     ("graph", "lint", "companions"),
