@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite import (
     InputError,

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from robots import FIXTURES, REPO
+from paths import FIXTURES, ROOT
 
 import multibot_rewrite
 from multibot_rewrite import (
@@ -107,7 +107,7 @@ def test_mypy_sees_every_option(tmp_path: Path) -> None:
     lines = RIGHT.splitlines()
     program.write_text("\n".join([*lines, *WRONG]) + "\n")
     command = [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", program]
-    found = subprocess.run(command, cwd=REPO, capture_output=True, text=True, check=False).stdout
+    found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout
     errors = dict(re.findall(r"caller\.py:(\d+): error: (.*)", found))
     assert sorted(map(int, errors)) == [len(lines) + 1 + at for at in range(len(WRONG))], found
     for word, message in zip(WRONG.values(), errors.values(), strict=True):
