@@ -101,5 +101,8 @@ def test_a_tool_in_braces_in_a_window_of_one_robot(tmp_path: Path) -> None:
     for robot in ("robot1", "robot2"):
         (path,) = (tmp_path / "out").rglob(f"*{robot}*/*.rviz")
         click, goal = tools(tmp_path, path.relative_to(tmp_path / "out").as_posix())
-        assert (click["Topic"].strip("/"), click["Single click"]) == (f"{robot}/clicked_point", True)
+        assert (click["Topic"].strip("/"), click["Single click"]) == (
+            f"{robot}/clicked_point",
+            True,
+        )
         assert goal.get("Topic", "goal_pose").removeprefix(f"/{robot}/") == "goal_pose"

@@ -34,9 +34,7 @@ def stale(out: Path, capsys: pytest.CaptureFixture[str]) -> set[str]:
 # What an earlier build made and this one does not.
 
 
-def test_what_is_no_longer_made_is_left_over(
-    out: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_what_is_no_longer_made_is_left_over(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert stale(out, capsys) == {"robot2/rover.urdf", "robot2/params.yaml"}
 
 
