@@ -10,8 +10,8 @@ import pytest
 
 from multibot_rewrite import rewrite
 from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit
 
@@ -36,9 +36,9 @@ def fixed(monkeypatch: pytest.MonkeyPatch) -> Fix:
     alone, so that nothing of it is made in a later round."""
 
     def run(*edits: Edit) -> bytes:
-        def lint(path: str, data: bytes, _: Settings) -> list[LintFinding]:
+        def lint(path: str, data: bytes, _: Settings) -> list[Finding]:
             found = edits if data == LINK else ()
-            return [LintFinding("MB142", "note", "m", "", path, 1, 1, edits=(it,)) for it in found]
+            return [Finding("MB142", "note", "m", "", path, 1, 1, edits=(it,)) for it in found]
 
         monkeypatch.setattr(fixing, LINT, lint)
         text, left = fixing.fix("r.urdf", LINK, Settings())
@@ -152,8 +152,8 @@ def lines(
 def inertia(ixx: float, iyy: float, izz: float) -> str:
     """A link of 1 kg."""
     moments = f'ixx="{ixx}" iyy="{iyy}" izz="{izz}"'
-    zero = 'ixy="0" ixz="0" iyz="0"'
-    return f'<link name="a">\n<inertial><mass value="1"/>\n<inertia {moments} {zero}/></inertial></link>\n'
+    inside = f'<mass value="1"/>\n<inertia {moments} ixy="0" ixz="0" iyz="0"/>'
+    return f'<link name="a">\n<inertial>{inside}</inertial></link>\n'
 
 
 @pytest.mark.parametrize("long", range(3), ids=("ixx", "iyy", "izz"))

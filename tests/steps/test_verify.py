@@ -210,7 +210,7 @@ def test_every_public_call_proves_what_it_gives(made: Callable[[Wrong], None]) -
 def test_the_command_writes_nothing_that_is_not_proved(
     made: Callable[[Wrong], None], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    source, target = tmp_path / "rover.urdf", tmp_path / "out"
+    source, target = tmp_path / "rover.urdf", tmp_path / "{robot}.urdf"
     source.write_bytes(ROVER)
     made(change("base/robot", "base/robut"))
     assert urdf_postfix([str(source), "robot1", "robot2", "-o", str(target)]) == 1
