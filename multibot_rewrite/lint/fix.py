@@ -1,4 +1,4 @@
-"""Safe edits -> the mended text, proved: nothing else changed, and the findings are gone."""
+"""Safe edits -> the fixed text, and the proof that nothing else changed and the findings are gone."""
 
 from __future__ import annotations
 
@@ -9,41 +9,41 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.document import Document, read_document
 
-# A fix may uncover another one; what is not done by then goes round in circles.
+# A fix may make another one possible; more rounds than this never end.
 ROUNDS = 5
 _LINE = re.compile(r"\bline \d+")
 
 
-def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[LintFinding]]:
-    """The text with every safe fix made, and what is left to find in it.
+def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
+    """The text with every safe fix applied, and the findings that are left.
 
     Raises InputError where the file cannot be read, ProofError where the result does not hold.
     """
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
-        edits = list(_apart(_edits(path, findings)))
+        edits = list(_not_overlapping(_edits(path, findings)))
         if not edits:
             return source, findings
-        mended = b"".join(cut(source, edits))
-        after = lint_data(path, mended, settings)
-        _prove(path, (source, findings), (mended, after), edits)
-        source, findings = mended, after
+        fixed = b"".join(cut(source, edits))
+        after = lint_data(path, fixed, settings)
+        _prove(path, (source, findings), (fixed, after), edits)
+        source, findings = fixed, after
     raise ProofError(f"{path}: fixes come back after {ROUNDS} rounds")
 
 
-def _edits(path: str, findings: Iterable[LintFinding]) -> set[Edit]:
+def _edits(path: str, findings: Iterable[Finding]) -> set[Edit]:
     return {edit for finding in findings if finding.file == path for edit in finding.edits}
 
 
-def _apart(edits: Iterable[Edit]) -> Iterator[Edit]:
-    """In source order, without those that would change what another one changes."""
+def _not_overlapping(edits: Iterable[Edit]) -> Iterator[Edit]:
+    """The edits in source order, without those that overlap an earlier one."""
     end = -1
     for edit in sorted(edits, key=lambda it: (it.start, it.end)):
         if edit.start >= max(end, 0) and edit.end > edit.start:
@@ -53,8 +53,8 @@ def _apart(edits: Iterable[Edit]) -> Iterator[Edit]:
 
 def _prove(
     path: str,
-    old: tuple[bytes, Sequence[LintFinding]],
-    new: tuple[bytes, Sequence[LintFinding]],
+    old: tuple[bytes, Sequence[Finding]],
+    new: tuple[bytes, Sequence[Finding]],
     edits: Sequence[Edit],
 ) -> None:
     """Every element without an edit in its tag or text is what it was, and no finding is new."""
@@ -70,7 +70,7 @@ def _prove(
 
 
 def _touched(document: Document, edits: Sequence[Edit]) -> list[bool]:
-    """Has each element an edit between its start tag and the next one?"""
+    """For each element: is there an edit between its start tag and the next one?"""
     numbers = {max(bisect_right(document.starts, it.start) - 1, 0) for it in edits}
     return [number in numbers for number in range(len(document.starts))]
 
@@ -79,6 +79,6 @@ def _same(old: _Element, new: _Element, touched: bool) -> bool:
     return old.tag == new.tag and (touched or (old.attrib, old.text) == (new.attrib, new.text))
 
 
-def _counted(findings: Iterable[LintFinding]) -> Counter[tuple[str, str]]:
+def _counted(findings: Iterable[Finding]) -> Counter[tuple[str, str]]:
     # Lines move where an edit takes one out.
     return Counter((it.code, _LINE.sub("line N", it.message)) for it in findings)

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
 import yaml
 from fleet_folder import fleet_folder
+from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.by_schema import TYPES
 from multibot_rewrite.fleets.fleet_file import (
     KINDS,
+    SCHEMA,
     FleetFile,
     Pose,
     RobotSpec,
@@ -24,9 +28,8 @@ from multibot_rewrite.fleets.fleet_file import (
 )
 from multibot_rewrite.model import InputError
 
-REPO = Path(__file__).parents[2]
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
-PAGE = (REPO / "docs" / "fleet-file.md").read_text()
+PAGE = (ROOT / "docs" / "fleet-file.md").read_text()
 
 
 def read(folder: Path, text: str, **files: str) -> FleetFile:
@@ -339,6 +342,28 @@ def test_the_schema_is_one_and_says_so() -> None:
     assert set(used) <= set(TYPES)
 
 
+def test_the_schema_for_editors_lists_the_layouts() -> None:
+    """Editors read the file as it is; a command takes the layouts from the rows in naming."""
+    text = ROOT.joinpath("multibot_rewrite", "fleets", SCHEMA).read_text()
+    wanted = json.dumps(schema()["properties"]["layout"])
+    assert json.loads(text) == schema(), f'write "layout": {wanted} into {SCHEMA}'
+
+
+def test_an_old_jsonschema_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ubuntu 22.04 has 3.2.0, which has no Draft202012Validator."""
+    monkeypatch.setitem(sys.modules, "jsonschema", ModuleType("jsonschema"))
+    fleet = fleet_folder(tmp_path, ONE)
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    assert err.startswith(
+        "multibot: jsonschema 4.0 or newer is needed to read a fleet file; install"
+    )
+    assert (out, err.count("\n")) == ("", 1)
+    assert not (tmp_path / "out").exists()
+
+
 def test_every_key_of_the_schema_is_on_the_page() -> None:
     parts = (schema(), *(schema()["$defs"][it] for it in ("robot", "companions")))
     missing = {key for part in parts for key in keys(part) if f"`{key}`" not in PAGE}
@@ -371,5 +396,5 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
     line = re.search(r"yaml-language-server: \$schema=(\S+)", PAGE)
     assert line is not None
     named = line[1].rpartition("/")[2]
-    assert (REPO / "multibot_rewrite" / "fleets" / named).exists()
+    assert (ROOT / "multibot_rewrite" / "fleets" / named).exists()
     assert yaml.safe_load(EXAMPLES[0])["robots"]

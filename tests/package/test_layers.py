@@ -20,18 +20,20 @@ from multibot_rewrite import model
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("model", "bulk", "version", "lazy"),
-    ("rosnames", "naming", "config"),
+    ("bulk", "version", "lazy"),
+    ("findings",),
+    ("model",),
+    ("rosnames", "naming", "config", "arguments"),
     ("rewriters",),
     ("steps",),
     ("checks", "sources"),
     ("pipeline",),
-    ("reports",),
+    ("reports", "job"),
     ("library",),
     ("remap",),
     ("graph", "lint", "companions"),
     ("fleets",),
-    ("__init__", "launch"),
+    ("__init__", "launch", "catalogue"),
     ("cli",),
 )
 HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro")

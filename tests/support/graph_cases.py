@@ -1,0 +1,422 @@
+"""The graphs in ``fixtures/graphs``: a fleet as planned, and one broken for each rule.
+
+``python tests/support/graph_cases.py`` writes them anew, the printed lines beside them included.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import redirect_stdout
+from io import BytesIO, TextIOWrapper
+from typing import NamedTuple
+
+from paths import ROOT
+
+from multibot_rewrite.cli.multibot import main as multibot
+from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
+from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.snapshot import (
+    Caveat,
+    Environment,
+    GraphEndpoint,
+    GraphFrame,
+    GraphNode,
+    Qos,
+    Snapshot,
+    to_json,
+)
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+
+# As a user names them: messages hold the paths.
+GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"
+FLEET = (ROVER, "robot1", "robot2", "--nodes", f"{GRAPHS}/nodes.yaml", "--stack", "small")
+# Layout -> folder of its plan and graphs.
+FOLDERS = {
+    "frames-per-robot": GRAPHS,
+    "tf-per-robot": f"{GRAPHS}/tf-per-robot",
+    "both": f"{GRAPHS}/both",
+    "postfix": f"{GRAPHS}/postfix",
+}
+PARENTS = {
+    "base_footprint": "odom",
+    "base_link": "base_footprint",
+    "camera_optical_frame": "camera_link",
+}
+MOVING = ("base_footprint", "left_wheel", "right_wheel")
+TF = "tf2_msgs/msg/TFMessage"
+
+
+class Case(NamedTuple):
+    """A graph that breaks one rule: the codes that are to be found, in order, and how it is made."""
+
+    layout: str
+    code: str
+    found: tuple[str, ...]
+    broken: Callable[[Snapshot], Snapshot]
+
+    @property
+    def stem(self) -> str:
+        """The path of its files without their ending."""
+        return f"{FOLDERS[self.layout]}/{self.code}"
+
+
+def read_plan(layout: str) -> Expectation:
+    """The plan of a folder."""
+    path = f"{FOLDERS[layout]}/plan.yaml"
+    return from_yaml((ROOT / path).read_bytes(), path)
+
+
+# ---------------------------------------------------------------- a graph as planned
+
+
+def environment(*caveats: Caveat) -> Environment:
+    return Environment(0, "LOCALHOST", (), "rmw_fastrtps_cpp", "", False, 4, "quiet", 3.5, caveats)
+
+
+def as_planned(plan: Expectation) -> Snapshot:
+    """The graph that a plan is of; a type that is not known is that of the other end."""
+    types: dict[tuple[str, str], str] = {}
+    for wanted in plan.endpoints:
+        both = (wanted.kind, wanted.name)
+        types[both] = types.get(both) or wanted.type
+    ends = [
+        GraphEndpoint(w.kind, w.role, w.name, types[w.kind, w.name], "", w.node, None, "")
+        for w in plan.endpoints
+    ]
+    nodes = [GraphNode(node, "") for robot in plan.robots for node in robot.nodes]
+    edges = [edge for robot in plan.robots for edge in robot_edges(robot)]
+    return sent(Snapshot(tuple(nodes), tuple(ends), tuple(edges), environment()))
+
+
+def robot_edges(robot: PlannedRobot) -> Iterator[GraphFrame]:
+    """Its frames in one tree: a rover's as its description has them, else all below the first."""
+    bare = {unspelled(frame, robot.name): frame for frame in robot.frames}
+    root = bare.get("odom") or robot.frames[0]
+    for name, frame in bare.items():
+        if frame != root:
+            parent = bare.get(PARENTS.get(name, "base_link"), root)
+            static = name not in MOVING
+            topic = robot.tf.replace("tf", "tf_static", 1) if static else robot.tf
+            yield GraphFrame(frame, root if parent == frame else parent, topic, static, ())
+
+
+def unspelled(frame: str, robot: str) -> str:
+    """A frame without the robot's name."""
+    return frame.removesuffix(f"/{robot}").removeprefix(f"{robot}/")
+
+
+def sent(graph: Snapshot) -> Snapshot:
+    """The graph whose frames tell who publishes on their topic, as a real one has it."""
+    nodes: dict[str, dict[str, None]] = {}
+    for end in graph.endpoints:
+        if (end.kind, end.role) == (TOPIC, PUBLISHES):
+            nodes.setdefault(end.name, {})[end.node] = None
+    frames = (f._replace(publishers=tuple(sorted(nodes.get(f.topic, ())))) for f in graph.frames)
+    return graph._replace(frames=tuple(frames))
+
+
+# What nobody plans and everybody has: tools, sensors' own topics, parameter services.
+BESIDE = (
+    (TOPIC, PUBLISHES, "/robot1/scan", "sensor_msgs/msg/LaserScan", "/robot1/lidar_driver"),
+    (TOPIC, PUBLISHES, "/robot2/scan", "sensor_msgs/msg/LaserScan", "/robot2/lidar_driver"),
+    (TOPIC, PUBLISHES, "/rosout", "rcl_interfaces/msg/Log", "/robot1/pilot"),
+    (
+        "service",
+        "serves",
+        "/robot1/pilot/get_parameters",
+        "rcl_interfaces/srv/GetParameters",
+        "/robot1/pilot",
+    ),
+    (TOPIC, SUBSCRIBES, "/robot1/scan", "sensor_msgs/msg/LaserScan", "/rviz2"),
+    (TOPIC, PUBLISHES, "/goal_pose", "geometry_msgs/msg/PoseStamped", "/rviz2"),
+    (TOPIC, SUBSCRIBES, "/robot2/odom", "nav_msgs/msg/Odometry", "/rosbag2_recorder"),
+)
+
+
+def healthy(layout: str) -> Snapshot:
+    """A fleet as planned, with what is beside it."""
+    graph = as_planned(read_plan(layout))
+    if layout != "frames-per-robot":
+        return graph
+    ends = [GraphEndpoint(k, r, n, t, "", node, None, "") for k, r, n, t, node in BESIDE]
+    nodes = [GraphNode(node, "") for node in ("/rviz2", "/rosbag2_recorder", "/_ros2cli_4711")]
+    return graph._replace(nodes=(*graph.nodes, *nodes), endpoints=(*graph.endpoints, *ends))
+
+
+# ---------------------------------------------------------------- what can be done to it
+
+
+def moved(graph: Snapshot, old: str, new: str, node: str = "") -> Snapshot:
+    """One name under another one, at the nodes whose name ends so."""
+    ends = (
+        e._replace(name=new) if e.name == old and e.node.endswith(node) else e
+        for e in graph.endpoints
+    )
+    return sent(graph._replace(endpoints=tuple(ends)))
+
+
+def without_node(graph: Snapshot, node: str) -> Snapshot:
+    return sent(
+        graph._replace(
+            nodes=tuple(n for n in graph.nodes if n.name != node),
+            endpoints=tuple(e for e in graph.endpoints if e.node != node),
+        )
+    )
+
+
+def with_node(graph: Snapshot, node: str, *ends: tuple[str, str, str]) -> Snapshot:
+    """One node more, and its topics as (role, name, type)."""
+    more = [
+        GraphEndpoint(TOPIC, role, name, type_, "", node, None, "") for role, name, type_ in ends
+    ]
+    return sent(
+        graph._replace(
+            nodes=(*graph.nodes, GraphNode(node, "")), endpoints=(*graph.endpoints, *more)
+        )
+    )
+
+
+def renamed_node(graph: Snapshot, old: str, new: str) -> Snapshot:
+    """A node under another name, its private names with it."""
+    ends = tuple(
+        e._replace(node=new, name=e.name.replace(f"{old}/", f"{new}/", 1)) if e.node == old else e
+        for e in graph.endpoints
+    )
+    nodes = tuple(n._replace(name=new) if n.name == old else n for n in graph.nodes)
+    return sent(graph._replace(nodes=nodes, endpoints=ends))
+
+
+def reframed(
+    change: Callable[[GraphFrame], GraphFrame | None], *more: GraphFrame
+) -> Callable[[Snapshot], Snapshot]:
+    """The graph with each of its transforms changed, or left out, and some more."""
+
+    def broken(graph: Snapshot) -> Snapshot:
+        kept = [frame for frame in map(change, graph.frames) if frame is not None]
+        return sent(graph._replace(frames=(*kept, *more)))
+
+    return broken
+
+
+def of(robot: str, frame: GraphFrame) -> bool:
+    return robot in frame.child or robot in frame.topic
+
+
+def qos(**words: object) -> Qos:
+    usual = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, math.inf, "AUTOMATIC", math.inf)
+    return usual._replace(**words)  # type: ignore[arg-type]
+
+
+def with_qos(graph: Snapshot, name: str, offered: Qos, asked: Qos) -> Snapshot:
+    ends = (
+        e._replace(qos=offered if e.role == PUBLISHES else asked) if e.name == name else e
+        for e in graph.endpoints
+    )
+    return graph._replace(endpoints=tuple(ends))
+
+
+def with_type(graph: Snapshot, name: str, node: str, type_: str) -> Snapshot:
+    ends = (
+        e._replace(type=type_) if (e.name, e.node) == (name, node) else e for e in graph.endpoints
+    )
+    return graph._replace(endpoints=tuple(ends))
+
+
+def without_namespace(graph: Snapshot) -> Snapshot:
+    """The plugin of a description that was not rewritten: its node and names in the root."""
+    return moved(
+        moved(renamed_node(graph, "/robot1/diff_drive", "/diff_drive"), "/robot1/odom", "/odom", "e"),
+        "/robot1/cmd_vel", "/cmd_vel", "/diff_drive",
+    )  # fmt: skip
+
+
+def silent(graph: Snapshot) -> Snapshot:
+    for node in [n.name for n in graph.nodes if n.name.startswith("/robot2/")]:
+        graph = without_node(graph, node)
+    return reframed(lambda f: None if of("robot2", f) else f)(graph)
+
+
+def captured(graph: Snapshot) -> Snapshot:
+    end = GraphEndpoint(
+        TOPIC,
+        SUBSCRIBES,
+        "/robot1/local_costmap/scan",
+        "sensor_msgs/msg/LaserScan",
+        "",
+        "/robot1/local_costmap/local_costmap",
+        None,
+        "",
+    )
+    return graph._replace(endpoints=(*graph.endpoints, end))
+
+
+def unheard(graph: Snapshot) -> Snapshot:
+    """A bridge for all robots brings the scan, under no robot's name."""
+    ends = (
+        e._replace(name="/scan", node="/lidar_bridge")
+        if (e.name, e.role) == ("/robot1/scan", PUBLISHES)
+        else e
+        for e in graph.endpoints
+    )
+    nodes = (*graph.nodes, GraphNode("/lidar_bridge", ""))
+    return graph._replace(nodes=nodes, endpoints=tuple(ends))
+
+
+def bare(frame: GraphFrame) -> GraphFrame:
+    """A transform as the description has it that was not rewritten."""
+    return frame._replace(child=frame.child.split("/")[0], parent=frame.parent.split("/")[0])
+
+
+def prefixed(frame: GraphFrame, robot: str) -> GraphFrame:
+    """A transform under ``frame_prefix``."""
+    return frame._replace(child=f"{robot}/{frame.child}", parent=f"{robot}/{frame.parent}")
+
+
+def on(topic: str, frame: GraphFrame) -> GraphFrame:
+    return frame._replace(topic=topic.replace("tf", "tf_static") if frame.static else topic)
+
+
+def global_tf(graph: Snapshot, *robots: str) -> Snapshot:
+    """The robots' nodes without the rule for tf."""
+    for robot in robots:
+        for topic in ("tf", "tf_static"):
+            graph = moved(graph, f"/{robot}/{topic}", f"/{topic}")
+    frames = [on("/tf", f) if f.topic.split("/")[1] in robots else f for f in graph.frames]
+    return sent(graph._replace(frames=tuple(dict.fromkeys(frames))))
+
+
+STATIC = "/tf_static"
+L2, L1, L3, L4 = FOLDERS
+CASES = (
+    Case(L2, "MG101", ("MG101",), without_namespace),
+    Case(
+        L2, "MG102", ("MG102", "MG103"),
+        lambda g: moved(g, "/robot1/cmd_vel", "/cmd_vel", "diff_drive"),
+    ),
+    Case(
+        L2, "MG103", ("MG102", "MG103"),
+        lambda g: moved(g, "/robot2/status", "/status", "pilot"),
+    ),
+    Case(
+        L2, "MG104", ("MG102", "MG104"),
+        lambda g: moved(g, "/robot1/odom", "/robot2/odom", "pilot"),
+    ),
+    Case(
+        L2, "MG105", ("MG105",),
+        lambda g: g._replace(nodes=(*g.nodes, GraphNode("/robot1/pilot", ""))),
+    ),
+    Case(
+        L2, "MG106", ("MG106",),
+        lambda g: with_type(
+            g, "/robot1/odom", "/robot1/diff_drive", "geometry_msgs/msg/PoseStamped"
+        ),
+    ),
+    Case(
+        L2, "MG107", ("MG107",),
+        lambda g: with_qos(
+            g, "/robot1/cmd_vel", qos(reliability="BEST_EFFORT"), qos(deadline=0.5)
+        ),
+    ),
+    Case(
+        L2, "MG108", ("MG108", "MG108"),
+        lambda g: with_node(
+            with_node(g, "/robot1/gripper", (PUBLISHES, "/grip", "std_msgs/msg/Bool")),
+            "/fleet_manager",
+        ),
+    ),
+    Case(L2, "MG109", ("MG109",), silent),
+    Case(L2, "MG110", ("MG110",), captured),
+    Case(L2, "MG111", ("MG111",), unheard),
+    Case(
+        L2, "MG201", ("MG201",),
+        reframed(lambda f: f, GraphFrame("base_footprint/robot1", "map", "/tf", False, ())),
+    ),
+    Case(L2, "MG202", ("MG202",), reframed(bare)),
+    Case(
+        L2, "MG203", ("MG203",),
+        reframed(lambda f: None if f.child == "base_link/robot1" else f),
+    ),
+    Case(
+        L2, "MG204", ("MG204",),
+        reframed(
+            lambda f: f, GraphFrame("laser/robot1", "base_link/robot1", STATIC, True, ()),
+            GraphFrame("camera_depth_frame/robot1", "camera_link/robot1", STATIC, True, ()),
+        ),
+    ),
+    Case(
+        L2, "MG205", ("MG102", "MG205"),
+        lambda g: reframed(
+            lambda f: on("/robot1/tf", f) if of("robot1", f) and not f.static else f
+        )(moved(g, "/tf", "/robot1/tf", "robot1/diff_drive")),
+    ),
+    Case(
+        L2, "MG206", ("MG203", "MG206"),
+        reframed(lambda f: prefixed(f, "robot1") if of("robot1", f) and f.static else f),
+    ),
+    Case(
+        L2, "MG207", ("MG203", "MG207"),
+        reframed(lambda f: bare(f) if of("robot1", f) and f.static else f),
+    ),
+    Case(
+        L1, "MG202", ("MG102",) * 6 + ("MG103",) * 6 + ("MG202",),
+        lambda g: global_tf(g, "robot1", "robot2"),
+    ),
+    Case(
+        L1, "MG205", ("MG102",) * 3 + ("MG103",) * 3 + ("MG205",),
+        lambda g: global_tf(g, "robot1"),
+    ),
+    Case(
+        L1, "MG206", ("MG203", "MG206"),
+        reframed(lambda f: prefixed(f, "robot2") if of("robot2", f) and f.static else f),
+    ),
+    Case(
+        L3, "MG205", ("MG102",) * 3 + ("MG103",) * 3 + ("MG205",),
+        lambda g: global_tf(g, "robot2"),
+    ),
+    Case(L3, "MG207", ("MG207",), reframed(lambda f: bare(f) if of("robot2", f) else f)),
+    Case(
+        L4, "MG205", ("MG102", "MG104", "MG205"),
+        lambda g: reframed(
+            lambda f: f._replace(topic="/tf/robot2") if f.topic == "/tf/robot1" else f
+        )(moved(g, "/tf/robot1", "/tf/robot2", "diff_drive_robot1")),
+    ),
+    Case(
+        L4, "MG206", ("MG206",),
+        reframed(lambda f: prefixed(f, "robot1") if of("robot1", f) else f),
+    ),
+)  # fmt: skip
+
+
+# ---------------------------------------------------------------- the files
+
+
+def check_lines(plan: str, graph: str) -> str:
+    """What the command prints on standard output."""
+    data = BytesIO()
+    with TextIOWrapper(data, "utf-8") as out, redirect_stdout(out):
+        multibot(["check", plan, "--snapshot", graph])
+        out.flush()
+        return data.getvalue().decode()
+
+
+def write(path: str, graph: Snapshot) -> None:
+    (ROOT / path).write_bytes(to_json(graph))
+
+
+def write_all(cases: Sequence[Case], layouts: Iterable[str]) -> None:
+    os.chdir(ROOT)
+    for layout in layouts:
+        folder = ROOT / FOLDERS[layout]
+        folder.mkdir(exist_ok=True)
+        multibot(["plan", *FLEET, "--layout", layout, "-o", f"{FOLDERS[layout]}/plan.yaml"])
+        write(f"{FOLDERS[layout]}/healthy.json", healthy(layout))
+    for case in cases:
+        write(f"{case.stem}.json", case.broken(healthy(case.layout)))
+        lines = check_lines(f"{FOLDERS[case.layout]}/plan.yaml", f"{case.stem}.json")
+        (ROOT / f"{case.stem}.txt").write_text(lines)
+
+
+if __name__ == "__main__":
+    write_all(CASES, FOLDERS)
