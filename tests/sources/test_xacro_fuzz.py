@@ -71,6 +71,14 @@ def outcomes(times: int, folder: Path) -> Counter[str]:
     return counts
 
 
+@pytest.mark.parametrize("tag", ["nope", "macro", "if", "robot"])
+def test_a_root_in_the_xacro_namespace_is_refused(tmp_path: Path, tag: str) -> None:
+    file = tmp_path / "my.urdf.xacro"
+    file.write_text(f'<xacro:{tag} xmlns:xacro="{XACRO}" name="r"><link name="a"/></xacro:{tag}>')
+    with pytest.raises(InputError, match=rf"my\.urdf\.xacro: the root element is <xacro:{tag}>"):
+        expand(str(file), {})
+
+
 def assert_both(counts: Counter[str]) -> None:
     """Neither is all there is, or nothing was tested."""
     assert min(counts["expanded"], counts["refused"]) > sum(counts.values()) / 20
