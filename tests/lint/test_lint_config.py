@@ -10,6 +10,7 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite import UsageError
+from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.configured import (
     Configured,
@@ -19,14 +20,7 @@ from multibot_rewrite.lint.configured import (
     with_options,
 )
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import (
-    ArgumentSet,
-    Settings,
-    is_on,
-    is_silent,
-    level_of,
-    matches,
-)
+from multibot_rewrite.lint.settings import ArgumentSet, Settings, is_silent, matches
 from multibot_rewrite.lint.values import READERS
 from multibot_rewrite.naming import make_naming
 

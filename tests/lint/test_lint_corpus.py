@@ -19,13 +19,13 @@ from lint_triage import (
 from paths import CORPUS, FIXTURES
 from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import ERROR
 
 UNFINISHED = {"MB001", "MB004"}
 JUDGED = [it for it in judgements() if RULES[it.code].level == ERROR]
-Found = dict[str, list[LintFinding]]
+Found = dict[str, list[Finding]]
 
 
 @cache

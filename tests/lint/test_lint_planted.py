@@ -9,8 +9,8 @@ from __future__ import annotations
 import pytest
 from paths import FIXTURES
 
+from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.records import NOTE
 from multibot_rewrite.lint.settings import Settings
 
 PLANTED = FIXTURES / "lint" / "planted"

@@ -21,10 +21,11 @@ from waiting import wait_until
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.cli.walk import find_files
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.lint import run
 from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.formats import FORMATS, rendered
-from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import FEW, lint_files
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.naming import make_naming
@@ -140,7 +141,7 @@ def bad(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home
 
 
-def codes(found: list[LintFinding]) -> dict[str, set[str]]:
+def codes(found: list[Finding]) -> dict[str, set[str]]:
     """The codes of each file, by the path below its folder."""
     result: dict[str, set[str]] = {}
     for it in found:
@@ -149,7 +150,7 @@ def codes(found: list[LintFinding]) -> dict[str, set[str]]:
 
 
 @pytest.fixture(scope="module")
-def found(bad: Path) -> list[LintFinding]:
+def found(bad: Path) -> list[Finding]:
     paths = find_files([str(bad)], (".urdf", ".xacro"))
     assert not any("pipe" in path for path in paths)
     endless = [path for path in paths if "MB004" in BAD.get(Path(path).name, (b"", set()))[1]]
@@ -159,20 +160,20 @@ def found(bad: Path) -> list[LintFinding]:
     return found + lint_files(endless, Settings(seconds=SECONDS), jobs=3)
 
 
-def test_endless_files_are_ended(found: list[LintFinding]) -> None:
+def test_endless_files_are_ended(found: list[Finding]) -> None:
     wanted = {name for name, (_, codes) in BAD.items() if "MB004" in codes}
     assert {Path(it.file).name for it in found if it.code == "MB004"} == wanted
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_bad_file_is_told(found: list[LintFinding], name: str) -> None:
+def test_a_bad_file_is_told(found: list[Finding], name: str) -> None:
     told = codes(found).get(name, set())
     assert told >= BAD[name][1]
     assert told & UNFINISHED <= BAD[name][1]
 
 
 def test_what_is_no_file_is_told_and_the_others_are_linted(
-    found: list[LintFinding],
+    found: list[Finding],
 ) -> None:
     told = codes(found)
     assert [told[name] for name in LINKS] == [{"MB102"}] * len(LINKS)
@@ -180,7 +181,7 @@ def test_what_is_no_file_is_told_and_the_others_are_linted(
 
 
 @pytest.mark.parametrize("form", FORMATS)
-def test_every_format_tells_all_of_it(found: list[LintFinding], form: str, bad: Path) -> None:
+def test_every_format_tells_all_of_it(found: list[Finding], form: str, bad: Path) -> None:
     text = rendered(form, found, [str(bad / name) for name in BAD], colour=False)
     text.encode()
     assert "Traceback" not in text
@@ -240,7 +241,7 @@ def test_a_file_that_changes_while_it_is_read(tmp_path: Path) -> None:
 def fallen(how: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
     """Linting a file called fallen.* ends like this."""
 
-    def lint(path: str, settings: Settings) -> list[LintFinding]:
+    def lint(path: str, settings: Settings) -> list[Finding]:
         if "fallen" in path:
             how()
         return lint_file(path, settings)
@@ -435,7 +436,7 @@ def test_many_mutants(corpus: dict[str, Path], part: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def by_jobs() -> list[list[LintFinding]]:
+def by_jobs() -> list[list[Finding]]:
     homes = [str(FIXTURES / "robots"), str(FIXTURES / "lint")]
     paths = find_files(homes, (".urdf", ".xacro", ".srdf"))
     settings = Settings(arguments=(ArgumentSet("*", (("sim", "gz"),)),))
@@ -443,8 +444,9 @@ def by_jobs() -> list[list[LintFinding]]:
 
 
 @pytest.mark.parametrize("form", FORMATS)
-def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[LintFinding]]) -> None:
-    results = [rendered(form, found, ["a.urdf"], colour=False).encode() for found in by_jobs]
+def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Finding]]) -> None:
+    report = Report("urdf-lint", ["a.urdf"], RULES)
+    results = [rendered(form, found, report).encode() for found in by_jobs]
     assert results[0].count(b"MB") > 20
     assert results[0] == results[1] == results[2]
 

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from paths import ROOT
 
+from multibot_rewrite.lint.__main__ import rules_page
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.words import page as rules_page
 from multibot_rewrite.pipeline import prepare
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
 

@@ -15,9 +15,9 @@ from typing import NamedTuple
 from paths import CORPUS, FIXTURES
 from real_robots import corpus_files, wheel_files
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.pairing import named_urdfs
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.lint.settings import Settings
@@ -68,7 +68,7 @@ def _judged(line: str) -> Judged:
     return Judged(code, file.removeprefix("urdf/"), int(number), judgement == "true", reason)
 
 
-def linted_corpus() -> dict[str, list[LintFinding]]:
+def linted_corpus() -> dict[str, list[Finding]]:
     """The findings of the public files by their name there, each repository's SRDF files with its
     own URDF files."""
     files = corpus_files()
@@ -89,24 +89,22 @@ def _srdfs() -> dict[str, dict[str, Path]]:
     return found
 
 
-def linted_wheels() -> dict[str, list[LintFinding]]:
+def linted_wheels() -> dict[str, list[Finding]]:
     """The findings of the description wheels by file, ``wheel:NAME/...``."""
     files = {f"wheel:{name}": path for name, path in wheel_files().items()}
     return _by_file(lint_files([str(it) for it in files.values()], Settings()), files)
 
 
-def _by_file(
-    found: Iterable[LintFinding], files: Mapping[str, Path]
-) -> dict[str, list[LintFinding]]:
+def _by_file(found: Iterable[Finding], files: Mapping[str, Path]) -> dict[str, list[Finding]]:
     names = {str(path): name for name, path in files.items()}
-    result: dict[str, list[LintFinding]] = {name: [] for name in files}
+    result: dict[str, list[Finding]] = {name: [] for name in files}
     for it in found:
         if it.file in names:
             result[names[it.file]].append(it)
     return result
 
 
-def errors(found: Mapping[str, list[LintFinding]]) -> Counter[str]:
+def errors(found: Mapping[str, list[Finding]]) -> Counter[str]:
     """How many of each rule are errors."""
     return Counter(it.code for its in found.values() for it in its if it.level == ERROR)
 
