@@ -182,7 +182,7 @@ def test_what_is_no_file_is_told_and_the_others_are_linted(
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_every_format_tells_all_of_it(found: list[Finding], form: str, bad: Path) -> None:
-    text = rendered(form, found, [str(bad / name) for name in BAD], colour=False)
+    text = rendered(form, found, Report("urdf-lint", [str(bad / name) for name in BAD], RULES))
     text.encode()
     assert "Traceback" not in text
 

@@ -3,7 +3,7 @@
 A block of code is a step, and the end of the paragraph before it says which:
 
     `FILE`:                 the block is the whole file (words may stand around the name)
-    At the end of `FILE`:   it is added there
+    At the end of `FILE`:   it is added there, behind a blank line or, in Python, two
     In `FILE`, below        it is there once already, and the next block is added below it
     (``sh``)                a script that has to succeed
     (``console``)           ``$ COMMAND`` and all that it prints; ``...`` is any part of a line, or
@@ -85,7 +85,7 @@ def _edit(file: Path, step: Step, anchor: str) -> None:
         return
     old = file.read_text()
     if step.kind == "append":
-        file.write_text(old + step.text)
+        file.write_text(old + "\n" * (2 if file.suffix == ".py" else 1) + step.text)
         return
     assert old.count(anchor) == 1, f"{file}: {old.count(anchor)} times\n{anchor}"
     file.write_text(old.replace(anchor, anchor + step.text))
