@@ -24,6 +24,14 @@ settings.load_profile("repeatable")
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``."""
+    for item in items:
+        if item.get_closest_marker("deep"):
+            item.add_marker("slow")
+
+
 @pytest.fixture(scope="session")
 def corpus() -> dict[str, Path]:
     """The real files beside the repository, by their relative path."""

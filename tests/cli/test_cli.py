@@ -29,6 +29,8 @@ from waiting import wait_until
 
 import multibot_rewrite
 
+pytestmark = pytest.mark.slow
+
 OPTIONS = (
     (),
     ("--affix", "prefix"),

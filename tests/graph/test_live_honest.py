@@ -38,6 +38,8 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
+pytestmark = pytest.mark.live
+
 ROBOTS = ("robot1", "robot2")
 LIMIT = 32
 # What rmw keeps of a process that did not say good-bye, with some slack.

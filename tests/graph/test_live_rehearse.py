@@ -20,6 +20,8 @@ from waiting import wait_until
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 
+pytestmark = pytest.mark.live
+
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )

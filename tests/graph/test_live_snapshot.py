@@ -30,6 +30,8 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 
+pytestmark = pytest.mark.live
+
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )

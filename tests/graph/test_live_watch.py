@@ -17,6 +17,8 @@ import pytest
 from live_commands import COMMAND, domain, node, write_plan
 from waiting import wait_until
 
+pytestmark = pytest.mark.live
+
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )

@@ -541,6 +541,7 @@ def test_the_order_of_a_snapshot_does_not_show() -> None:
     )
 
 
+@pytest.mark.slow
 def test_every_process_draws_the_same_bytes(tmp_path: Path) -> None:
     plan = nav2_graphs.nav2()
     (tmp_path / "plan.yaml").write_text(to_yaml(plan))
@@ -658,6 +659,7 @@ def test_mermaid_has_a_subgraph_a_robot_and_the_leak_in_red() -> None:
     assert [arrows[int(at)][1] for at in red.split(",")] == [leak]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("robots", "leaks", "note"),
     [

@@ -30,6 +30,8 @@ from multibot_rewrite.lint.run import FEW, lint_files
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.naming import make_naming
 
+pytestmark = pytest.mark.slow
+
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 HARMLESS = b'<robot name="r"><link name="a"/></robot>'
 TWO_ROOTS = b'<robot name="r">\n<link name="a"/>\n<link name="b"/></robot>'

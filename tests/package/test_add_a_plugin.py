@@ -14,6 +14,8 @@ from multibot_rewrite.rewriters import vocabulary
 from multibot_rewrite.rewriters.vocabulary import FORMS, KINDS, TYPES
 from multibot_rewrite.rewriters.vocabulary.grammar import OPTIONS, ROLES, SETTINGS
 
+pytestmark = pytest.mark.slow
+
 GUIDE = (ROOT / "docs" / "add-a-plugin.md").read_text()
 STEPS = guides.steps(GUIDE)
 

@@ -8,6 +8,8 @@ import guides
 import pytest
 from paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 PAGES = sorted((ROOT / "docs" / "contributing").glob("*.md"))
 
 

@@ -23,6 +23,8 @@ from real_robots import spread
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip
 from multibot_rewrite.naming import make_naming
 
+pytestmark = pytest.mark.slow
+
 OPTIONS: tuple[dict[str, str], ...] = (
     {},
     {"layout": "L1"},

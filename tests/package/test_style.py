@@ -36,6 +36,7 @@ def test_no_test_module_imports_another() -> None:
     assert found == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [

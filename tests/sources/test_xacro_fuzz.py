@@ -13,6 +13,8 @@ from paths import FIXTURES
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.expand import expand
 
+pytestmark = pytest.mark.slow
+
 XACRO = "http://www.ros.org/wiki/xacro"
 ROVER = (FIXTURES / "robots" / "rover.urdf.xacro").read_bytes()
 # Some of all there is in xacro.
