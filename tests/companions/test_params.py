@@ -664,6 +664,7 @@ _FILES = st.dictionaries(
 )
 
 
+@pytest.mark.slow
 @given(_FILES, st.sampled_from([L1, L2, L3, L4]))
 def test_structure_and_what_is_no_name_stay(
     files: dict[str, object], policy: tuple[str, str]

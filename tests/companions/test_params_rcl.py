@@ -25,10 +25,13 @@ from multibot_rewrite.model import ERROR, InputError
 from multibot_rewrite.naming import make_naming
 
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
-pytestmark = pytest.mark.skipif(
-    not importlib.util.find_spec("rclpy"),
-    reason=f"parameter files are not read with the real rcl: no rclpy here, {INSTALL}",
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not importlib.util.find_spec("rclpy"),
+        reason=f"parameter files are not read with the real rcl: no rclpy here, {INSTALL}",
+    ),
+]
 CHILD = SUPPORT / "rcl_params_child.py"
 SECONDS = 300
 OWN = """\

@@ -222,6 +222,7 @@ def child(arguments: Sequence[str], cwd: Path, **env: str) -> subprocess.Complet
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [SMALL, mixed()], ids=["small", "mixed"])
 def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_path: Path) -> None:
     home, elsewhere = tmp_path / "a", tmp_path / "b" / "c"
@@ -310,6 +311,7 @@ def test_what_stands_in_the_way_is_told(
     assert sorted(tmp_path.rglob("*")) == before
 
 
+@pytest.mark.slow
 def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Path) -> None:
     path = fleet_folder(tmp_path)
     deep = tmp_path / "x" / "y" / "out"
@@ -344,6 +346,7 @@ def test_what_is_no_manifest_is_refused(text: str) -> None:
 # ---------------------------------------------------------------- all or nothing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", [0, 1000, 20_000])
 def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     before = held(out)
@@ -472,6 +475,7 @@ def until_killed(out: Path, number: int, runs: int, seed: int) -> int:
     return hit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_a_killed_build_leaves_old_or_new(number: int, out: Path) -> None:
     until_killed(out, number, 4, seed=number)
@@ -486,6 +490,7 @@ def test_many_killed_builds_leave_old_or_new(number: int, out: Path) -> None:
 STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [True, False])
 def test_a_kill_around_each_step_leaves_old_or_new(step: str, before: bool, out: Path) -> None:
@@ -547,6 +552,7 @@ def test_what_comes_while_a_build_writes_is_kept(
     assert (out / "late" / "bag.mcap").read_text() == "data"
 
 
+@pytest.mark.slow
 def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
     """Two fleets into one folder, again and again: what is there is one of the two."""
     wanted, fleets = [], []

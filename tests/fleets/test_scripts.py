@@ -265,6 +265,7 @@ def test_nothing_is_written(
     assert capsys.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 def test_no_part_of_ros_is_needed() -> None:
     code = "import sys; from multibot_rewrite import load_fleet; load_fleet; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -365,6 +366,7 @@ def ours(text: str) -> Mapping[str, Any] | None:
         return None
 
 
+@pytest.mark.live
 @pytest.mark.skipif(
     not find_spec("rclpy"), reason="types are not compared with the real rcl: no rclpy here"
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import pytest
 from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -38,6 +39,8 @@ from multibot_rewrite.remap.records import (
     NodeFacts,
 )
 from multibot_rewrite.remap.table import build_table
+
+pytestmark = pytest.mark.slow
 
 # Robots called like one another, and like words of the names.
 ROBOTS = ("robot1", "robot2", "robot10", "arm", "arm_left", "left", "scan", "camera", "map", "r")

@@ -193,6 +193,7 @@ def stacks() -> dict[str, list[NodeFacts]]:
     return {name: [bare(node) for node in stack_of(library, name)] for name in names}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", "/old"])
@@ -208,6 +209,7 @@ def test_every_known_stack_is_learned_as_it_is_described(
 LITERAL = {"nav2_slam", "slam_toolbox"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", "/old"])
 def test_every_stack_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
@@ -243,6 +245,7 @@ def robots(draw: st.DrawFn) -> list[NodeFacts]:
     return [bare(NodeFacts(name, "", tuple(draw(ends)))) for name in names]
 
 
+@pytest.mark.slow
 @given(
     nodes=robots(),
     base=st.sampled_from(["", "/old", "/fleet/old"]),
@@ -255,6 +258,7 @@ def test_any_robot_is_learned_as_it_is(
     assert_served(nodes, base, UNKNOWN, make_naming(layout, affix))
 
 
+@pytest.mark.slow
 @given(nodes=robots(), seed=st.integers())
 def test_the_file_does_not_depend_on_the_order_of_the_snapshot(
     nodes: list[NodeFacts], seed: int

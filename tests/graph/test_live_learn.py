@@ -20,6 +20,8 @@ from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.stacks import user_stack
 from multibot_rewrite.remap.table import build_table
 
+pytestmark = pytest.mark.live
+
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )

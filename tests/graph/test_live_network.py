@@ -17,6 +17,7 @@ from live_commands import PATIENTLY, assert_inconclusive, multibot, node, write_
 from network_hosts import Host, discovery_server, hosts
 from paths import ROOT
 
+pytestmark = pytest.mark.live
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
@@ -17,8 +16,11 @@ import live_fleet
 import pytest
 import tf2_build
 from paths import ROBOTS
+from waiting import wait_until
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
+
+pytestmark = pytest.mark.live
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -147,15 +149,6 @@ def children(pid: int) -> Iterator[int]:
             yield int(stat.parent.name)
 
 
-def waited(seconds: float, gone: list[int]) -> bool:
-    limit = time.monotonic() + seconds
-    while any(Path(f"/proc/{pid}").exists() for pid in gone):
-        if time.monotonic() > limit:
-            return False
-        time.sleep(0.05)
-    return True
-
-
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to look for children")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_no_node_is_left(number: signal.Signals) -> None:
@@ -171,7 +164,7 @@ def test_no_node_is_left(number: signal.Signals) -> None:
         _, said = play.communicate(timeout=20)
         assert play.returncode == (-number if number == signal.SIGKILL else 130)
         assert "Traceback" not in said
-        assert waited(10, there)
+        wait_until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in there))
     finally:
         play.kill()
         play.wait()

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -17,6 +17,7 @@ import live_fleet
 import pytest
 import tf2_build
 from live_commands import domain
+from waiting import wait_until
 
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -28,6 +29,8 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
+
+pytestmark = pytest.mark.live
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -258,23 +261,13 @@ def children(pid: int) -> list[int]:
     return found
 
 
-def waited(condition: Callable[[], bool], seconds: float = 10) -> bool:
-    limit = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > limit:
-            return False
-        time.sleep(0.02)
-    return True
-
-
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to look for children")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
 def test_no_child_is_left(number: signal.Signals) -> None:
     env = live_fleet.environ(domain(2))
     command = subprocess.Popen([*COMMAND], env=env, stderr=subprocess.PIPE, text=True)
     try:
-        assert waited(lambda: bool(children(command.pid)))
-        (child,) = children(command.pid)
+        (child,) = wait_until(lambda: children(command.pid))
         # Long enough that rclpy is up.
         time.sleep(0.8)
         assert Path(f"/proc/{child}").exists()
@@ -282,7 +275,7 @@ def test_no_child_is_left(number: signal.Signals) -> None:
         _, said = command.communicate(timeout=15)
         assert command.returncode == (-number if number == signal.SIGKILL else 130)
         assert "Traceback" not in said
-        assert waited(lambda: not Path(f"/proc/{child}").exists())
+        wait_until(lambda: not Path(f"/proc/{child}").exists())
     finally:
         command.kill()
         command.wait()

@@ -21,9 +21,12 @@ from selenium.webdriver.support.select import Select
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 DRIVER = shutil.which("chromedriver")
-pytestmark = pytest.mark.skipif(
-    not (BROWSER and DRIVER), reason="no browser: apt install chromium chromium-driver"
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not (BROWSER and DRIVER), reason="no browser: apt install chromium chromium-driver"
+    ),
+]
 FLAGS = (
     "--headless",
     "--no-sandbox",

@@ -127,6 +127,7 @@ def performed(context: Any, options: dict[str, Any]) -> dict[str, Any]:
     return {key: launch.perform(context, value) for key, value in options.items()}
 
 
+@pytest.mark.slow
 def test_importing_it_imports_no_launch() -> None:
     code = "import sys, multibot_rewrite.launch.frontend as f; print(*sys.modules)"
     code = code.replace("import sys,", "import sys; sys.modules['launch'] = None; import")

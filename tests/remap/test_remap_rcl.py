@@ -15,10 +15,13 @@ from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeTable, Ta
 from multibot_rewrite.remap.stacks import load_stack
 from multibot_rewrite.remap.table import build_table
 
-pytestmark = pytest.mark.skipif(
-    not importlib.util.find_spec("rclpy"),
-    reason=f"tables are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not importlib.util.find_spec("rclpy"),
+        reason=f"tables are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
+    ),
+]
 ROBOTS = ("robot1", "robot2")
 STACKS = ("nav2", "slam_toolbox", "robot_state", "teleop")
 POLICIES = [
