@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.companions.respell import Names
-from multibot_rewrite.companions.template import GRAPH, SPELLED, Template
+from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.records import NodeFacts
@@ -22,8 +22,8 @@ class Context(NamedTuple):
     nodes that one runs of for all robots keep theirs. ``distro`` is the ROS release.
     """
 
-    names: Names
-    topics: Names
+    names: RenameMap
+    topics: RenameMap
     nodes: Mapping[str, str]
     distro: str = JAZZY
 
@@ -31,7 +31,7 @@ class Context(NamedTuple):
 class Companion(NamedTuple):
     """A companion file ready for any number of robots, and what a person should know about it."""
 
-    template: Template
+    template: FileTemplate
     findings: tuple[Finding, ...]
 
 
@@ -40,11 +40,11 @@ def make_context(
 ) -> Context:
     """The context of a description (not rewritten) and the nodes that its robots run."""
     nodes = {it.name: f"/{it.name}" if it.shared else full_name(it.name, naming) for it in facts}
-    names, topics = (Names(declared, naming, hole) for hole in (SPELLED, GRAPH))
+    names, topics = (RenameMap(declared, naming, hole) for hole in (TAG_SLOT, NAMESPACE_SLOT))
     return Context(names, topics, nodes, distro)
 
 
 def full_name(node: str, naming: Naming) -> str:
     """The full name that a robot's node runs under, with a hole for the robot."""
-    namespace, name = placed(GRAPH, node, naming)
+    namespace, name = placed(NAMESPACE_SLOT, node, naming)
     return f"{namespace.rstrip('/')}/{name}"

@@ -12,10 +12,14 @@ from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.params.spelled import frames_are_spelled, is_plain
-from multibot_rewrite.companions.params.undeclared import lacks, renamed, said_of
-from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
+from multibot_rewrite.companions.names.by_kind import frames_differ, is_plain
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.undeclared import (
+    is_undeclared,
+    renamed_names,
+    undeclared_message,
+)
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, make_template
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
 
@@ -62,20 +66,22 @@ class Option(NamedTuple):
     value: Token | None
 
 
-def lua(text: str, file: str, context: Context) -> tuple[Finding, ...]:
-    """What has to become of a Lua file for a robot, for a person to do; ``lua_file`` does it."""
+def frames_to_edit(text: str, file: str, context: Context) -> tuple[Finding, ...]:
+    """What has to become of a Lua file for a robot, for a person to do; ``rewrite_lua`` does it."""
     changes = (_change(context, it) for it in _options(list(tokens_of(text, file))))
     found = [_finding(text, file, at, *said) for at, said in filter(None, changes)]
-    return tuple(sorted((*found, *lua_file(text, file, context).findings), key=lambda it: it[5:]))
+    return tuple(
+        sorted((*found, *rewrite_lua(text, file, context).findings), key=lambda it: it[5:])
+    )
 
 
-def lua_file(text: str, file: str, context: Context) -> Companion:
+def rewrite_lua(text: str, file: str, context: Context) -> Companion:
     """A Lua file with holes for a robot, and what a person should know about it.
 
     Only ``name = "frame"`` is rewritten; what else is assigned is reported. Raises InputError for
     strings and comments that do not end.
     """
-    for hole in (GRAPH, SPELLED):
+    for hole in (NAMESPACE_SLOT, TAG_SLOT):
         if hole in text:
             raise InputError(f"{file}: the word {hole} is this tool's own; write another")
     tokens = list(tokens_of(text, file))
@@ -83,7 +89,7 @@ def lua_file(text: str, file: str, context: Context) -> Companion:
     splices = [_splice(context, it.value) for it in options if it.value]
     found = [*_about(context, options), *_includes(tokens), *_mentions(context, tokens, options)]
     placed = (_finding(text, file, at, *said) for at, said in sorted(found))
-    return Companion(cut(text, [it for it in splices if it]), tuple(placed))
+    return Companion(make_template(text, [it for it in splices if it]), tuple(placed))
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
@@ -126,7 +132,7 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
 
 def _splice(context: Context, value: Token) -> Splice | None:
     old = value.text[1:-1]
-    new = respell(context.names, "frame", old)
+    new = spell(context.names, "frame", old)
     end = value.at + len(value.text) - 1
     return Splice(value.at + 1, end, new) if new != old else None
 
@@ -138,7 +144,7 @@ def _change(context: Context, option: Option) -> _Said | None:
     there = _splice(context, option.value) if option.value else None
     if option.value is None or there is None:
         return None
-    new = there.new.replace(SPELLED, "ROBOT")
+    new = there.new.replace(TAG_SLOT, "ROBOT")
     message = f"{option.name.text} = {option.value.text} is every robot's"
     return option.value.at, ("MF455", message, f"write {new!r}, with what is spelled for ROBOT")
 
@@ -146,12 +152,12 @@ def _change(context: Context, option: Option) -> _Said | None:
 def _about(context: Context, options: Sequence[Option]) -> Iterator[_Said]:
     for name, value in options:
         if value is None:
-            if frames_are_spelled(context):
+            if frames_differ(context):
                 message = f"{name.text} is no plain string: it stays as it is"
                 hint = "it has to be the robot's own frame: write the name here in quotes"
                 yield name.at, ("MF451", message, hint)
-        elif lacks(context, "frame", value.text[1:-1]):
-            yield value.at, ("MF452", *said_of(context, "frame", value.text[1:-1]))
+        elif is_undeclared(context, "frame", value.text[1:-1]):
+            yield value.at, ("MF452", *undeclared_message(context, "frame", value.text[1:-1]))
 
 
 def _includes(tokens: Sequence[Token]) -> Iterator[_Said]:
@@ -167,7 +173,7 @@ def _includes(tokens: Sequence[Token]) -> Iterator[_Said]:
 def _mentions(
     context: Context, tokens: Sequence[Token], options: Sequence[Option]
 ) -> Iterator[_Said]:
-    names = renamed(context)
+    names = renamed_names(context)
     claimed = {it.value.at for it in options if it.value}
     for token in tokens:
         if token.kind not in ("string", "long") or token.at in claimed:

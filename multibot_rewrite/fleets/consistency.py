@@ -11,12 +11,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import NamedTuple
 
-from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.fleets.parents import parents
-from multibot_rewrite.fleets.plan import FleetPlan
-from multibot_rewrite.fleets.written import Value, Written, line_in_source, values
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_values import OutputText, OutputValue, line_in_source, values_in
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import Naming
@@ -36,31 +36,31 @@ NO_PLACE = ("", 0)
 PLANNED = frozenset({"MF601", "MF607"})
 
 
-class Owned(NamedTuple):
+class RobotNames(NamedTuple):
     """What is a robot's own: ``words`` stand for it; ``right`` are its names as they have to be,
     without a slash in front; ``bare`` maps names of its sources to those they may become."""
 
-    robot: Described
+    robot: RewrittenRobot
     words: tuple[str, ...]
     right: frozenset[str]
     bare: Mapping[str, frozenset[str]]
 
 
-class Look(NamedTuple):
+class ValueInFile(NamedTuple):
     """A value of a robot's file, whose it is, and the words of the other robots."""
 
-    owned: Owned
+    owned: RobotNames
     others: Mapping[str, str]
     naming: Naming
-    value: Value
+    value: OutputValue
 
 
-Said = tuple[str, str, str, str]
-Check = Callable[[Look], Iterator[Said]]
+Draft = tuple[str, str, str, str]
+Check = Callable[[ValueInFile], Iterator[Draft]]
 
 
 def consistency(
-    plan: FleetPlan, fleet: Fleet, files: Sequence[Written], told: Iterable[Finding] = ()
+    plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText], told: Iterable[Finding] = ()
 ) -> tuple[Finding, ...]:
     """What is wrong with files that were made for a fleet; ``fleet`` is the plan's with all that is
     started. Nothing is said of a line that ``told`` speaks of already."""
@@ -68,7 +68,7 @@ def consistency(
     known = {(it.file, it.line) for it in told}
     found = [
         *_shared(plan, fleet),
-        *parents(plan, fleet, files),
+        *tf_conflicts(plan, fleet, files),
         *_in_files(plan, own, files),
         *_in_common(own, files),
     ]
@@ -87,7 +87,7 @@ def _counted(findings: Iterable[Finding]) -> Iterator[Finding]:
         yield first._replace(message=f"{first.message}{lines}")
 
 
-def _owned(plan: FleetPlan, fleet: Fleet) -> list[Owned]:
+def _owned(plan: FleetPlan, fleet: Fleet) -> list[RobotNames]:
     graph: dict[str, set[str]] = {robot.spec.namespace: set() for robot in plan.robots}
     for node in fleet.table.nodes:
         graph.setdefault(node.robot, set()).add(f"{node.namespace.rstrip('/')}/{node.name}"[1:])
@@ -96,25 +96,25 @@ def _owned(plan: FleetPlan, fleet: Fleet) -> list[Owned]:
     return [_own(robot, graph[robot.spec.namespace]) for robot in plan.robots]
 
 
-def _own(robot: Described, graph: Iterable[str]) -> Owned:
+def _own(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     spec = robot.spec
     names = robot.names._replace(robot=spec.spelled)
     kinds = {word: names.declared.get(word, ()) for word in ("link", "joint", "frame", "sensor")}
     bare: dict[str, set[str]] = {}
     for word, declared in (*kinds.items(), ("frame", USUAL_FRAMES)):
         for name in declared:
-            bare.setdefault(name, set()).add(respell(names, word, name))
+            bare.setdefault(name, set()).add(spell(names, word, name))
     inventory = robot.member.inventory.declared
     right = {name for kind in inventory.values() for name in kind}
     right |= {name for spelled in bare.values() for name in spelled}
     words = tuple(dict.fromkeys((spec.namespace, spec.spelled, spec.model)))
     changed = {name: frozenset(it) for name, it in bare.items() if it != {name}}
-    return Owned(robot, words, frozenset((*right, *graph)), changed)
+    return RobotNames(robot, words, frozenset((*right, *graph)), changed)
 
 
 def _shared(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
     """Names that two robots have and that are not shared."""
-    first: dict[tuple[str, str], Described] = {}
+    first: dict[tuple[str, str], RewrittenRobot] = {}
     by_space = {robot.spec.namespace: robot for robot in plan.robots}
     for robot, kind, name in (*_declared(plan), *_nodes(fleet, by_space)):
         other = first.setdefault((kind, name), robot)
@@ -125,7 +125,7 @@ def _shared(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
             yield Finding("MF601", ERROR, message, hint, spec.file, spec.line, 1)
 
 
-def _declared(plan: FleetPlan) -> Iterator[tuple[Described, str, str]]:
+def _declared(plan: FleetPlan) -> Iterator[tuple[RewrittenRobot, str, str]]:
     """What the descriptions that were written declare, where the layout spells it per robot."""
     naming = plan.fleet.naming
     kinds = [
@@ -137,7 +137,9 @@ def _declared(plan: FleetPlan) -> Iterator[tuple[Described, str, str]]:
             yield from ((robot, kind, it) for it in names if it not in naming.shared_frames)
 
 
-def _nodes(fleet: Fleet, robots: Mapping[str, Described]) -> Iterator[tuple[Described, str, str]]:
+def _nodes(
+    fleet: Fleet, robots: Mapping[str, RewrittenRobot]
+) -> Iterator[tuple[RewrittenRobot, str, str]]:
     # Whose topics meet is told of already.
     told = {it.node for it in fleet.table.problems}
     for node in fleet.table.nodes:
@@ -146,7 +148,9 @@ def _nodes(fleet: Fleet, robots: Mapping[str, Described]) -> Iterator[tuple[Desc
             yield robots[node.robot], "node", full
 
 
-def _in_files(plan: FleetPlan, own: Sequence[Owned], files: Sequence[Written]) -> Iterator[Finding]:
+def _in_files(
+    plan: FleetPlan, own: Sequence[RobotNames], files: Sequence[OutputText]
+) -> Iterator[Finding]:
     """Every robot's own files; of those that are alike but for the names only the first."""
     by_name = {it.robot.spec.name: it for it in own}
     words: dict[str, str] = {}
@@ -174,24 +178,24 @@ def _masked(text: str, words: Iterable[str]) -> str:
     return text
 
 
-def _pattern(owned: Owned) -> tuple[object, ...]:
+def _pattern(owned: RobotNames) -> tuple[object, ...]:
     """Which of a robot's words are the same: robots that differ in it cannot be compared."""
     spec = owned.robot.spec
     return spec.namespace == spec.spelled, spec.namespace == spec.model, spec.spelled == spec.model
 
 
 def _in_file(
-    file: Written, owned: Owned, others: Mapping[str, str], naming: Naming
+    file: OutputText, owned: RobotNames, others: Mapping[str, str], naming: Naming
 ) -> Iterator[Finding]:
-    for value in values(file):
+    for value in values_in(file):
         if _OTHER.search(value.text):
             continue
         for check in _CHECKS:
-            for code, level, message, hint in check(Look(owned, others, naming, value)):
+            for code, level, message, hint in check(ValueInFile(owned, others, naming, value)):
                 yield _placed(file, owned, value, (code, level, message, hint))
 
 
-def _placed(file: Written, owned: Owned, value: Value, said: Said) -> Finding:
+def _placed(file: OutputText, owned: RobotNames, value: OutputValue, said: Draft) -> Finding:
     """At the line of the source, where there is one; else at the robot in the fleet file."""
     code, level, message, hint = said
     spec = owned.robot.spec
@@ -202,14 +206,14 @@ def _placed(file: Written, owned: Owned, value: Value, said: Said) -> Finding:
     return Finding(code, level, where, hint, spec.file, spec.line, 1)
 
 
-def _tokens(look: Look) -> Iterator[str]:
+def _tokens(look: ValueInFile) -> Iterator[str]:
     """Words of a value that may be names, and that are none of the robot's own."""
     for token in _TOKEN.findall(look.value.text):
         if token.strip("/") not in look.owned.right:
             yield token
 
 
-def _foreign(look: Look) -> Iterator[Said]:
+def _foreign(look: ValueInFile) -> Iterator[Draft]:
     for token in _tokens(look):
         robot = _whose(token.strip("/"), look)
         if robot:
@@ -224,7 +228,7 @@ def _foreign(look: Look) -> Iterator[Said]:
             )
 
 
-def _whose(token: str, look: Look) -> str:
+def _whose(token: str, look: ValueInFile) -> str:
     """Another robot whose word a name begins or ends with; empty for none."""
     words = token.split("/")
     ends = ["/".join(words[:at]) for at in range(1, len(words))]
@@ -238,7 +242,7 @@ def _whose(token: str, look: Look) -> str:
     return next((look.others[it] for it in ends if it in look.others), "")
 
 
-def _doubled(look: Look) -> Iterator[Said]:
+def _doubled(look: ValueInFile) -> Iterator[Draft]:
     for token in _tokens(look):
         word = twice(token, look.owned.words)
         if word and not any(word in it.split("/") for it in look.owned.bare):
@@ -256,7 +260,7 @@ def twice(token: str, words: Iterable[str]) -> str:
     return ""
 
 
-def _on_top(look: Look) -> Iterator[Said]:
+def _on_top(look: ValueInFile) -> Iterator[Draft]:
     """What doubles a prefix only when the nodes run."""
     key, text = look.value.key, look.value.text.strip()
     if not look.naming.layout.frames or look.value.is_key:
@@ -268,7 +272,7 @@ def _on_top(look: Look) -> Iterator[Said]:
         yield "MF603", ERROR, message, 'write ""' if key in PREFIXES else "write false"
 
 
-def _separators(look: Look) -> Iterator[Said]:
+def _separators(look: ValueInFile) -> Iterator[Draft]:
     word, bare = look.owned.robot.spec.spelled, look.owned.bare
     for token in (it for it in _tokens(look) if not it.startswith("/")):
         for rest in _rests(token, word):
@@ -286,18 +290,18 @@ def _rests(token: str, word: str) -> Iterator[str]:
         yield token[: -len(word)].rstrip(_BETWEEN)
 
 
-def _as_a_frame(look: Look, token: str, name: str) -> bool:
+def _as_a_frame(look: ValueInFile, token: str, name: str) -> bool:
     """Spelled as a frame is, and no frame that is known: somebody else may send it."""
     declared = look.owned.robot.names.declared
     if name in USUAL_FRAMES or any(name in declared.get(kind, ()) for kind in ("link", "frame")):
         return False
     return (
-        respell(look.owned.robot.names._replace(robot=look.owned.robot.spec.spelled), "frame", name)
+        spell(look.owned.robot.names._replace(robot=look.owned.robot.spec.spelled), "frame", name)
         == token
     )
 
 
-def _mixed(look: Look) -> Iterator[Said]:
+def _mixed(look: ValueInFile) -> Iterator[Draft]:
     text = look.value.text
     if look.value.is_key or not _FRAME_KEY.search(look.value.key.rpartition(".")[2]):
         return
@@ -307,7 +311,7 @@ def _mixed(look: Look) -> Iterator[Said]:
         yield "MF605", WARNING, message, f"if it is a frame of the robot, it is {right}"
 
 
-def _tf(look: Look) -> Iterator[Said]:
+def _tf(look: ValueInFile) -> Iterator[Draft]:
     value, naming = look.value, look.naming
     if value.is_key or value.key.startswith("gz_"):
         return
@@ -326,7 +330,7 @@ def _tf(look: Look) -> Iterator[Said]:
         yield "MF606", WARNING, message, "write /tf, or choose layout both"
 
 
-def _in_common(own: Sequence[Owned], files: Sequence[Written]) -> Iterator[Finding]:
+def _in_common(own: Sequence[RobotNames], files: Sequence[OutputText]) -> Iterator[Finding]:
     """Files of all robots together: names with a robot in them twice."""
     words = {word: it for it in own for word in it.words}
     either = re.compile(
@@ -348,7 +352,7 @@ def _in_common(own: Sequence[Owned], files: Sequence[Written]) -> Iterator[Findi
                     f"{token} has {found[1]} in it twice",
                     "take it out of the source",
                 )
-                yield _placed(file, owned, Value(token, "", False, line), said)
+                yield _placed(file, owned, OutputValue(token, "", False, line), said)
 
 
 _CHECKS: tuple[Check, ...] = (_foreign, _doubled, _on_top, _separators, _mixed, _tf)

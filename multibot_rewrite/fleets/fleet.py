@@ -9,8 +9,8 @@ from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
 from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import Rewrite, rewrite_all
 from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
+from multibot_rewrite.remap.node_library import stack_of
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes, plugin_places
 from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table, joined

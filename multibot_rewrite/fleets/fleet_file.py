@@ -12,7 +12,7 @@ from importlib.resources import files
 from typing import Any, NamedTuple
 
 from multibot_rewrite.companions.rviz.colours import read_colour
-from multibot_rewrite.fleets.by_schema import Path, read_fitting
+from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
@@ -134,7 +134,7 @@ def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
 def _read(path: str) -> _Read:
     # A file that is included may leave the robots to the one that includes it.
     wanted = {key: value for key, value in schema().items() if key != "required"}
-    data, lines = read_fitting(path, wanted, "write robots: with a name each")
+    data, lines = read_checked(path, wanted, "write robots: with a name each")
     places = {at: (path, line) for at, line in lines.items()}
     seen = _from(os.path.dirname(path), data)
     _check_files(seen, (), places)

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from typing import NamedTuple
 
-from multibot_rewrite.fleets.artefacts import Artefact
+from multibot_rewrite.fleets.output_files import OutputFile
 from multibot_rewrite.model import InputError
 
 MANIFEST = "manifest.json"
@@ -18,7 +18,7 @@ FORMAT = "multibot build 1"
 NOTHING: Mapping[str, str] = {}
 
 
-class Changes(NamedTuple):
+class OutputChanges(NamedTuple):
     """Paths below the output folder: ``write`` is new or differs, ``remove`` an earlier build made
     and this one does not. ``foreign`` would be overwritten and no build made them; ``edited`` were
     changed since an earlier build made them."""
@@ -34,14 +34,14 @@ def hash_of(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-def manifest(files: Iterable[Artefact], inputs: Mapping[str, bytes], folder: str) -> Artefact:
+def manifest(files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str) -> OutputFile:
     """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path."""
     data = {
         "format": FORMAT,
         "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
         "outputs": {it.path: hash_of(it.data) for it in files},
     }
-    return Artefact(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
+    return OutputFile(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
 
 
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
@@ -60,9 +60,9 @@ def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
         raise InputError(f"{file}: this is no manifest of multibot build; {hint}") from None
 
 
-def changes(
-    files: Iterable[Artefact], known: Mapping[str, str], there: Mapping[str, str]
-) -> Changes:
+def output_changes(
+    files: Iterable[OutputFile], known: Mapping[str, str], there: Mapping[str, str]
+) -> OutputChanges:
     """What a build has to change; ``known`` are the hashes of the last one, ``there`` of what is
     on the disk now, of the paths that are there."""
     wanted = {it.path: hash_of(it.data) for it in files}
@@ -71,4 +71,4 @@ def changes(
     foreign = [path for path in write if path in there and path not in known]
     touched = (path for path in (*write, *remove) if path in there and path in known)
     edited = [path for path in touched if there[path] != known[path]]
-    return Changes(tuple(write), tuple(remove), tuple(foreign), tuple(edited))
+    return OutputChanges(tuple(write), tuple(remove), tuple(foreign), tuple(edited))

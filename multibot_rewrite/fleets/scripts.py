@@ -13,27 +13,27 @@ from collections.abc import Iterable, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple, NoReturn
 
-from multibot_rewrite.companions.graph_names import known_topics, robot_topic
-from multibot_rewrite.companions.respell import respell
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.fleets import spawn, teleop, transforms
-from multibot_rewrite.fleets.artefacts import Artefact, Artefacts, make_artefacts
-from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
-from multibot_rewrite.fleets.node_params import (
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.output_files import OutputFile, Outputs, make_outputs
+from multibot_rewrite.fleets.rcl_parameters import (
     Value,
     check_values,
     exact_nodes,
     node_parameters,
 )
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.started import started
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.remap.marked import unknown
 from multibot_rewrite.remap.records import TOPIC, NodeFacts, NodeTable, Problem, Table
 from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.remap.yaml_with_lines import unknown
 from multibot_rewrite.sources.read import read_file
 
 Rules = list[tuple[str, str]]
@@ -89,7 +89,7 @@ class LoadedRobot:
     None where the fleet file has none.
     """
 
-    def __init__(self, fleet: LoadedFleet, described: Described) -> None:
+    def __init__(self, fleet: LoadedFleet, described: RewrittenRobot) -> None:
         self._fleet, self._described = fleet, described
         spec = described.spec
         self._graph = spec.namespace
@@ -155,16 +155,16 @@ class LoadedRobot:
 
     def frame(self, name: str) -> str:
         """A frame or link of the description, as this robot has it."""
-        return respell(self._described.names, "frame", name)
+        return spell(self._described.names, "frame", name)
 
     def joint(self, name: str) -> str:
         """A joint of the description, as this robot has it."""
-        return respell(self._described.names, "joint", name)
+        return spell(self._described.names, "joint", name)
 
     def topic(self, name: str) -> str:
         """The full name of a topic that one robot alone has under ``name``."""
         plan = self._fleet.plan
-        known = known_topics(plan.fleet.table, plan.fleet.facts, self._graph)
+        known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
         full = robot_topic(self._described.topics, name, known)
         return full if full.startswith("/") else f"/{full}"
 
@@ -248,7 +248,7 @@ class LoadedFleet:
     @cached_property
     def planned(self) -> Fleet:
         """The fleet with the nodes that hold its robots where they start."""
-        return started(self.plan)
+        return with_start_pose_nodes(self.plan)
 
     @cached_property
     def placed(self) -> transforms.Placed:
@@ -256,18 +256,18 @@ class LoadedFleet:
         return transforms.place(self.plan)
 
     @cached_property
-    def made(self) -> Artefacts:
+    def made(self) -> Outputs:
         """Everything that ``multibot build`` would write, made when it is asked for.
 
         Raises InputError for a companion that cannot be read, RewriteRefused for one that cannot be
         rewritten.
         """
-        made = make_artefacts(self.plan)
+        made = make_outputs(self.plan)
         _refuse(made.findings)
         return made
 
     @cached_property
-    def files(self) -> Mapping[str, Artefact]:
+    def files(self) -> Mapping[str, OutputFile]:
         """The same by path: ``robot1/params.yaml``."""
         return {it.path: it for it in self.made.files}
 

@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.companions.graph_names import NOTHING, known_topics, robot_topic
-from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.fleets.fleet_file import Pose
-from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
@@ -40,7 +40,7 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     """How each robot is spawned, and what stands in the way of a namespace from the spawner."""
     made, findings = [], []
     for robot in plan.robots:
-        known = known_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
+        known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
         made.append(spawn(robot, known.get(DESCRIPTION, "")))
         told, untold = _namespaces(robot)
         if told and untold:
@@ -48,7 +48,7 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     return tuple(made), tuple(findings)
 
 
-def spawn(robot: Described, topic: str = "") -> Spawn:
+def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
     """How one robot is spawned; ``topic`` is where its description is, if another than usual."""
     spec = robot.spec
     told, untold = _namespaces(robot)
@@ -87,7 +87,7 @@ def classic_command(it: Spawn) -> str:
     return shlex.join(["ros2", "run", *CLASSIC, *classic_arguments(it)])
 
 
-def either(it: Spawn, robot: Described) -> str:
+def either(it: Spawn, robot: RewrittenRobot) -> str:
     """The line for the simulator that the description is written for, the other one as a comment."""
     gz, classic = gz_command(it), classic_command(it)
     if CLASSIC_PLUGIN.encode() in robot.description:
@@ -100,7 +100,7 @@ def _pose(pose: Pose) -> list[str]:
     return [word for key, flag in FLAGS.items() for word in (flag, str(values[key]))]
 
 
-def _namespaces(robot: Described) -> tuple[list[str], list[str]]:
+def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
     """The Gazebo Classic plugins of a description: those with a namespace, those without."""
     told: list[str] = []
     untold: list[str] = []
@@ -115,7 +115,7 @@ def _namespace(plugin: etree._Element) -> str:
     return (plugin.findtext("ros/namespace") or plugin.findtext("namespace") or "").strip()
 
 
-def _half(robot: Described, untold: list[str]) -> Finding:
+def _half(robot: RewrittenRobot, untold: list[str]) -> Finding:
     spec = robot.spec
     message = f"robot {spec.name!r}: plugins without a namespace beside others: {', '.join(untold)}"
     hint = "-robot_namespace would overwrite the others' too; write <ros><namespace> in each"

@@ -9,9 +9,9 @@ import shlex
 from collections.abc import Collection
 from typing import NamedTuple
 
-from multibot_rewrite.companions.graph_names import robot_topic
-from multibot_rewrite.fleets.describe import Described
-from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.transforms import description_edges
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
@@ -33,7 +33,7 @@ def teleops(plan: FleetPlan, stamped: Collection[str] = ()) -> tuple[Teleop, ...
     return tuple(teleop(plan, robot, stamped) for robot in plan.robots)
 
 
-def teleop(plan: FleetPlan, robot: Described, stamped: Collection[str] = ()) -> Teleop:
+def teleop(plan: FleetPlan, robot: RewrittenRobot, stamped: Collection[str] = ()) -> Teleop:
     """The robot's ``cmd_vel`` if a node listens to it, else the first that one does listen to."""
     name, usual = robot.spec.namespace, robot_topic(robot.topics, f"/{COMMAND}")
     heard = _listeners(plan, name)
@@ -68,7 +68,7 @@ def _listeners(plan: FleetPlan, robot: str) -> dict[str, set[str]]:
     return heard
 
 
-def _base(robot: Described) -> str:
+def _base(robot: RewrittenRobot) -> str:
     """The root link of the rewritten description."""
     inventory = robot.member.inventory
     children = {edge.child for edge in description_edges(inventory)}

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
-from multibot_rewrite.remap.records import Name, NodeFacts, Table
+from multibot_rewrite.remap.records import NodeFacts, ResolvedName, Table
 from multibot_rewrite.steps.collect import Inventory
 
 # What every node has, and what nobody misses.
@@ -135,7 +135,7 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, values)))
 
 
-def _wanted(names: Iterable[Name]) -> Iterator[Wanted]:
+def _wanted(names: Iterable[ResolvedName]) -> Iterator[Wanted]:
     """Endpoints that are there whatever the parameters say."""
     for name in names:
         asked = name.endpoint

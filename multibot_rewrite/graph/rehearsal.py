@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, Wanted
 from multibot_rewrite.graph.transforms import Edge, Edges
-from multibot_rewrite.remap.forms import arguments
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -20,11 +19,12 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Name,
     NodeTable,
+    ResolvedName,
     Table,
 )
 from multibot_rewrite.remap.table import ACTION_PARTS
+from multibot_rewrite.remap.table_formats import arguments
 
 TF = "tf2_msgs/msg/TFMessage"
 # What is played where a type is not installed.
@@ -90,7 +90,7 @@ def _once(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
     return found.values()
 
 
-def _part(name: Name, types: Mapping[str, str]) -> Part:
+def _part(name: ResolvedName, types: Mapping[str, str]) -> Part:
     kind, role, own, type_, *_ = name.endpoint
     # What only names a topic is a sensor's output nearly always.
     return Part(

@@ -22,7 +22,7 @@ from multibot_rewrite.fleets import spawn as spawning
 from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
 from multibot_rewrite.model import Finding, UsageError
-from multibot_rewrite.remap.marked import unknown
+from multibot_rewrite.remap.yaml_with_lines import unknown
 
 # What launch calls SomeSubstitutionsType: a string, a substitution, or several of both.
 Text = Any
@@ -43,14 +43,14 @@ _ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x20
 _OWN = "multibot.yaml"
 
 
-class Of(NamedTuple):
+class RobotRef(NamedTuple):
     """Which robot of which fleet; None is that of the group around it."""
 
     robot: Text = None
     fleet: Text = None
 
 
-HERE = Of()
+HERE = RobotRef()
 
 
 def missing() -> str:
@@ -75,13 +75,13 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     return known[path]
 
 
-def robot_of(context: Context, of: Of = HERE) -> LoadedRobot:
+def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
     """A robot; raises as ``fleet_of``, and UsageError for one that is not there."""
     name = _scoped(context, ROBOT, "robot") if of.robot is None else perform(context, of.robot)
     return fleet_of(context, of.fleet).robot(name)
 
 
-def file_of(context: Context, file: str, of: Of = HERE) -> str:
+def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
     """Write a file of the fleet into the folder of this launch; returns its path.
 
     It is the robot's own, or the one for all robots where there is no robot.
@@ -122,7 +122,7 @@ def bridge_config(robot: Text = None, fleet: Text = None) -> Substitution:
 
 def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -> Substitution:
     """What ``$(multibot WORD NAME)`` is: one of ``WORDS`` about a robot, or the path of a file."""
-    return substitution()([word, name], Of(robot, fleet))
+    return substitution()([word, name], RobotRef(robot, fleet))
 
 
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
@@ -159,7 +159,7 @@ def node(
     commas between; ``describe`` gives it the description. ``options`` are Node's own: its
     remappings come first and its parameters last, where they win.
     """
-    of = Of(robot, fleet)
+    of = RobotRef(robot, fleet)
 
     def started(context: Context) -> list[Action]:
         its, called = robot_of(context, of), perform(context, name)
@@ -177,7 +177,7 @@ def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **action: Any
         called = perform(context, simulator)
         if called not in SPAWNERS:
             raise UsageError(unknown("simulator", called, SPAWNERS))
-        its = robot_of(context, Of(robot, fleet))
+        its = robot_of(context, RobotRef(robot, fleet))
         arguments = its.spawn_arguments if called == "gz" else its.classic_arguments
         return [_program(SPAWNERS[called], arguments)]
 
@@ -188,7 +188,7 @@ def place(robot: Text = None, fleet: Text = None, **action: Any) -> Action:
     """The static transform of a robot's pose, where one is needed."""
 
     def started(context: Context) -> list[Action]:
-        arguments = robot_of(context, Of(robot, fleet)).transform_arguments
+        arguments = robot_of(context, RobotRef(robot, fleet)).transform_arguments
         return [_program(PLACER, arguments)] if arguments else []
 
     return _later(started, action)
@@ -202,7 +202,7 @@ def substitution() -> Any:
     class Multibot(Base):  # type: ignore[misc]
         """Words about a robot, known when the launch file runs."""
 
-        def __init__(self, words: Sequence[Text], of: Of) -> None:
+        def __init__(self, words: Sequence[Text], of: RobotRef) -> None:
             super().__init__()
             self.words, self.of = words, of
 
@@ -281,8 +281,8 @@ def _later(function: Callable[[Context], list[Action]], action: Mapping[str, Any
     return OpaqueFunction(function=function, **action)
 
 
-def _said(context: Context, words: Sequence[str], of: Of) -> str:
-    options = [it for it in words if it.partition(":=")[0] in Of._fields and ":=" in it]
+def _said(context: Context, words: Sequence[str], of: RobotRef) -> str:
+    options = [it for it in words if it.partition(":=")[0] in RobotRef._fields and ":=" in it]
     of = of._replace(**dict(it.split(":=", 1) for it in options))
     word, name = (*(it for it in words if it not in options), "", "")[:2]
     if word == FILE:
@@ -324,7 +324,7 @@ def _listed(context: Context, names: Text) -> list[str]:
     return [it for it in map(str.strip, perform(context, names).split(",")) if it]
 
 
-def _nobody(context: Context, of: Of) -> bool:
+def _nobody(context: Context, of: RobotRef) -> bool:
     return of.robot is None and ROBOT not in context.launch_configurations
 
 

@@ -37,7 +37,7 @@ class Endpoint(NamedTuple):
     remapped: str = ""
 
 
-class Frame(NamedTuple):
+class FrameParameter(NamedTuple):
     """A parameter that holds a frame id, which no remap rule reaches, and its default."""
 
     parameter: str
@@ -61,12 +61,12 @@ class NodeFacts(NamedTuple):
     note: str = ""
     host: str = ""
     when: str = ""
-    frames: tuple[Frame, ...] = ()
+    frames: tuple[FrameParameter, ...] = ()
     fixed: tuple[str, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
 
 
-class Rule(NamedTuple):
+class NodeRule(NamedTuple):
     """One remap rule of one robot's node, as rcl takes it: ``source:=target``.
 
     ``node`` is the stack's name of it, without the robot; ``kind`` is that of the name it is for,
@@ -81,7 +81,7 @@ class Rule(NamedTuple):
     why: str
 
 
-class Name(NamedTuple):
+class ResolvedName(NamedTuple):
     """Where an endpoint of a robot's node leads once the rules are in force.
 
     ``node`` and ``name`` are fully qualified.
@@ -111,7 +111,7 @@ class NodeTable(NamedTuple):
     node: str
     namespace: str
     name: str
-    rules: tuple[Rule, ...]
+    rules: tuple[NodeRule, ...]
 
 
 class Table(NamedTuple):
@@ -119,5 +119,5 @@ class Table(NamedTuple):
 
     layout: str
     nodes: tuple[NodeTable, ...]
-    names: tuple[Name, ...]
+    names: tuple[ResolvedName, ...]
     problems: tuple[Problem, ...]

@@ -10,7 +10,7 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.known import Library, extended, stack_of
+from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
 
 BUILT_IN = ("nodes.yaml", "stacks.yaml")
@@ -27,7 +27,7 @@ def load_stack(name: str) -> tuple[NodeFacts, ...]:
     return stack_of(built_in(), name)
 
 
-def user_stack(path: str) -> Library:
+def user_stack(path: str) -> NodeLibrary:
     """The built-in nodes and stacks and those of a file; ``stack_of`` takes a stack out of it.
 
     What the file says anew of a built-in node counts in the file's own stacks. Raises UsageError,
@@ -40,16 +40,16 @@ def user_stack(path: str) -> Library:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    return extended(built_in(), text, path)
+    return extend(built_in(), text, path)
 
 
 @lru_cache
-def built_in() -> Library:
+def built_in() -> NodeLibrary:
     """What this package knows."""
-    library = Library({}, {}, {})
+    library = NodeLibrary({}, {}, {})
     for name in BUILT_IN:
         text = files("multibot_rewrite.remap").joinpath(name).read_text(encoding="utf-8")
-        library = extended(library, text, name)
+        library = extend(library, text, name)
     return library
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.remap.known import Library, Stack
+from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 
 HEAD = """\
@@ -52,7 +52,7 @@ REACH = """\
 HELPER = "a helper node asks for it: only a rule for the whole process counts"
 
 
-def page(library: Library) -> str:
+def page(library: NodeLibrary) -> str:
     """The whole page as Markdown."""
     parts = [HEAD, "\n## Stacks\n"]
     parts += [_stack(name, stack) for name, stack in library.stacks.items()]
@@ -91,7 +91,7 @@ def _reach(node: NodeFacts) -> Iterator[str]:
             yield _row([f"`{node.name}`", f"{endpoint.kind} `{endpoint.name}`", why])
 
 
-def _node(node: NodeFacts, library: Library) -> str:
+def _node(node: NodeFacts, library: NodeLibrary) -> str:
     told = [f"package {node.package}"] * bool(node.package)
     told += [f"in the process of {node.host}"] * bool(node.host)
     told += ["one for all robots"] * node.shared + [node.note] * bool(node.note)

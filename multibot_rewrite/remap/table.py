@@ -16,11 +16,11 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     TOPIC,
     Endpoint,
-    Name,
     NodeFacts,
+    NodeRule,
     NodeTable,
     Problem,
-    Rule,
+    ResolvedName,
     Table,
 )
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
@@ -85,7 +85,7 @@ def _build(
 def joined(table: Table, other: Table, naming: Naming) -> Table:
     """Two tables of different robots as one; nodes for all robots are there once."""
     names = tuple(dict.fromkeys((*table.names, *other.names)))
-    by_robot: dict[str, list[Name]] = {}
+    by_robot: dict[str, list[ResolvedName]] = {}
     for name in names:
         if name.robot:
             by_robot.setdefault(name.robot, []).append(name)
@@ -95,10 +95,10 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
     return Table(table.layout, tuple(dict.fromkeys((*table.nodes, *other.nodes))), names, problems)
 
 
-def _renamed(names: Iterable[Name], robot: str) -> list[Name]:
+def _renamed(names: Iterable[ResolvedName], robot: str) -> list[ResolvedName]:
     """The probe's names as another robot has them."""
     return [
-        Name(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
+        ResolvedName(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
         for _, node, endpoint, name in names
     ]
 
@@ -107,7 +107,9 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
     """The probe's nodes as another robot has them."""
     for _, (_, node, namespace, name, rules) in pairs:
         own = tuple(
-            Rule(robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why)
+            NodeRule(
+                robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why
+            )
             for rule in rules
         )
         yield NodeTable(
@@ -127,7 +129,7 @@ def node_table(
     namespace, name = placed(robot, node.name, naming)
     # Below a namespace of its own a relative target would not leave it.
     root = f"/{robot}/" if namespace.count("/") > 1 else ""
-    rules: dict[str, Rule] = {}
+    rules: dict[str, NodeRule] = {}
     for endpoint in (it for it in node.endpoints if not it.fixed):
         meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
         for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
@@ -138,7 +140,7 @@ def node_table(
                 target = f"{root}{target}" if root and naming.topics == NAMESPACE else target
                 why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
                 match = expand(source, namespace, name)
-                rules.setdefault(match, Rule(robot, node.name, source, target, "", why))
+                rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()))
 
 
@@ -204,13 +206,13 @@ def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:
     return f"{lead}{placed(robot, head, naming)[1]}/{rest}"
 
 
-def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
+def parsed(rules: Iterable[NodeRule]) -> tuple[RemapRule, ...]:
     """The rules as rcl reads them."""
     found = (parse_remap(f"{rule.source}:={rule.target}") for rule in rules)
     return tuple(rule for rule in found if rule is not None)
 
 
-def names_of(pairs: Pairs) -> Iterator[Name]:
+def names_of(pairs: Pairs) -> Iterator[ResolvedName]:
     """Where each name of these nodes leads."""
     for node, table in pairs:
         bound = bind(table.name, table.namespace, parsed(table.rules))
@@ -219,7 +221,7 @@ def names_of(pairs: Pairs) -> Iterator[Name]:
         for endpoint in (it for it in node.endpoints if "<" not in it.name):
             kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
             found = resolve_bound(endpoint.name, kind, bare if endpoint.fixed else bound)
-            yield Name(table.robot, f"{root}/{table.name}", endpoint, found)
+            yield ResolvedName(table.robot, f"{root}/{table.name}", endpoint, found)
 
 
 def _fixed(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
@@ -241,9 +243,9 @@ def _needed(endpoint: Endpoint, naming: Naming) -> bool:
     return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
 
 
-def _meeting(names: dict[str, list[Name]], naming: Naming) -> Iterator[Problem]:
+def _meeting(names: dict[str, list[ResolvedName]], naming: Naming) -> Iterator[Problem]:
     """Names of two robots that come out alike without being shared."""
-    first: dict[tuple[str, str], Name] = {}
+    first: dict[tuple[str, str], ResolvedName] = {}
     told = set()
     shared = {f"/{topic}" for topic in naming.shared_topics}
     for name in (name for found in names.values() for name in found):

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from multibot_rewrite.companions.behavior_tree import behavior_tree
+from multibot_rewrite.companions.behavior_tree import rewrite_behavior_tree
 from multibot_rewrite.companions.context import JAZZY, Context, make_context
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.model import Finding, InputError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 
@@ -27,8 +27,8 @@ def context(layout: str = "L2", distro: str = JAZZY, **more: str) -> Context:
 
 
 def run(text: str | bytes, it: Context) -> tuple[str, tuple[Finding, ...]]:
-    made = behavior_tree(text if isinstance(text, bytes) else text.encode(), "t.xml", it)
-    return fill(made.template, "amr", "sp"), made.findings
+    made = rewrite_behavior_tree(text if isinstance(text, bytes) else text.encode(), "t.xml", it)
+    return fill_template(made.template, "amr", "sp"), made.findings
 
 
 def tree(body: str, form: str = ' BTCPP_format="4"') -> str:

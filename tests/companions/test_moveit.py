@@ -11,13 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.rewrite import kind_of, moveit, with_semantics
-from multibot_rewrite.companions.moveit.sites import kinds
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.moveit.name_sites import kinds
+from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit, with_srdf
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.model import Finding, InputError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in
 
 LINKS = ("base_link", "tool0", "camera_link")
@@ -33,12 +33,12 @@ def context(layout: str = "L2", affix: str = "", srdf: bool = True, **more: str)
     facts = stack_of(built_in(), "moveit")
     naming = make_naming(layout, affix, **more)
     made = make_context(declared, naming, facts)  # type: ignore[arg-type]
-    return with_semantics(made, SRDF) if srdf else made  # type: ignore[arg-type]
+    return with_srdf(made, SRDF) if srdf else made  # type: ignore[arg-type]
 
 
 def run(text: str, it: Context, file: str = "a.yaml") -> tuple[str, tuple[Finding, ...]]:
-    made = moveit(read_yaml(text.encode(), file), it)
-    return fill(made.template, "amr", "sp"), made.findings
+    made = rewrite_moveit(read_yaml(text.encode(), file), it)
+    return fill_template(made.template, "amr", "sp"), made.findings
 
 
 def text_of(text: str, it: Context) -> str:
@@ -67,7 +67,7 @@ def test_every_kind_has_a_case() -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_kind_is_found_from_the_content(kind: str) -> None:
-    assert kind_of(read_yaml(KINDS[kind].encode(), "x.yaml")) == kind
+    assert file_kind(read_yaml(KINDS[kind].encode(), "x.yaml")) == kind
 
 
 @pytest.mark.parametrize(
@@ -85,7 +85,7 @@ def test_a_kind_is_found_from_the_content(kind: str) -> None:
     ],
 )
 def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
-    assert kind_of(read_yaml(text.encode(), file)) == kind
+    assert file_kind(read_yaml(text.encode(), file)) == kind
 
 
 @pytest.mark.parametrize(

@@ -12,19 +12,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.known import (
+from multibot_rewrite.companions.params.known_nodes import (
     KINDS,
-    built_in_params,
+    built_in_nodes,
     in_release,
-    known_params,
+    load_known_nodes,
 )
 from multibot_rewrite.companions.params.page import page
-from multibot_rewrite.companions.params.rewrite import params, without_sections
-from multibot_rewrite.companions.template import GRAPH, fill
+from multibot_rewrite.companions.params.rewrite import rewrite_params, without_sections
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.model import Finding, InputError, UsageError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import extended, stack_of
+from multibot_rewrite.remap.node_library import extend, stack_of
 from multibot_rewrite.remap.stacks import built_in, load_stack
 
 ROOT = Path(__file__).parents[2]
@@ -53,8 +53,8 @@ def made(
     text: str, policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object
 ) -> tuple[str, tuple[Finding, ...]]:
     """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
-    companion = params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
-    return fill(companion.template, "robot1", "r1"), companion.findings
+    companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
+    return fill_template(companion.template, "robot1", "r1"), companion.findings
 
 
 def codes(findings: Iterable[Finding]) -> list[str]:
@@ -132,7 +132,7 @@ def test_rcl_would_find_every_section() -> None:
         indent = "    " if rest else "  "
         text, _ = made(f"{keys}{indent}ros__parameters:\n{indent}  x: 1\n")
         joined = "/".join(line.strip(" :/") for line in text.splitlines() if line.endswith(":"))
-        expected = full.replace(GRAPH, "robot1").strip("/")
+        expected = full.replace(NAMESPACE_SLOT, "robot1").strip("/")
         assert joined.removesuffix("/ros__parameters") == expected
 
 
@@ -166,11 +166,11 @@ def test_a_robots_name_in_a_file_is_an_error() -> None:
 
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:
-    library = extended(built_in(), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n")
+    library = extend(built_in(), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n")
     context = make_context(DECLARED, make_naming(layout="L2"), stack_of(library, "s"))  # type: ignore[arg-type]
     source = section("map_server", "topic_name: /map", "frame_id: base_link")
-    companion = params(read_yaml((source * 2).encode(), "p"), context)
-    assert fill(companion.template, "robot1", "r1") == source * 2
+    companion = rewrite_params(read_yaml((source * 2).encode(), "p"), context)
+    assert fill_template(companion.template, "robot1", "r1") == source * 2
     assert codes(companion.findings).count("MF103") == 1
 
 
@@ -308,8 +308,8 @@ def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
     declared = {**DECLARED, "joint": {word: None}}
     context = make_context(declared, make_naming(layout="L2", affix="prefix"), ())  # type: ignore[arg-type]
     source = section("joint_trajectory_controller", f"joints: ['{word}']")
-    companion = params(read_yaml(source.encode(), "p"), context)
-    assert f"joints: ['r1_{word}']" in fill(companion.template, "robot1", "r1")
+    companion = rewrite_params(read_yaml(source.encode(), "p"), context)
+    assert f"joints: ['r1_{word}']" in fill_template(companion.template, "robot1", "r1")
     assert yaml.safe_load(quoted(word)) == word
 
 
@@ -383,8 +383,8 @@ def test_a_name_below_another_node_follows_that_node() -> None:
 def test_a_shared_topic_is_written_from_the_root() -> None:
     context = setting(L2, shared_topics=["/map"])
     source = section("amcl", "map_topic: map")
-    companion = params(read_yaml(source.encode(), "p"), context)
-    assert "map_topic: /map\n" in fill(companion.template, "robot1", "r1")
+    companion = rewrite_params(read_yaml(source.encode(), "p"), context)
+    assert "map_topic: /map\n" in fill_template(companion.template, "robot1", "r1")
 
 
 def test_what_is_no_topic_stays_and_is_told() -> None:
@@ -495,21 +495,21 @@ def test_what_a_person_should_know_is_told(node: str, line: str, code: str, word
 
 def test_one_key_cannot_be_two() -> None:
     text = "stacks: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
-    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    nodes = stack_of(extend(built_in(), text, "n"), "s")
     context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
     inner = "    ros__parameters: {use_sim_time: true}\n"
     source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
-    found = params(read_yaml(source.encode(), "p"), context).findings
+    found = rewrite_params(read_yaml(source.encode(), "p"), context).findings
     assert ("MF101", "error") in [(it.code, it.level) for it in found]
 
 
 def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
     """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
     text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
-    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    nodes = stack_of(extend(built_in(), text, "n"), "s")
     context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
     document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
-    found = params(document, context, facts=nodes).findings
+    found = rewrite_params(document, context, facts=nodes).findings
     assert [it.message for it in found if it.code == "MF120"] == [
         "scan_topic: scan leads to /<robot>/scan by the robot's rules"
     ]
@@ -562,7 +562,7 @@ def test_an_ordinary_file_has_nothing_told() -> None:
         ("a: {ros__parameters: {[1]: 2}}\n", "a key is a mapping or a list"),
         ("[1]: {ros__parameters: {a: 2}}\n", "a key is a mapping or a list"),
         ("a: {ros__parameters: {b: 1}}\n---\nc: 1\n", "more than one document"),
-        (f"a: {{ros__parameters: {{b: {GRAPH}}}}}\n", "this tool's own"),
+        (f"a: {{ros__parameters: {{b: {NAMESPACE_SLOT}}}}}\n", "this tool's own"),
     ],
 )
 def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> None:
@@ -576,7 +576,7 @@ def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> No
 
 
 def test_the_data_is_what_it_seems() -> None:
-    known = built_in_params()
+    known = built_in_nodes()
     assert len(known.nodes) > 90
     assert {it.kind for node in known.nodes.values() for it in node.params.values()} <= set(KINDS)
     assert set(known.types.values()) <= set(known.nodes)
@@ -607,7 +607,7 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
     with open(path, "w") as file:
         file.write(text + "  amcl: {params: {extra: frame}}\n")
     source = section("rover", "wheels: [elbow]", "mast.a: tool0") + section("amcl", "extra: laser")
-    text, findings = made(source, known=known_params(path))
+    text, findings = made(source, known=load_known_nodes(path))
     assert "wheels: [r1_elbow]" in text
     assert "mast.a: r1/tool0" in text
     assert "extra: r1/laser" in text
@@ -635,7 +635,7 @@ def test_a_mistake_in_a_users_file_is_told_with_its_line(
     with open(path, "w") as file:
         file.write(text)
     with pytest.raises(UsageError, match=r"more\.yaml:\d") as error:
-        known_params(path)
+        load_known_nodes(path)
     assert words in str(error.value)
 
 
@@ -670,7 +670,9 @@ def test_structure_and_what_is_no_name_stay(
 ) -> None:
     source = yaml.safe_dump({name: {"ros__parameters": it} for name, it in files.items()})
     context = setting(policy)
-    text = fill(params(read_yaml(source.encode(), "p"), context).template, "robot1", "r1")
+    text = fill_template(
+        rewrite_params(read_yaml(source.encode(), "p"), context).template, "robot1", "r1"
+    )
     old = [it for it in leaves(yaml.safe_load(source)) if not isinstance(it, str)]
     new = [it for it in leaves(yaml.safe_load(text)) if not isinstance(it, str)]
     inserted = text.count("tf_frame_prefix_enable")
@@ -687,8 +689,11 @@ def leaves(node: object) -> list[object]:
 @given(st.sampled_from([L1, L2, L3, L4]), st.text("abc_1", min_size=1, max_size=5))
 def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str) -> None:
     source = section("amcl", "scan_topic: /scan", "base_frame_id: base_link")
-    template = params(read_yaml(source.encode(), "p"), setting(policy)).template
-    one, two = fill(template, "robot1", "r1"), fill(template, f"g{robot}", f"s{robot}")
+    template = rewrite_params(read_yaml(source.encode(), "p"), setting(policy)).template
+    one, two = (
+        fill_template(template, "robot1", "r1"),
+        fill_template(template, f"g{robot}", f"s{robot}"),
+    )
     assert one.replace("robot1", f"g{robot}").replace("r1", f"s{robot}") == two
 
 
@@ -697,7 +702,7 @@ def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str)
 
 def test_the_page_has_the_table_and_every_code() -> None:
     text = (ROOT / "docs" / "params.md").read_text()
-    assert text.endswith(page(built_in_params()))
+    assert text.endswith(page(built_in_nodes()))
     source = "".join(
         (ROOT / "multibot_rewrite" / "companions" / "params" / name).read_text()
         for name in ("sections.py", "values.py", "inserted.py")
@@ -710,7 +715,7 @@ def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
     path = tmp_path / "more.yaml"
     path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
     source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")
-    text, _ = made(source, known=known_params(str(path)))
+    text, _ = made(source, known=load_known_nodes(str(path)))
     assert "base: r1/mast_base" in text
     assert "motors: [r1_elbow]" in text
     assert "limits: {r1_elbow: {max: 1}}" in text

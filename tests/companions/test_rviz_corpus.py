@@ -13,8 +13,8 @@ import yaml
 from robots import CORPUS
 from rviz_robots import declared, robots_of
 
-from multibot_rewrite.companions.rviz.read import rviz_data
-from multibot_rewrite.companions.rviz.rewrite import rviz
+from multibot_rewrite.companions.rviz.read_config import rviz_data
+from multibot_rewrite.companions.rviz.rewrite import rewrite_rviz
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError
 
@@ -77,7 +77,7 @@ def survey(configs: list[Path], layout: str) -> Counter[str]:
 
 def check(document: YamlText, layout: str) -> None:
     robots = robots_of(declared(document), layout, ROBOTS)
-    made, _ = rviz(document, robots)
+    made, _ = rewrite_rviz(document, robots)
     source = yaml.load(document.text, LOADER)
     if layout == "L2":
         assert [one.robot for one in made] == [""]

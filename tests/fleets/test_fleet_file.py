@@ -12,7 +12,7 @@ import yaml
 from fleet_folder import fleet_folder
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleets.by_schema import TYPES
+from multibot_rewrite.fleets.checked_yaml import TYPES
 from multibot_rewrite.fleets.fleet_file import (
     KINDS,
     FleetFile,

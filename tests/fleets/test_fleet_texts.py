@@ -15,13 +15,19 @@ from robots import CORPUS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets import spawn, teleop, transforms
-from multibot_rewrite.fleets.bridge import BridgeFile, as_spawned, bridge, filled, merged
+from multibot_rewrite.fleets.bridge_file import (
+    BridgeFile,
+    as_spawned,
+    bridge,
+    fill_bridge,
+    merge_bridges,
+)
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.bridge import Bridged
-from multibot_rewrite.remap.bridge import bridge as generated_bridge
+from multibot_rewrite.remap.bridged_topics import BridgedTopic
+from multibot_rewrite.remap.bridged_topics import bridged_topics as generated_bridge
 from multibot_rewrite.rosnames import check_full_name, check_topic_name
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -40,7 +46,7 @@ def bridged(text: str, layout: str = "L2", *links: str) -> BridgeFile:
 
 def own(text: str, layout: str = "L2", *links: str) -> list[dict[str, Any]]:
     made = bridged(text, layout, *links)
-    return yaml.safe_load(filled(made.own.template, "ns", "word", "rover1")) or []
+    return yaml.safe_load(fill_bridge(made.own.template, "ns", "word", "rover1")) or []
 
 
 def one(names: str, layout: str = "L2", *links: str) -> tuple[str, str]:
@@ -95,7 +101,7 @@ def test_names_of_an_entry(names: str, layout: str, ros: str, gz: str) -> None:
 
 def test_topic_name_is_split_where_the_sides_differ() -> None:
     text = f"- topic_name: /model/rover/pose  # where\n{TYPES}"
-    made = filled(bridged(text).own.template, "ns", "word", "rover1")
+    made = fill_bridge(bridged(text).own.template, "ns", "word", "rover1")
     assert made == (
         "- ros_topic_name: /ns/model/rover/pose\n  gz_topic_name: /model/rover1/pose  # where\n"
         + TYPES
@@ -177,20 +183,20 @@ def test_a_file_that_is_no_bridge(text: str, why: str) -> None:
 def test_a_model_that_no_gz_topic_can_hold() -> None:
     made = bridged(f"- topic_name: /model/a/b\n{TYPES}").own.template
     with pytest.raises(InputError, match="'my rover'"):
-        filled(made, "ns", "word", "my rover")
+        fill_bridge(made, "ns", "word", "my rover")
 
 
 def test_one_file_of_all_robots_and_of_what_descriptions_say() -> None:
     text = "- topic_name: scan  # lidar\n" + TYPES
     made = bridged(text)
-    texts = [(name, filled(made.own.template, name, name, name)) for name in ("r1", "r2")]
+    texts = [(name, fill_bridge(made.own.template, name, name, name)) for name in ("r1", "r2")]
     clock = f"---\n  - topic_name: /clock\n{TYPES.replace('  r', '    r').replace('  g', '    g')}"
     generated = [
-        Bridged("", "/clock", "/clock", "c", "c", "GZ_TO_ROS"),
-        Bridged("r1", "/r1/scan", "r1/scan", "s", "s", "GZ_TO_ROS"),
-        Bridged("r1", "/r1/imu", "r1/imu", "i", "i", "GZ_TO_ROS"),
+        BridgedTopic("", "/clock", "/clock", "c", "c", "GZ_TO_ROS"),
+        BridgedTopic("r1", "/r1/scan", "r1/scan", "s", "s", "GZ_TO_ROS"),
+        BridgedTopic("r1", "/r1/imu", "r1/imu", "i", "i", "GZ_TO_ROS"),
     ]
-    text, findings = merged([*texts, ("shared", clock), ("again", clock)], generated)
+    text, findings = merge_bridges([*texts, ("shared", clock), ("again", clock)], generated)
     names = [it.get("topic_name") or it["gz_topic_name"] for it in yaml.safe_load(text)]
     assert names == ["/r1/scan", "/r2/scan", "/clock", "/r1/imu"] and not findings
     assert text.count("# lidar") == 2
@@ -206,7 +212,7 @@ def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> N
 
 def test_two_gz_topics_on_one_ros_topic_are_told() -> None:
     text = "".join(f"- ros_topic_name: /s\n  gz_topic_name: /{it}\n{TYPES}" for it in "ab")
-    assert [it.code for it in merged([("f", text)], [])[1]] == ["MF506"]
+    assert [it.code for it in merge_bridges([("f", text)], [])[1]] == ["MF506"]
 
 
 @pytest.fixture(scope="module")
@@ -228,7 +234,7 @@ def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
         except InputError as error:
             refused[str(error)] += 1
             continue
-        text = filled(made.own.template, "zorba", "zorba", "zorba")
+        text = fill_bridge(made.own.template, "zorba", "zorba", "zorba")
         problems = list(entry_problems(document.text, text, made.shared))
         assert not problems, f"{path}: {problems}"
     assert not refused

@@ -19,7 +19,7 @@ from robots import FIXTURES
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.node_params import node_parameters, typed
+from multibot_rewrite.fleets.rcl_parameters import node_parameters, typed
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot
 
 ROVER = FIXTURES / "robots" / "rover.urdf"

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.known import Library, extended, stack_of
+from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in, load_nodes, load_stack, user_stack
 from multibot_rewrite.remap.stacks_page import page
@@ -46,9 +46,9 @@ def endpoint(node: NodeFacts, role: str, name: str) -> Endpoint:
     return found
 
 
-def extra(text: str) -> Library:
+def extra(text: str) -> NodeLibrary:
     """The built-in library with a user's text."""
-    return extended(built_in(), text, "mine.yaml")
+    return extend(built_in(), text, "mine.yaml")
 
 
 @pytest.mark.parametrize("name", WANTED)

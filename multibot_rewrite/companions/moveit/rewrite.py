@@ -13,21 +13,31 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.moveit.sites import (
-    Kind,
-    Site,
-    Sites,
+from multibot_rewrite.companions.moveit.name_sites import (
+    FileKind,
+    MoveitName,
+    MoveitNames,
     entries,
-    find_sites,
+    find_names,
     kinds,
 )
+from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible, is_plain
+from multibot_rewrite.companions.names.by_kind import node as node_name
+from multibot_rewrite.companions.names.node_topics import (
+    FROM_NODE,
+    Facts,
+    facts_by_name,
+    spell_topic,
+)
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.undeclared import (
+    holds_a_name,
+    is_undeclared,
+    renamed_names,
+    undeclared_message,
+)
 from multibot_rewrite.companions.params.sections import PARAMETERS, finding
-from multibot_rewrite.companions.params.spelled import SPELLERS, expressible, is_plain
-from multibot_rewrite.companions.params.spelled import node as node_name
-from multibot_rewrite.companions.params.topics import FROM_NODE, Facts, facts_by_name, topic
-from multibot_rewrite.companions.params.undeclared import lacks, mentions, renamed, said_of
-from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, make_template
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import NAMESPACE
@@ -49,7 +59,7 @@ _ROS_CONTROL, _CONTROL_NAMESPACE = "moveit_ros_control_interface/", "ros_control
 _DEPTH = 4
 
 
-class _Desk(NamedTuple):
+class _MoveitJob(NamedTuple):
     """What every step about one file needs; ``node`` is the stack's name of the one it is for."""
 
     document: YamlText
@@ -58,10 +68,12 @@ class _Desk(NamedTuple):
     facts: Facts
 
 
-def moveit(document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()) -> Companion:
+def rewrite_moveit(
+    document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()
+) -> Companion:
     """A file of MoveIt with holes for a robot, and what a person should know about it.
 
-    What an SRDF declares is known where ``with_semantics`` has added it; ``facts`` are those of the
+    What an SRDF declares is known where ``with_srdf`` has added it; ``facts`` are those of the
     robot's nodes, whose remap rules move topics too. Raises InputError for a file that is none of
     MoveIt's, and for a name shared by an alias that would need two spellings.
     """
@@ -71,7 +83,7 @@ def moveit(document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()
         raise InputError(f"{document.file}:1: nested too deep; MoveIt's files never are") from None
 
 
-def with_semantics(context: Context, declared: Declared) -> Context:
+def with_srdf(context: Context, declared: Declared) -> Context:
     """The context with the groups and virtual joints that an SRDF declares (not rewritten)."""
     both = dict(context.names.declared)
     for kind in ("group", "joint"):
@@ -80,7 +92,7 @@ def with_semantics(context: Context, declared: Declared) -> Context:
     return context._replace(names=names, topics=topics)
 
 
-def kind_of(document: YamlText) -> str:
+def file_kind(document: YamlText) -> str:
     """Which kind of MoveIt's files this is, by what is in it; its name decides where that does not.
 
     ``empty`` where nothing is in it. Raises InputError, with the reason, where it is none.
@@ -89,7 +101,7 @@ def kind_of(document: YamlText) -> str:
     return kind.name if kind else EMPTY
 
 
-def _kind(document: YamlText) -> Kind | None:
+def _kind(document: YamlText) -> FileKind | None:
     root = document.root
     if root is None or root.tag == "tag:yaml.org,2002:null":
         return None
@@ -125,7 +137,7 @@ def _paths(root: yaml.Node) -> Iterator[str]:
             yield from (f"{first}.{word}", f"*.{word}")
 
 
-def _by_values(root: yaml.Node) -> Kind | None:
+def _by_values(root: yaml.Node) -> FileKind | None:
     """Numbers and nothing else are positions of joints."""
     values = [value for _, value in entries(root)]
     if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
@@ -133,36 +145,36 @@ def _by_values(root: yaml.Node) -> Kind | None:
     return None
 
 
-def _by_name(file: str) -> Kind | None:
+def _by_name(file: str) -> FileKind | None:
     name = file.replace("\\", "/").rpartition("/")[2].lower()
     return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)
 
 
 def _moveit(document: YamlText, context: Context, facts: Facts) -> Companion:
-    for hole in (GRAPH, SPELLED):
+    for hole in (NAMESPACE_SLOT, TAG_SLOT):
         if hole in document.text:
             raise InputError(f"{document.file}: the word {hole} is this tool's own; write another")
     kind = _kind(document)
-    sites = find_sites(document.root, kind.names if kind else {}, context.names)
+    sites = find_names(document.root, kind.names if kind else {}, context.names)
     node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
-    desk = _Desk(document, context, node, facts)
+    desk = _MoveitJob(document, context, node, facts)
     splices = [*_spliced(desk, sites.names), *_inserted(document, context)]
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     found = sorted(set(_findings(document, context, sites)), key=lambda it: it[5:])
-    return Companion(cut(document.text, [*shift, *splices]), tuple(found))
+    return Companion(make_template(document.text, [*shift, *splices]), tuple(found))
 
 
-def _spliced(desk: _Desk, sites: Iterable[Site]) -> Iterator[Splice]:
+def _spliced(desk: _MoveitJob, sites: Iterable[MoveitName]) -> Iterator[Splice]:
     """One splice for each scalar; a key may hold several names, an alias may reach one twice."""
-    texts: dict[int, dict[int, tuple[Site, str]]] = {}
+    texts: dict[int, dict[int, tuple[MoveitName, str]]] = {}
     for site in sites:
-        new = _respelled(desk, site.word, site.text)
+        new = _new_text(desk, site.word, site.text)
         _, other = texts.setdefault(id(site.scalar), {}).setdefault(site.at, (site, new))
         if other != new:
             place = f"{desk.document.file}:{line_of(site.scalar)}"
             raise InputError(
                 f"{place}: an alias uses {site.text!r} as two kinds of name, which become {other!r}"
-                f" and {new!r}; write it out at both places".replace(SPELLED, "ROBOT")
+                f" and {new!r}; write it out at both places".replace(TAG_SLOT, "ROBOT")
             )
     for parts in texts.values():
         scalar, value = next(iter(parts.values()))[0].scalar, ""
@@ -183,11 +195,11 @@ def _replaced(document: YamlText, scalar: yaml.ScalarNode, new: str) -> Splice:
     return Splice(marks.end() if marks else start, end, quoted(new, scalar.style or ""))
 
 
-def _respelled(desk: _Desk, word: str, value: str) -> str:
+def _new_text(desk: _MoveitJob, word: str, value: str) -> str:
     if word == "id":
         return value
     if word in _GRAPH_WORDS:
-        return topic(desk.context, desk.node, word, value, FROM_NODE, desk.facts).text
+        return spell_topic(desk.context, desk.node, word, value, FROM_NODE, desk.facts).text
     if word == "controller_topic":
         return _controller_topic(desk, value)
     if word == "controller":
@@ -195,13 +207,13 @@ def _respelled(desk: _Desk, word: str, value: str) -> str:
     return SPELLERS[word](desk.context, value)
 
 
-def _controller_topic(desk: _Desk, value: str) -> str:
+def _controller_topic(desk: _MoveitJob, value: str) -> str:
     """``/arm_controller/joint_trajectory``: below a node, whose name it follows."""
     head, slash, rest = value.rpartition("/")
     if not is_plain(value) or not head or value.startswith("~"):
-        return topic(desk.context, desk.node, "topic", value, FROM_NODE, desk.facts).text
+        return spell_topic(desk.context, desk.node, "topic", value, FROM_NODE, desk.facts).text
     if desk.context.topics.naming.topics == NAMESPACE:
-        return respell(desk.context.topics, "topic", value)
+        return spell(desk.context.topics, "topic", value)
     return node_name(desk.context, head) + slash + rest
 
 
@@ -230,7 +242,7 @@ def _inserted(document: YamlText, context: Context) -> Iterator[Splice]:
     yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}{end}{' ' * key.start_mark.column}")
 
 
-def _findings(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
+def _findings(document: YamlText, context: Context, sites: MoveitNames) -> Iterator[Finding]:
     for key in sites.twice:
         message = f"{key.value!r} stands here twice, and PyYAML takes the last one"
         yield finding(document, key, "MF303", WARNING, message, "delete one of them")
@@ -240,11 +252,11 @@ def _findings(document: YamlText, context: Context, sites: Sites) -> Iterator[Fi
         for word, text in _named(site):
             if (word, text) not in told:
                 told.add((word, text))
-                yield from _about(document, context, site, (word, text))
+                yield from _name_finding(document, context, site, (word, text))
     yield from _mentions(document, context, sites.unclaimed)
 
 
-def _unreachable(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
+def _unreachable(document: YamlText, context: Context, sites: MoveitNames) -> Iterator[Finding]:
     """Without namespaces each robot's manager has a name of its own."""
     asked = [
         _asks_below_root(document),
@@ -257,7 +269,7 @@ def _unreachable(document: YamlText, context: Context, sites: Sites) -> Iterator
             yield finding(document, key, "MF308", WARNING, message, hint)
 
 
-def _named(site: Site) -> Iterator[tuple[str, str]]:
+def _named(site: MoveitName) -> Iterator[tuple[str, str]]:
     """The names that are looked for in the description."""
     found = _EVALUATOR.fullmatch(site.text) if site.word == "words" else None
     if found:
@@ -266,13 +278,15 @@ def _named(site: Site) -> Iterator[tuple[str, str]]:
         yield site.word, site.text
 
 
-def _about(
-    document: YamlText, context: Context, site: Site, name: tuple[str, str]
+def _name_finding(
+    document: YamlText, context: Context, site: MoveitName, name: tuple[str, str]
 ) -> Iterator[Finding]:
     word, text = name
     naming = context.names.naming
-    if word in _CLOSED and lacks(context, word, text):
-        yield finding(document, site.scalar, "MF301", WARNING, *said_of(context, word, text))
+    if word in _CLOSED and is_undeclared(context, word, text):
+        yield finding(
+            document, site.scalar, "MF301", WARNING, *undeclared_message(context, word, text)
+        )
     elif text and not is_plain(text) and _matters(context, word):
         message = f"{word} {text!r} holds a substitution, and stays as it is"
         hint = "see that what it is filled with is the robot's own name of it"
@@ -303,10 +317,10 @@ def _matters(context: Context, word: str) -> bool:
 def _mentions(
     document: YamlText, context: Context, unclaimed: Iterable[yaml.ScalarNode]
 ) -> Iterator[Finding]:
-    names = renamed(context)
+    names = renamed_names(context)
     for scalar in unclaimed:
         text = str(scalar.value)
-        if is_text(scalar) and mentions(text, names):
+        if is_text(scalar) and holds_a_name(text, names):
             message = f"unclaimed mention: {text!r}, and nothing known says what it means"
             hint = "it stays as it is: see whether it has to name one robot's"
             yield finding(document, scalar, "MF302", WARNING, message, hint)

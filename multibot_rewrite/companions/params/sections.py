@@ -13,8 +13,8 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Context, full_name
-from multibot_rewrite.companions.params.known import Known, KnownNode
-from multibot_rewrite.companions.template import GRAPH
+from multibot_rewrite.companions.params.known_nodes import KnownNode, KnownNodes
+from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
@@ -31,7 +31,7 @@ PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"
 _ANY = ("*", "**")
 # What a launch file fills.
-_FILLED = re.compile(r"[<${]")
+_PLACEHOLDER = re.compile(r"[<${]")
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Nodes of old releases that live inside another: they have sections, and no names of their own.
@@ -50,7 +50,7 @@ _OTHER_FILES = {
 }
 
 
-class Section(NamedTuple):
+class ParamSection(NamedTuple):
     """One ``ros__parameters``: the keys above it, the path that they are, and its mapping.
 
     ``full`` is the full name of the robot's node, with holes, or the pattern the path is. ``node``
@@ -68,7 +68,7 @@ class Section(NamedTuple):
     inner: bool
 
 
-class Found(NamedTuple):
+class RawSection(NamedTuple):
     """A section before anything is known of it."""
 
     keys: tuple[yaml.ScalarNode, ...]
@@ -84,28 +84,28 @@ def finding(
     return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
 
 
-def found_sections(document: YamlText) -> list[Found]:
+def raw_sections(document: YamlText) -> list[RawSection]:
     """Every section in its order; InputError for a file that rcl would not take or that is none."""
     _check_file(document)
     found = list(_below(document, document.root, ()))
     if not found:
-        raise InputError(f"{document.file}:1: no ROS 2 parameter file: {_what_else(document)}")
+        raise InputError(f"{document.file}:1: no ROS 2 parameter file: {_looks_like(document)}")
     return found
 
 
 def _check_file(document: YamlText) -> None:
     if document.root is not None and PARAMETERS not in document.text:
-        raise InputError(f"{document.file}:1: no ROS 2 parameter file: {_what_else(document)}")
+        raise InputError(f"{document.file}:1: no ROS 2 parameter file: {_looks_like(document)}")
     # Nearly no file has one, and this look is far quicker.
     for line, text in anchors(document) if _MARK.search(document.text) else ():
         raise InputError(f"{document.file}:{line}: {text}: rcl takes no anchors; write it out")
     if isinstance(document.root, yaml.MappingNode):
         return
-    what = "nothing is in it" if document.root is None else _what_else(document)
+    what = "nothing is in it" if document.root is None else _looks_like(document)
     raise InputError(f"{document.file}:1: no ROS 2 parameter file: {what}")
 
 
-def _what_else(document: YamlText) -> str:
+def _looks_like(document: YamlText) -> str:
     """What a file without parameters seems to be."""
     root = document.root
     if isinstance(root, yaml.SequenceNode):
@@ -125,7 +125,7 @@ def _what_else(document: YamlText) -> str:
 
 def _below(
     document: YamlText, node: yaml.Node | None, above: tuple[yaml.ScalarNode, ...]
-) -> Iterator[Found]:
+) -> Iterator[RawSection]:
     _check_keys(document, node)
     for key, value in pairs(node):
         if key.value != PARAMETERS:
@@ -136,7 +136,7 @@ def _below(
             raise InputError(f"{place}: {PARAMETERS} is below no node's name; write /**: above it")
         if isinstance(value, yaml.MappingNode):
             path = "/".join(it.value.strip("/") for it in above)
-            yield Found(above, path, value)
+            yield RawSection(above, path, value)
         elif not (isinstance(value, yaml.ScalarNode) and not value.value):
             place = f"{document.file}:{line_of(value)}"
             raise InputError(f"{place}: {PARAMETERS} holds no mapping; write names and values")
@@ -151,26 +151,30 @@ def _check_keys(document: YamlText, node: yaml.Node | None) -> None:
             raise InputError(f"{place}: a key is a mapping or a list; write a name")
 
 
-def known_sections(found: Iterable[Found], context: Context, known: Known) -> list[Section]:
+def identify_sections(
+    found: Iterable[RawSection], context: Context, known: KnownNodes
+) -> list[ParamSection]:
     """The sections with what is known of their nodes and the names these run under."""
     found = list(found)
     types = controller_types(found)
     return [_section(it, context, known, types) for it in found]
 
 
-def _section(it: Found, context: Context, known: Known, types: Mapping[str, str]) -> Section:
+def _section(
+    it: RawSection, context: Context, known: KnownNodes, types: Mapping[str, str]
+) -> ParamSection:
     name = it.path.rpartition("/")[2]
-    filled = bool(_FILLED.search(it.path))
+    filled = bool(_PLACEHOLDER.search(it.path))
     wild = filled or any(token in _ANY for token in it.path.split("/"))
     place = context.nodes.get(name if wild else it.path, "")
-    shared = bool(place) and GRAPH not in place
+    shared = bool(place) and NAMESPACE_SLOT not in place
     if filled:
         full = it.path
     else:
         full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
     inner = name.endswith(_INNER)
-    node = None if name in _ANY else identified(name, it.body, known, types)
-    return Section(it.keys, it.path, it.body, full, node, wild, shared, inner)
+    node = None if name in _ANY else identify_node(name, it.body, known, types)
+    return ParamSection(it.keys, it.path, it.body, full, node, wild, shared, inner)
 
 
 def _full(path: str, context: Context) -> str:
@@ -180,11 +184,11 @@ def _full(path: str, context: Context) -> str:
 def _full_wild(path: str, name: str, context: Context) -> str:
     """A pattern holds in any namespace; only a node's own name can change in it."""
     there = None if name in _ANY else affix(context.topics.naming, "node", name)
-    return f"/{path[: len(path) - len(name)]}{there.spell(name, GRAPH) if there else name}"
+    return f"/{path[: len(path) - len(name)]}{there.spell(name, NAMESPACE_SLOT) if there else name}"
 
 
-def identified(
-    name: str, body: yaml.Node | None, known: Known, types: Mapping[str, str]
+def identify_node(
+    name: str, body: yaml.Node | None, known: KnownNodes, types: Mapping[str, str]
 ) -> KnownNode | None:
     """The known node of a section: by its controller type, its name, or what it sets."""
     top = {key.value: value for key, value in pairs(body)}
@@ -202,7 +206,7 @@ def identified(
     return next(told, None)
 
 
-def controller_types(found: Iterable[Found]) -> dict[str, str]:
+def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
     """Controller -> type, as the controller managers of the file have it."""
     types = {}
     for it in found:
@@ -217,7 +221,7 @@ def controller_types(found: Iterable[Found]) -> dict[str, str]:
     return types
 
 
-def key_splices(document: YamlText, sections: Sequence[Section]) -> list[Splice | Finding]:
+def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Splice | Finding]:
     """What the keys above the sections become."""
     new: dict[int, tuple[yaml.ScalarNode, str]] = {}
     told: list[Splice | Finding] = []
@@ -240,7 +244,7 @@ def _key_splice(key: yaml.ScalarNode, text: str) -> Splice:
     return splice if key.style or not _PATTERN.fullmatch(text) else splice._replace(new=text)
 
 
-def _texts(section: Section) -> list[str]:
+def _texts(section: ParamSection) -> list[str]:
     """The full name, divided over the keys as it was: the first one takes what came in front."""
     tokens = section.full.strip("/").split("/")
     texts = []
@@ -252,12 +256,12 @@ def _texts(section: Section) -> list[str]:
     return [first, *reversed(texts)]
 
 
-def about_sections(
-    document: YamlText, sections: Sequence[Section], context: Context
+def section_findings(
+    document: YamlText, sections: Sequence[ParamSection], context: Context
 ) -> Iterator[Finding]:
     """What a person should know of the sections: whose they are, and which of them counts."""
     told = set()
-    first: dict[str, Section] = {}
+    first: dict[str, ParamSection] = {}
     for section in sections:
         key = section.keys[-1]
         earlier = first.setdefault(section.path, section)
@@ -277,7 +281,9 @@ def about_sections(
     yield from _shadowed(document, sections)
 
 
-def _about_namespace(document: YamlText, section: Section, context: Context) -> Iterator[Finding]:
+def _about_namespace(
+    document: YamlText, section: ParamSection, context: Context
+) -> Iterator[Finding]:
     """A namespace that is written out: of one robot, or one below each robot's."""
     tokens = section.path.split("/")
     key = section.keys[0]
@@ -295,9 +301,9 @@ def _about_namespace(document: YamlText, section: Section, context: Context) -> 
         yield finding(document, key, "MF105", WARNING, message, hint)
 
 
-def _about_name(document: YamlText, section: Section) -> Iterator[Finding]:
+def _about_name(document: YamlText, section: ParamSection) -> Iterator[Finding]:
     for at, key in enumerate(section.keys):
-        if _FILLED.search(key.value):
+        if _PLACEHOLDER.search(key.value):
             message = f"section {section.path} stays: a launch file has to fill it"
             hint = "write the node's name alone, and the namespace is put there"
             yield finding(document, key, "MF110", WARNING, message, hint)
@@ -314,7 +320,7 @@ def _about_name(document: YamlText, section: Section) -> Iterator[Finding]:
             yield finding(document, key, "MF106", WARNING, f"no node has this name: {bad}", hint)
 
 
-def _shadowed(document: YamlText, sections: Sequence[Section]) -> Iterator[Finding]:
+def _shadowed(document: YamlText, sections: Sequence[ParamSection]) -> Iterator[Finding]:
     """Of what an exact and a later wildcard section set, the later counts (rcl merges in order)."""
     for at, section in enumerate(sections):
         if not section.wild or not any(not it.wild for it in sections[:at]):

@@ -9,19 +9,25 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.params.known import Known, in_release
-from multibot_rewrite.companions.params.sections import Section, finding
-from multibot_rewrite.companions.params.spelled import (
+from multibot_rewrite.companions.names.by_kind import (
     SPELLERS,
     expressible,
-    frames_are_spelled,
+    frames_differ,
     is_component,
     is_plain,
     is_shared_frame,
 )
-from multibot_rewrite.companions.params.topics import FROM_NODE, FROM_PARENT, IN_FULL, Facts, topic
-from multibot_rewrite.companions.params.uses import Use, Uses
-from multibot_rewrite.companions.respell import is_declared
+from multibot_rewrite.companions.names.node_topics import (
+    FROM_NODE,
+    FROM_PARENT,
+    IN_FULL,
+    Facts,
+    spell_topic,
+)
+from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.params.known_nodes import KnownNodes, in_release
+from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
+from multibot_rewrite.companions.params.sections import ParamSection, finding
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, replaced
 from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.rosnames import check_topic_name
@@ -36,17 +42,19 @@ _UNSURE = ("frame", "sensor", "interface")
 _OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
 
 
-class Desk(NamedTuple):
+class ParamsJob(NamedTuple):
     """What every step about one file needs."""
 
     document: YamlText
     context: Context
-    known: Known
+    known: KnownNodes
     facts: Facts
     robots: frozenset[str] = frozenset()
 
 
-def respelled(desk: Desk, section: Section, uses: Uses) -> Iterator[Splice | Finding]:
+def name_splices(
+    desk: ParamsJob, section: ParamSection, uses: SectionNames
+) -> Iterator[Splice | Finding]:
     """What becomes of every name of a section."""
     keys: dict[int, tuple[yaml.ScalarNode, list[str]]] = {}
     for use in uses.names:
@@ -66,7 +74,7 @@ def respelled(desk: Desk, section: Section, uses: Uses) -> Iterator[Splice | Fin
             yield replaced(key, text)
 
 
-def _text(context: Context, use: Use) -> str:
+def _text(context: Context, use: NameSite) -> str:
     # A frame that only its parameter's name makes one may as well be a word such as enu.
     guessed = use.param is None and use.kind in _UNSURE
     if guessed and not _is_certain(context, use):
@@ -75,13 +83,13 @@ def _text(context: Context, use: Use) -> str:
     return speller(context, use.value) if speller else use.value
 
 
-def _is_certain(context: Context, use: Use) -> bool:
+def _is_certain(context: Context, use: NameSite) -> bool:
     if use.kind == "interface":
         return any(is_component(context, it) for it in use.value.split("/")[:-1])
     return is_declared(context.names, use.kind, use.value.lstrip("/")) or use.value == "odom"
 
 
-def _replaced(desk: Desk, use: Use, text: str) -> Iterator[Splice | Finding]:
+def _replaced(desk: ParamsJob, use: NameSite, text: str) -> Iterator[Splice | Finding]:
     if text == use.value:
         return
     if use.scalar.style in ("|", ">"):
@@ -92,8 +100,8 @@ def _replaced(desk: Desk, use: Use, text: str) -> Iterator[Splice | Finding]:
     yield replaced(use.scalar, text)
 
 
-def _topic(desk: Desk, section: Section, use: Use) -> Iterator[Splice | Finding]:
-    landing = topic(
+def _topic(desk: ParamsJob, section: ParamSection, use: NameSite) -> Iterator[Splice | Finding]:
+    landing = spell_topic(
         desk.context, section.path, use.kind, use.value, _reach(desk, section, use), desk.facts
     )
     yield from _replaced(desk, use, landing.text)
@@ -107,7 +115,7 @@ def _topic(desk: Desk, section: Section, use: Use) -> Iterator[Splice | Finding]
         yield finding(desk.document, use.scalar, "MF121", WARNING, message, hint)
 
 
-def _reach(desk: Desk, section: Section, use: Use) -> str:
+def _reach(desk: ParamsJob, section: ParamSection, use: NameSite) -> str:
     words = use.param.absolute if use.param else ""
     if not words:
         return FROM_NODE
@@ -116,13 +124,13 @@ def _reach(desk: Desk, section: Section, use: Use) -> str:
     return FROM_PARENT
 
 
-def _is_binary_filter(use: Use) -> bool:
+def _is_binary_filter(use: NameSite) -> bool:
     """The one filter that does not join its names with the robot's namespace."""
     layer = {key.value: value.value for key, value in pairs(use.layer)}
     return "BinaryFilter" in str(layer.get("plugin", ""))
 
 
-def _off(desk: Desk, use: Use) -> Iterator[Splice | Finding]:
+def _off(desk: ParamsJob, use: NameSite) -> Iterator[Splice | Finding]:
     """What would put a namespace before frames that are spelled here."""
     if use.value.lower() in ("true", "yes", "on", "y"):
         yield Splice(use.scalar.start_mark.index, use.scalar.end_mark.index, "false")
@@ -132,10 +140,10 @@ def _off(desk: Desk, use: Use) -> Iterator[Splice | Finding]:
         yield finding(desk.document, use.scalar, "MF116", WARNING, message, hint)
 
 
-def about_names(desk: Desk, section: Section, uses: Uses) -> Iterator[Finding]:
+def name_findings(desk: ParamsJob, section: ParamSection, uses: SectionNames) -> Iterator[Finding]:
     """What a person should know of a section's names and of its form."""
     for use in uses.names:
-        yield from _about(desk, use)
+        yield from _name_finding(desk, use)
     guessed = [use.key for use in uses.names if use.param is None and _is_taken(desk, use)]
     if guessed and section.node is None and not section.wild:
         words = ", ".join(dict.fromkeys(key.value for key in guessed))
@@ -151,17 +159,17 @@ def about_names(desk: Desk, section: Section, uses: Uses) -> Iterator[Finding]:
         yield finding(desk.document, key, "MF109", WARNING, message, hint)
 
 
-def _about(desk: Desk, use: Use) -> Iterator[Finding]:
+def _name_finding(desk: ParamsJob, use: NameSite) -> Iterator[Finding]:
     """What is to be said of one name."""
     said = None
     if use.kind == "frame" or use.kind in _CLOSED:
         said = _undeclared(desk, use)
     elif use.kind in ("topic", "service"):
-        said = _no_topic(use)
+        said = _invalid_topic(use)
     elif use.kind in _PREFIXES:
         said = _inexpressible(desk, use)
     elif use.kind in ("doubles", "exclusive", "pattern", "text"):
-        said = _told(desk, use)
+        said = _not_rewritten(desk, use)
     if said:
         code, level, message, hint = said
         yield finding(desk.document, use.scalar, code, level, message, hint)
@@ -171,7 +179,7 @@ def _about(desk: Desk, use: Use) -> Iterator[Finding]:
         yield finding(desk.document, use.scalar, "MF110", WARNING, message, hint)
 
 
-def _is_taken(desk: Desk, use: Use) -> bool:
+def _is_taken(desk: ParamsJob, use: NameSite) -> bool:
     """Does the guess make a name of it?"""
     return use.kind in ("topic", "service") or _text(desk.context, use) != use.value
 
@@ -179,7 +187,7 @@ def _is_taken(desk: Desk, use: Use) -> bool:
 _Said = tuple[str, str, str, str]
 
 
-def _undeclared(desk: Desk, use: Use) -> _Said | None:
+def _undeclared(desk: ParamsJob, use: NameSite) -> _Said | None:
     """A name that the description does not have."""
     names, value = desk.context.names, use.value.lstrip("/")
     known = names.declared.get("link" if use.kind == "frame" else use.kind, {})
@@ -207,7 +215,7 @@ def _near(value: str, known: Iterable[str]) -> str:
     return f"did you mean {near[0]!r}?" if near else ""
 
 
-def _no_topic(use: Use) -> _Said | None:
+def _invalid_topic(use: NameSite) -> _Said | None:
     fault = check_topic_name(use.value) if is_plain(use.value) else None
     if not fault:
         return None
@@ -215,18 +223,18 @@ def _no_topic(use: Use) -> _Said | None:
     return "MF113", WARNING, message, "it stays as it is: correct it"
 
 
-def _inexpressible(desk: Desk, use: Use) -> _Said | None:
+def _inexpressible(desk: ParamsJob, use: NameSite) -> _Said | None:
     if expressible(desk.context, use.kind):
         return None
     message = f"{use.key.value} can only put something before names, and the naming is a postfix"
     return "MF117", WARNING, message, "use affix: prefix"
 
 
-def _told(desk: Desk, use: Use) -> _Said | None:
+def _not_rewritten(desk: ParamsJob, use: NameSite) -> _Said | None:
     """What nothing here rewrites."""
     key, value = use.key.value, use.value
     if use.kind == "doubles":
-        level = ERROR if frames_are_spelled(desk.context) and is_plain(value) else WARNING
+        level = ERROR if frames_differ(desk.context) and is_plain(value) else WARNING
         return "MF115", level, f"{key} {value!r} is put before frames once more", 'write ""'
     if use.kind == "exclusive":
         idle = not value or value.lower() in ("false", "no", "off")
@@ -243,7 +251,9 @@ def _mentions(context: Context, value: str) -> bool:
     return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
 
 
-def already(desk: Desk, sections: Iterable[Section], pages: Iterable[Uses]) -> Iterator[Finding]:
+def robot_in_name(
+    desk: ParamsJob, sections: Iterable[ParamSection], pages: Iterable[SectionNames]
+) -> Iterator[Finding]:
     """A name that has a robot's in it: the file was written for that robot."""
     names = [(key, key.value) for section in sections for key in section.keys]
     names += [(it.scalar, it.value) for uses in pages for it in uses.names if it.kind != "keep"]
@@ -256,7 +266,7 @@ def already(desk: Desk, sections: Iterable[Section], pages: Iterable[Uses]) -> I
             return
 
 
-def unclaimed(desk: Desk, pages: Sequence[Uses]) -> Iterator[Finding]:
+def unclaimed_names(desk: ParamsJob, pages: Sequence[SectionNames]) -> Iterator[Finding]:
     """Names of the robot where nothing tells that they are names."""
     claimed = {it.value: it.kind for uses in pages for it in uses.names if _is_robots(desk, it)}
     declared = {
@@ -274,7 +284,7 @@ def unclaimed(desk: Desk, pages: Sequence[Uses]) -> Iterator[Finding]:
             yield finding(desk.document, scalar, "MF123", WARNING, message, hint)
 
 
-def _is_robots(desk: Desk, use: Use) -> bool:
+def _is_robots(desk: ParamsJob, use: NameSite) -> bool:
     """A frame or an absolute topic that becomes the robot's; relative topics are common words."""
     if use.kind == "frame":
         return use.at < 0 and _text(desk.context, use) != use.value

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from colorsys import hls_to_rgb
 
-from multibot_rewrite.companions.rviz.read import rviz_data
+from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.model import InputError
 
 Colour = tuple[int, int, int]

@@ -7,29 +7,35 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.rviz.blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
-from multibot_rewrite.companions.rviz.groups import (
-    grouped,
+from multibot_rewrite.companions.rviz.display_groups import (
     inserted,
     leaves,
-    make_job,
+    make_rviz_job,
     panels,
     remark,
+    robot_groups,
     tool_edits,
     tools,
     windows,
 )
-from multibot_rewrite.companions.rviz.names import RvizRobot, edits, frame_of
-from multibot_rewrite.companions.rviz.notes import notes
-from multibot_rewrite.companions.rviz.read import ABSOLUTE, PROCESS, Config, read_config, value
+from multibot_rewrite.companions.rviz.findings import config_findings
+from multibot_rewrite.companions.rviz.read_config import (
+    ABSOLUTE,
+    PROCESS,
+    RvizConfig,
+    read_config,
+    value,
+)
+from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_splices
+from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
 from multibot_rewrite.model import Finding, ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.table import target_of
 
-__all__ = ["RvizRobot", "RvizText", "rviz", "start_command", "world_frame"]
+__all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]
 
 
 # Robots whose result is parsed again.
@@ -47,7 +53,7 @@ class RvizText(NamedTuple):
     relays: tuple[tuple[str, str], ...] = ()
 
 
-def rviz(
+def rewrite_rviz(
     document: YamlText, robots: Sequence[RvizRobot], *, world: str = "", relayed: bool = False
 ) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
     """The configs of a fleet, and what a person should know about them.
@@ -74,7 +80,7 @@ def rviz(
     # All others differ from these in words alone.
     for text in made[:PROVED] if len(robots) <= PROVED else make(PROVED):
         _prove(text.text, document.file)
-    return made, tuple(notes(config, robots, world, together))
+    return made, tuple(config_findings(config, robots, world, together))
 
 
 def world_frame(naming: Naming) -> str:
@@ -117,11 +123,11 @@ def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
 
 
 def _for_all(
-    config: Config, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
+    config: RvizConfig, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
 ) -> RvizText:
-    job = make_job(config, robots, colours)
+    job = make_rviz_job(config, robots, colours)
     splices = [
-        *grouped(job),
+        *robot_groups(job),
         *tools(job),
         *panels(job),
         *windows(job),
@@ -132,7 +138,7 @@ def _for_all(
     return RvizText("", spliced(config.document, splices), relays=tuple(relays))
 
 
-def _for_one(config: Config, robot: RvizRobot, colour: Colour | None) -> RvizText:
+def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
     """The config of a window that sees one robot; it runs in the robot's namespace if there is one."""
     document = config.document
     namespaced = robot.names.naming.layout.namespaced
@@ -142,29 +148,29 @@ def _for_one(config: Config, robot: RvizRobot, colour: Colour | None) -> RvizTex
         if one.flag in gone:
             splices.append(Splice(one.block.start, one.block.end, remark(document, one)))
         else:
-            splices += edits(one, robot, colour if robot.colour else None)
+            splices += item_splices(one, robot, colour if robot.colour else None)
     for tool in config.tools:
         if tool.flag in gone:
             splices.append(Splice(tool.block.start, tool.block.end, remark(document, tool)))
         else:
             splices += tool_edits(document, tool, robot)
     for node in (fixed_frame(config), *_targets(config)):
-        splices += _respelled(node, robot)
+        splices += _frame_splice(node, robot)
     namespace = f"/{robot.topics.robot}" if namespaced else ""
     return RvizText(robot.name, spliced(document, splices), namespace, _tf_topics(robot))
 
 
-def fixed_frame(config: Config) -> yaml.Node | None:
+def fixed_frame(config: RvizConfig) -> yaml.Node | None:
     """The frame that everything is shown in."""
     return value(value(config.manager, "Global Options"), "Fixed Frame")
 
 
-def _respelled(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
+def _frame_splice(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
     new = frame_of(node, robot)
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
 
 
-def _fixed_frame(config: Config, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
+def _fixed_frame(config: RvizConfig, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
     """One frame serves all robots only if none of them has it for itself."""
     node = fixed_frame(config)
     if not isinstance(node, yaml.ScalarNode) or not world:
@@ -173,12 +179,12 @@ def _fixed_frame(config: Config, robots: Sequence[RvizRobot], world: str) -> lis
     return [replaced(node, world)] if own else []
 
 
-def _views_of(config: Config) -> tuple[yaml.Node | None, yaml.Node | None]:
+def _views_of(config: RvizConfig) -> tuple[yaml.Node | None, yaml.Node | None]:
     views = value(config.manager, "Views")
     return value(views, "Current"), value(views, "Saved")
 
 
-def _targets(config: Config) -> Iterator[yaml.Node]:
+def _targets(config: RvizConfig) -> Iterator[yaml.Node]:
     current, saved = _views_of(config)
     listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
     for view in (current, *listed):
@@ -187,13 +193,13 @@ def _targets(config: Config) -> Iterator[yaml.Node]:
             yield target
 
 
-def _views(config: Config, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
+def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
     """The present view follows the first robot; each robot has a saved one that follows it."""
     document = config.document
     current, saved = _views_of(config)
     copies = ""
     if _follows(current, robots):
-        yield from _respelled(value(current, "Target Frame"), robots[0])
+        yield from _frame_splice(value(current, "Target Frame"), robots[0])
         listed = isinstance(saved, yaml.SequenceNode)
         column = saved.start_mark.column if saved and listed else _column(config) + 2
         copies = "".join(_saved(document, current, robot, column) for robot in robots)
@@ -214,7 +220,7 @@ def _saved_views(
             yield Splice(start, end, "".join(made))
 
 
-def _column(config: Config) -> int:
+def _column(config: RvizConfig) -> int:
     """Where the keys of ``Views`` start."""
     views = value(config.manager, "Views")
     return int(views.start_mark.column) if views is not None else 0
@@ -236,7 +242,7 @@ def _saved(document: YamlText, view: yaml.Node | None, robot: RvizRobot, column:
 
 
 def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
-    splices = _respelled(value(view, "Target Frame"), robot)
+    splices = _frame_splice(value(view, "Target Frame"), robot)
     name = value(view, "Name")
     if isinstance(name, yaml.ScalarNode):
         splices.append(replaced(name, f"{robot.name} {name.value}"))

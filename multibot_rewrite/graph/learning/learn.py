@@ -23,8 +23,8 @@ from multibot_rewrite.graph.learning.folding import (
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.known import Library
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import (
     ACTION,
     PUBLISHES,
@@ -77,7 +77,7 @@ class _Place(NamedTuple):
 
 
 def learn(
-    graph: Snapshot, names: Sequence[str], namespace: str, library: Library
+    graph: Snapshot, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[Learned, ...]:
     """Facts of the nodes ``names``, seen below ``namespace``, the robot's.
 
@@ -99,7 +99,7 @@ def _learned(
     base: str,
     ends: Mapping[str, Sequence[GraphEndpoint]],
     helpers: Helpers,
-    library: Library,
+    library: NodeLibrary,
 ) -> Learned:
     node = name.removeprefix(f"{base}/")
     known = library.nodes.get(node)
@@ -120,7 +120,7 @@ def _order(end: Endpoint) -> tuple[int, str]:
     return ROLES.index(end.role), end.name
 
 
-def _usual(library: Library) -> frozenset[_Slot]:
+def _usual(library: NodeLibrary) -> frozenset[_Slot]:
     """What every node has, by role and name; that it listens to the clock is worth telling."""
     every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
     return frozenset({*every, SINCE_JAZZY})

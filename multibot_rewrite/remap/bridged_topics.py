@@ -16,7 +16,7 @@ DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
 TF_TYPE = "tf2_msgs/msg/TFMessage"
 
 
-class Bridged(NamedTuple):
+class BridgedTopic(NamedTuple):
     """One topic of the bridge; ``robot`` is empty where one carries it for all."""
 
     robot: str
@@ -27,7 +27,7 @@ class Bridged(NamedTuple):
     direction: str
 
 
-class Uncarried(NamedTuple):
+class UnbridgedTopic(NamedTuple):
     """A topic whose gz name hangs on the world or the spawner, so that no bridge can be written."""
 
     robot: str
@@ -36,7 +36,7 @@ class Uncarried(NamedTuple):
 
 
 @lru_cache(maxsize=1)
-def known_topics() -> Mapping[str, Any]:
+def bridge_data() -> Mapping[str, Any]:
     """The data of ``bridge.yaml``."""
     import yaml
 
@@ -45,24 +45,24 @@ def known_topics() -> Mapping[str, Any]:
     return data
 
 
-def bridge(
+def bridged_topics(
     inventories: Mapping[str, Inventory], naming: Naming
-) -> tuple[list[Bridged], list[Uncarried]]:
+) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
     """The bridge of a fleet, and what it cannot carry; ``inventories`` are of rewritten text."""
     carried = [
-        Bridged("", name, name, ros_type, gz_type, DIRECTIONS[way])
-        for name, ros_type, gz_type, way in known_topics()["shared"]
+        BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
+        for name, ros_type, gz_type, way in bridge_data()["shared"]
     ]
-    left: list[Uncarried] = []
+    left: list[UnbridgedTopic] = []
     for robot, inventory in inventories.items():
         for item in _robot_topics(inventory, robot, naming):
-            (carried if isinstance(item, Bridged) else left).append(item)  # type: ignore[arg-type]
+            (carried if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
     return list(dict.fromkeys(carried)), left
 
 
 def _robot_topics(
     inventory: Inventory, robot: str, naming: Naming
-) -> Iterator[Bridged | Uncarried]:
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
     for sensor in inventory.document.root.iter("sensor"):
         yield from _sensor(sensor, robot, naming)
     # Bare frames leave the model's name to the spawner: the robot's own, or two models collide.
@@ -70,51 +70,53 @@ def _robot_topics(
     for host in inventory.hosts:
         name = host.node.rewriter.names[0] if host.node.rewriter else ""
         yield from _plugin(
-            host.element, known_topics()["plugins"].get(name, ()), robot, model, naming
+            host.element, bridge_data()["plugins"].get(name, ()), robot, model, naming
         )
 
 
-def _sensor(sensor: etree._Element, robot: str, naming: Naming) -> Iterator[Bridged | Uncarried]:
+def _sensor(
+    sensor: etree._Element, robot: str, naming: Naming
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
     kind = sensor.get("type", "")
-    topics = known_topics()["sensors"].get(kind, ())
+    topics = bridge_data()["sensors"].get(kind, ())
     if not topics or sensor.find("plugin[@filename]") is not None:
         return  # a Gazebo Classic sensor, whose plugin talks ROS itself, or none of ours
     base = sensor.findtext("topic", "").strip()
     if not base:
-        yield Uncarried(robot, _line(sensor), f"sensor {sensor.get('name')}")
+        yield UnbridgedTopic(robot, _line(sensor), f"sensor {sensor.get('name')}")
         return
     for ending, ros_type, gz_type, way in topics:
         name = f"{base}{ending}"
-        yield Bridged(robot, _ros_name(name), name, ros_type, gz_type, DIRECTIONS[way])
+        yield BridgedTopic(robot, _ros_name(name), name, ros_type, gz_type, DIRECTIONS[way])
     yield from _camera_info(sensor, robot, base)
 
 
-def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[Bridged]:
+def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[BridgedTopic]:
     if "camera" in sensor.get("type", ""):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
         name = sensor.findtext("camera/camera_info_topic", "").strip() or beside
         if sensor.get("type") == "rgbd_camera":  # whose code asks for nothing else
             name = f"{base}/camera_info"
         types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
-        yield Bridged(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
+        yield BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
 
 
 def _plugin(
     plugin: etree._Element, topics: Iterable[Sequence[str]], robot: str, model: str, naming: Naming
-) -> Iterator[Bridged | Uncarried]:
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
     for element, default, ros_type, gz_type, way in topics:
         given = plugin.findtext(element, "").strip()
         name = given or default.format(model=model)
         if not name:
             what = f"<{element}> of {plugin.get('filename')}"
-            yield Uncarried(robot, _line(plugin), what)
+            yield UnbridgedTopic(robot, _line(plugin), what)
             continue
         ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
         if not given and ros_type != TF_TYPE:
             ros = _robot_name(default.rpartition("/")[2], robot, naming)
         # The one /tf of all is carried once, or each transform comes as often as there are robots.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
-        yield Bridged(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
+        yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
 
 
 def _line(element: etree._Element) -> int:
@@ -139,7 +141,7 @@ def _robot_name(name: str, robot: str, naming: Naming) -> str:
     return there.spell(f"/{name}", robot) if there else f"/{name}"
 
 
-def as_yaml(carried: Iterable[Bridged]) -> str:
+def as_yaml(carried: Iterable[BridgedTopic]) -> str:
     """The configuration file of ``ros_gz_bridge parameter_bridge``."""
     rows = []
     for item in carried:

@@ -24,7 +24,7 @@ KINDS = {
 }
 
 
-class Names(NamedTuple):
+class RenameMap(NamedTuple):
     """What the description declares (not rewritten), how it is spelled, and for whom."""
 
     declared: Declared
@@ -32,7 +32,7 @@ class Names(NamedTuple):
     robot: str
 
 
-def respell(names: Names, word: str, value: str, namespaced: bool = True) -> str:
+def spell(names: RenameMap, word: str, value: str, namespaced: bool = True) -> str:
     """``value``, a name of the kind ``word``, as the robot spells it; what is no name stays.
 
     ``namespaced`` tells that a relative topic ends below the robot's namespace.
@@ -44,6 +44,6 @@ def respell(names: Names, word: str, value: str, namespaced: bool = True) -> str
     return there.spell(value, names.robot) if there else value
 
 
-def is_declared(names: Names, word: str, value: str) -> bool:
+def is_declared(names: RenameMap, word: str, value: str) -> bool:
     """Does the description declare this link, joint, sensor, gpio or hardware?"""
     return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.rviz.blocks import Block, blocks, is_block
+from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
 from multibot_rewrite.companions.yaml_text import YamlText, anchors, line_of, pairs
 from multibot_rewrite.model import InputError
 
@@ -21,7 +21,7 @@ ROS1 = "rviz/"
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-class Place(NamedTuple):
+class ValuePlace(NamedTuple):
     """A scalar (a value or a key) that says something of the kind ``word``."""
 
     node: yaml.ScalarNode
@@ -29,7 +29,7 @@ class Place(NamedTuple):
     path: str
 
 
-class Shown(NamedTuple):
+class RvizItem(NamedTuple):
     """A display, tool or panel: its lines, class and name, the places in it, and what is below it.
 
     ``flag`` is what the data says of its class; ``known`` tells that the data has it.
@@ -41,18 +41,18 @@ class Shown(NamedTuple):
     name: str
     flag: str
     known: bool
-    places: tuple[Place, ...]
-    children: tuple[Shown, ...] = ()
+    places: tuple[ValuePlace, ...]
+    children: tuple[RvizItem, ...] = ()
 
 
-class Config(NamedTuple):
+class RvizConfig(NamedTuple):
     """An RViz 2 config; ``manager`` is its map ``Visualization Manager``."""
 
     document: YamlText
     manager: yaml.Node
-    displays: tuple[Shown, ...]
-    tools: tuple[Shown, ...]
-    panels: tuple[Shown, ...]
+    displays: tuple[RvizItem, ...]
+    tools: tuple[RvizItem, ...]
+    panels: tuple[RvizItem, ...]
 
 
 @lru_cache(maxsize=1)
@@ -63,7 +63,7 @@ def rviz_data() -> Mapping[str, Any]:
     return data
 
 
-def read_config(document: YamlText) -> Config:
+def read_config(document: YamlText) -> RvizConfig:
     """The config in a YAML text; InputError where it is none of RViz 2, with place and remedy."""
     manager = value(document.root, MANAGER)
     if not isinstance(manager, yaml.MappingNode):
@@ -72,7 +72,7 @@ def read_config(document: YamlText) -> Config:
         )
     _refuse(document)
     displays = value(manager, "Displays")
-    return Config(
+    return RvizConfig(
         document,
         manager,
         tuple(_shown(document, displays, "displays")),
@@ -101,7 +101,7 @@ def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
         yield from _maps(item[1] if isinstance(item, tuple) else item)
 
 
-def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Shown]:
+def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:
     if not isinstance(node, yaml.SequenceNode) or not node.value:
         return
     if not is_block(node):
@@ -115,13 +115,13 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Sh
         places = () if what == "panels" or cls == GROUP else tuple(_places(item, names))
         known = what != "displays" or cls == GROUP or cls in data["displays"]
         flag = data["flags"].get(cls, "")
-        yield Shown(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))
+        yield RvizItem(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))
 
 
-def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[Place]:
+def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[ValuePlace]:
     for path, word in names.items():
         for node in _found(item, path.split(".")):
-            yield Place(node, word, path)
+            yield ValuePlace(node, word, path)
 
 
 def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
@@ -151,7 +151,7 @@ def text_of(node: yaml.Node | None, key: str) -> str:
     return str(there.value) if isinstance(there, yaml.ScalarNode) else ""
 
 
-def every(shown: Sequence[Shown]) -> Iterator[Shown]:
+def every(shown: Sequence[RvizItem]) -> Iterator[RvizItem]:
     """Displays and those in groups."""
     for one in shown:
         yield one

@@ -7,20 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.marked import (
-    Item,
-    entries,
-    entries_of,
-    flag_of,
-    read_marked,
-    table,
-    table_of,
-    unknown,
-    word,
-    word_of,
-    words_of,
-    wrong,
-)
 from multibot_rewrite.remap.records import (
     ACTION,
     PUBLISHES,
@@ -29,8 +15,22 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     Endpoint,
-    Frame,
+    FrameParameter,
     NodeFacts,
+)
+from multibot_rewrite.remap.yaml_with_lines import (
+    YamlItem,
+    entries,
+    entries_of,
+    flag_of,
+    read_yaml_with_lines,
+    table,
+    table_of,
+    unknown,
+    word,
+    word_of,
+    words_of,
+    wrong,
 )
 from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
 
@@ -54,7 +54,7 @@ class Stack(NamedTuple):
     nodes: tuple[NodeFacts, ...]
 
 
-class Library(NamedTuple):
+class NodeLibrary(NamedTuple):
     """What files of nodes and stacks say: parts (endpoints many nodes have), nodes, stacks."""
 
     parts: Mapping[str, tuple[Endpoint, ...]]
@@ -62,7 +62,7 @@ class Library(NamedTuple):
     stacks: Mapping[str, Stack]
 
 
-def stack_of(library: Library, name: str) -> tuple[NodeFacts, ...]:
+def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     """The nodes of a stack, those of the stacks it includes first, each once.
 
     The name of a node stands for a stack of it alone. Raises UsageError for other names.
@@ -81,7 +81,7 @@ def stack_of(library: Library, name: str) -> tuple[NodeFacts, ...]:
     return tuple(found.values())
 
 
-def _gathered(library: Library, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
+def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
         raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")
     for other in library.stacks[name].include:
@@ -89,24 +89,24 @@ def _gathered(library: Library, name: str, above: tuple[str, ...]) -> Iterator[N
     yield from library.stacks[name].nodes
 
 
-def extended(library: Library, text: str, file: str) -> Library:
+def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
     """``library`` and what a YAML text adds to it or says anew."""
-    top = table(read_marked(text, file), "the file", Library._fields)
+    top = table(read_yaml_with_lines(text, file), "the file", NodeLibrary._fields)
     new = {key: table(item, key) for key, item in top.items()}
     parts = dict(library.parts)
     parts |= {name: _part(item) for name, item in new.get("parts", {}).items()}
     nodes = dict(library.nodes)
     nodes |= {name: _node(name, item, parts) for name, item in new.get("nodes", {}).items()}
     known = {*library.stacks, *new.get("stacks", {})}
-    grown = Library(parts, nodes, library.stacks)
+    grown = NodeLibrary(parts, nodes, library.stacks)
     stacks = {name: _stack(item, grown, known) for name, item in new.get("stacks", {}).items()}
-    whole = Library(parts, nodes, {**library.stacks, **stacks})
+    whole = NodeLibrary(parts, nodes, {**library.stacks, **stacks})
     for name, item in new.get("stacks", {}).items():
         _check_stack(whole, name, item)
     return whole
 
 
-def _check_stack(library: Library, name: str, item: Item) -> None:
+def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
     """Includes and names can only be judged once all stacks are there."""
     try:
         stack_of(library, name)
@@ -114,15 +114,15 @@ def _check_stack(library: Library, name: str, item: Item) -> None:
         wrong(item, str(error))
 
 
-def _part(item: Item) -> tuple[Endpoint, ...]:
+def _part(item: YamlItem) -> tuple[Endpoint, ...]:
     return tuple(_endpoints(table(item, "a part", ROLES)))
 
 
-def _node(name: str, item: Item, parts: Mapping[str, tuple[Endpoint, ...]]) -> NodeFacts:
+def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) -> NodeFacts:
     keys = table(item, f"node {name!r}", NODE_KEYS)
     _check_node_name(item, name)
     frames = tuple(
-        Frame(parameter, word(default, f"frame {parameter}"))
+        FrameParameter(parameter, word(default, f"frame {parameter}"))
         for parameter, default in table_of(keys, "frames").items()
     )
     return NodeFacts(
@@ -138,7 +138,9 @@ def _node(name: str, item: Item, parts: Mapping[str, tuple[Endpoint, ...]]) -> N
     )
 
 
-def _sends(keys: Mapping[str, Item], frames: Iterable[Frame]) -> Iterator[tuple[str, str]]:
+def _sends(
+    keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
+) -> Iterator[tuple[str, str]]:
     """The transforms a node sends, as the parameters that hold their frames."""
     known = {frame.parameter: frame.parameter for frame in frames}
     for parent, item in table_of(keys, "sends").items():
@@ -148,26 +150,26 @@ def _sends(keys: Mapping[str, Item], frames: Iterable[Frame]) -> Iterator[tuple[
 
 
 def _taken_over(
-    keys: Mapping[str, Item], parts: Mapping[str, tuple[Endpoint, ...]]
+    keys: Mapping[str, YamlItem], parts: Mapping[str, tuple[Endpoint, ...]]
 ) -> Iterator[Endpoint]:
     for entry in entries_of(keys, "with"):
         yield from _known(entry, "part", parts)
 
 
-def _known(item: Item, what: str, known: Mapping[str, Known]) -> Known:
+def _known(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
     name = word(item, what)
     if name not in known:
         wrong(item, unknown(what, name, known))
     return known[name]
 
 
-def _endpoints(keys: Mapping[str, Item]) -> Iterator[Endpoint]:
+def _endpoints(keys: Mapping[str, YamlItem]) -> Iterator[Endpoint]:
     for role in ROLES:
         for name, item in table_of(keys, role).items():
             yield _endpoint(role, name, item)
 
 
-def _endpoint(role: str, name: str, item: Item) -> Endpoint:
+def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     if isinstance(item.value, str):
         return _checked(item, Endpoint(_kind(role, item.value), role, name, item.value))
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
@@ -186,7 +188,7 @@ def _kind(role: str, type_: str) -> str:
     return ACTION if "/action/" in type_ else SERVICE
 
 
-def _checked(item: Item, endpoint: Endpoint) -> Endpoint:
+def _checked(item: YamlItem, endpoint: Endpoint) -> Endpoint:
     """The endpoint, if its name and types are such; a name not known yet is out of reach."""
     for name in filter(None, (endpoint.name, endpoint.remapped)):
         text = _MADE.sub("x", name)
@@ -201,7 +203,7 @@ def _checked(item: Item, endpoint: Endpoint) -> Endpoint:
     return endpoint._replace(fixed=f"the name is made at run time from {source}")
 
 
-def _check_type(item: Item, endpoint: Endpoint, type_: str) -> None:
+def _check_type(item: YamlItem, endpoint: Endpoint, type_: str) -> None:
     found = _TYPE.fullmatch(type_)
     if not found:
         wrong(item, f"{type_!r} is no type; write it like std_msgs/msg/String")
@@ -212,14 +214,14 @@ def _check_type(item: Item, endpoint: Endpoint, type_: str) -> None:
         wrong(item, f"{endpoint.role} {endpoint.name!r}: {type_} is the type of {_GIVES[found[1]]}")
 
 
-def _check_node_name(item: Item, name: str) -> None:
+def _check_node_name(item: YamlItem, name: str) -> None:
     for token in name.split("/"):
         fault = check_node_name(token)
         if fault:
             wrong(item, f"node name {name!r}: {fault.reason}")
 
 
-def _stack(item: Item, library: Library, stacks: Iterable[str]) -> Stack:
+def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack:
     keys = table(item, "a stack", STACK_KEYS)
     known = {name: name for name in stacks}
     return Stack(
@@ -229,7 +231,7 @@ def _stack(item: Item, library: Library, stacks: Iterable[str]) -> Stack:
     )
 
 
-def _placed(item: Item, library: Library) -> NodeFacts:
+def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
     """A node as a stack has it."""
     if isinstance(item.value, str):
         return _known(item, "node", library.nodes)
@@ -248,7 +250,7 @@ def _placed(item: Item, library: Library) -> NodeFacts:
     )
 
 
-def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, Item]) -> tuple[Endpoint, ...]:
+def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
     """The endpoints under the names that parameters give them."""
     for given, item in table_of(keys, "names").items():
         if not any(_has(endpoint, given) for endpoint in endpoints):
@@ -261,7 +263,7 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, Item]) -> tuple[E
 
 
 def _renamed(
-    item: Item, endpoint: Endpoint, given: str, values: Iterable[str]
+    item: YamlItem, endpoint: Endpoint, given: str, values: Iterable[str]
 ) -> Iterator[Endpoint]:
     """One endpoint for each value where it has the name, itself where it has not."""
     if not _has(endpoint, given):
@@ -277,7 +279,9 @@ def _has(endpoint: Endpoint, given: str) -> bool:
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
 
 
-def _remapped(endpoints: tuple[Endpoint, ...], keys: Mapping[str, Item]) -> tuple[Endpoint, ...]:
+def _remapped(
+    endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]
+) -> tuple[Endpoint, ...]:
     """The endpoints with what the usual launch file's own rules make of them."""
     for given, item in table_of(keys, "remaps").items():
         if all(endpoint.name != given for endpoint in endpoints):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.companions.respell import Names
+from multibot_rewrite.companions.names.rename_map import RenameMap
 from multibot_rewrite.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.remap.records import ACTION, TOPIC, NodeFacts, Table
 from multibot_rewrite.remap.table import target_of
@@ -20,10 +20,10 @@ def is_topic(value: str) -> bool:
     return "//" not in value and check_topic_name(value) is None
 
 
-def robot_topic(names: Names, value: str, known: Mapping[str, str] = NOTHING) -> str:
+def robot_topic(names: RenameMap, value: str, known: Mapping[str, str] = NOTHING) -> str:
     """The robot's full name of a topic; ``value`` itself where it is shared or is none.
 
-    ``known`` is ``known_topics`` of the robot, for names that its nodes do not follow the rule in.
+    ``known`` is ``fleet_topics`` of the robot, for names that its nodes do not follow the rule in.
     """
     if not is_topic(value):
         return value
@@ -36,7 +36,7 @@ def robot_topic(names: Names, value: str, known: Mapping[str, str] = NOTHING) ->
     return f"/{names.robot}/{target}" if names.naming.topics == NAMESPACE else target
 
 
-def known_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
+def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
     """What one robot alone calls its nodes' topics -> what they are in a fleet's table."""
     ours = {node.name for node in facts if not node.shared}
     stack = {

@@ -6,9 +6,20 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import yaml
 
-from multibot_rewrite.companions.respell import is_declared
-from multibot_rewrite.companions.rviz.groups import for_one_process, leaves
-from multibot_rewrite.companions.rviz.names import (
+from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.rviz.display_groups import for_one_process, leaves
+from multibot_rewrite.companions.rviz.read_config import (
+    ABSOLUTE,
+    DOCK,
+    PROCESS,
+    RvizConfig,
+    RvizItem,
+    ValuePlace,
+    rviz_data,
+    text_of,
+    value,
+)
+from multibot_rewrite.companions.rviz.values import (
     FRAME,
     GRAPH_NAMESPACE,
     JOINT,
@@ -19,17 +30,6 @@ from multibot_rewrite.companions.rviz.names import (
     is_name,
     without_placeholder,
 )
-from multibot_rewrite.companions.rviz.read import (
-    ABSOLUTE,
-    DOCK,
-    PROCESS,
-    Config,
-    Place,
-    Shown,
-    rviz_data,
-    text_of,
-    value,
-)
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
@@ -39,7 +39,9 @@ Robots = Sequence[RvizRobot]
 _TITLES = ("Name", "Class")
 
 
-def notes(config: Config, robots: Robots, world: str, together: bool) -> Iterator[Finding]:
+def config_findings(
+    config: RvizConfig, robots: Robots, world: str, together: bool
+) -> Iterator[Finding]:
     """The findings, each once, in the order of the file."""
     found = [
         *_windows(config, robots, together),
@@ -57,12 +59,12 @@ def notes(config: Config, robots: Robots, world: str, together: bool) -> Iterato
     yield from sorted(dict.fromkeys(found), key=lambda it: (it.line, it.column, it.code))
 
 
-def _finding(config: Config, node: yaml.Node, code: str, message: str, hint: str) -> Finding:
+def _finding(config: RvizConfig, node: yaml.Node, code: str, message: str, hint: str) -> Finding:
     mark, file = node.start_mark, config.document.file
     return Finding(code, WARNING, message, hint, file, mark.line + 1, mark.column + 1)
 
 
-def _windows(config: Config, robots: Robots, together: bool) -> Iterator[Finding]:
+def _windows(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
     layout = robots[0].names.naming.layout
     if together and not layout.tf_per_robot:
         return
@@ -78,7 +80,9 @@ def _windows(config: Config, robots: Robots, together: bool) -> Iterator[Finding
     yield _finding(config, config.manager, "MF203", message, hint)
 
 
-def _fixed_frame(config: Config, robots: Robots, world: str, together: bool) -> Iterator[Finding]:
+def _fixed_frame(
+    config: RvizConfig, robots: Robots, world: str, together: bool
+) -> Iterator[Finding]:
     node = value(value(config.manager, "Global Options"), "Fixed Frame")
     if not isinstance(node, yaml.ScalarNode):
         return
@@ -94,7 +98,7 @@ def _fixed_frame(config: Config, robots: Robots, world: str, together: bool) -> 
         yield _finding(config, node, "MF201", message, hint)
 
 
-def _left_out(config: Config, robots: Robots, together: bool) -> Iterator[Finding]:
+def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
     whole = not together and robots[0].names.naming.layout.namespaced
     for one in (*leaves(config.displays), *config.tools, *config.panels):
         if for_one_process(one) and not (whole and one.flag == PROCESS):
@@ -108,7 +112,7 @@ def _left_out(config: Config, robots: Robots, together: bool) -> Iterator[Findin
             yield _finding(config, one.node, "MF202", message, hint)
 
 
-def _view(config: Config, robots: Robots, together: bool) -> Iterator[Finding]:
+def _view(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
     node = value(value(value(config.manager, "Views"), "Current"), "Target Frame")
     if not together or not isinstance(node, yaml.ScalarNode) or len(robots) < 2:
         return
@@ -117,12 +121,14 @@ def _view(config: Config, robots: Robots, together: bool) -> Iterator[Finding]:
         yield _finding(config, node, "MF213", message, "each robot has a saved view of its own")
 
 
-def _unknown(config: Config, one: Shown) -> Finding:
+def _unknown(config: RvizConfig, one: RvizItem) -> Finding:
     message = f"display class {one.cls!r} is not known: of its values only Topic is renamed"
     return _finding(config, one.node, "MF204", message, "look at its other topics and frames")
 
 
-def _display(config: Config, one: Shown, robots: Robots, together: bool) -> Iterator[Finding]:
+def _display(
+    config: RvizConfig, one: RvizItem, robots: Robots, together: bool
+) -> Iterator[Finding]:
     naming, frames = robots[0].names.naming, robots[0].names.naming.layout.frames
     for place in one.places:
         given = str(place.node.value)
@@ -144,7 +150,9 @@ def _display(config: Config, one: Shown, robots: Robots, together: bool) -> Iter
     yield from _properties(config, one, robots, together)
 
 
-def _properties(config: Config, one: Shown, robots: Robots, together: bool) -> Iterator[Finding]:
+def _properties(
+    config: RvizConfig, one: RvizItem, robots: Robots, together: bool
+) -> Iterator[Finding]:
     for key, there in pairs(one.node):
         if key.value in rviz_data()["legacy"]:
             message = (
@@ -156,7 +164,7 @@ def _properties(config: Config, one: Shown, robots: Robots, together: bool) -> I
             yield _finding(config, key, "MF212", message, "choose again in its Visibility")
 
 
-def _volatile(config: Config) -> Iterator[Finding]:
+def _volatile(config: RvizConfig) -> Iterator[Finding]:
     """Said once: nearly every saved config has it."""
     found = [
         one
@@ -170,7 +178,7 @@ def _volatile(config: Config) -> Iterator[Finding]:
         yield _finding(config, found[0].node, "MF214", message, hint)
 
 
-def _names(config: Config, one: Shown, robots: Robots) -> Iterator[Finding]:
+def _names(config: RvizConfig, one: RvizItem, robots: Robots) -> Iterator[Finding]:
     claimed = {id(place.node) for place in one.places}
     for place in filter(is_name, one.places):
         yield from _name(config, place, robots)
@@ -198,7 +206,7 @@ def _scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
         yield from _scalars(there)
 
 
-def _name(config: Config, place: Place, robots: Robots) -> Iterator[Finding]:
+def _name(config: RvizConfig, place: ValuePlace, robots: Robots) -> Iterator[Finding]:
     """A placeholder that stays, a robot that is in it already, or a name that no description has."""
     given = str(place.node.value)
     there = next((it for it in robots if _has(given, place, it)), None)
@@ -212,13 +220,15 @@ def _name(config: Config, place: Place, robots: Robots) -> Iterator[Finding]:
         yield from _missing(config, place, given, robots)
 
 
-def _has(given: str, place: Place, robot: RvizRobot) -> bool:
+def _has(given: str, place: ValuePlace, robot: RvizRobot) -> bool:
     names = robot.names if place.word in (FRAME, LINK, JOINT) else robot.topics
     ends = given.strip("/").split("/")
     return len(ends) > 1 and names.robot in (ends[0], ends[-1])
 
 
-def _missing(config: Config, place: Place, given: str, robots: Robots) -> Iterator[Finding]:
+def _missing(
+    config: RvizConfig, place: ValuePlace, given: str, robots: Robots
+) -> Iterator[Finding]:
     bare = given.strip("/")
     shared = robots[0].names.naming.shared_frames
     if not bare or "<" in bare or bare in shared or bare in rviz_data()["frames"]:

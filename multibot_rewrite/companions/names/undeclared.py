@@ -6,8 +6,8 @@ from collections.abc import Iterable
 
 from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.params.spelled import is_plain, is_shared_frame
-from multibot_rewrite.companions.respell import is_declared, respell
+from multibot_rewrite.companions.names.by_kind import is_plain, is_shared_frame
+from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.rosnames import check_topic_name
 
 # Frames that nodes send and no description declares (REP 105, navsat_transform_node).
@@ -16,7 +16,7 @@ SENT = frozenset({"map", "odom", "world", "earth", "utm", "local_enu"})
 _MENTIONED = ("link", "joint", "frame", "group")
 
 
-def lacks(context: Context, word: str, value: str) -> bool:
+def is_undeclared(context: Context, word: str, value: str) -> bool:
     """Is this plain name one that the description should have and does not?
 
     False where it has none of the kind at all: then nothing is known of them.
@@ -28,7 +28,7 @@ def lacks(context: Context, word: str, value: str) -> bool:
     return word != "frame" or not (bare in SENT or is_shared_frame(context, bare))
 
 
-def said_of(context: Context, word: str, value: str) -> tuple[str, str]:
+def undeclared_message(context: Context, word: str, value: str) -> tuple[str, str]:
     """Message and hint about a name that the description lacks."""
     known = context.names.declared["link" if word == "frame" else word]
     other = "it stays as it is"
@@ -45,17 +45,17 @@ def nearest(value: str, known: Iterable[str]) -> str:
     return f"did you mean {near[0]!r}?" if near else ""
 
 
-def renamed(context: Context) -> frozenset[str]:
+def renamed_names(context: Context) -> frozenset[str]:
     """The names that the description declares and that each robot spells in its own way."""
     return frozenset(
         name
         for word in _MENTIONED
         for name in context.names.declared.get(word, ())
-        if respell(context.names, word, name) != name
+        if spell(context.names, word, name) != name
     )
 
 
-def mentions(text: str, names: frozenset[str]) -> bool:
+def holds_a_name(text: str, names: frozenset[str]) -> bool:
     """Does a text that nothing is known of hold one of these names, or an absolute name of the
     graph?"""
     if mentioned(text, names):

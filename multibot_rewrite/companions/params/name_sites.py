@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.params.known import Branch, Known, Param, guess
-from multibot_rewrite.companions.params.sections import Section
+from multibot_rewrite.companions.params.known_nodes import Branch, KnownNodes, Param, guess
+from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.model import InputError
 
@@ -25,7 +25,7 @@ _TAKE_EMPTY = ("link_prefix", "joint_prefix")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
 
 
-class Use(NamedTuple):
+class NameSite(NamedTuple):
     """A name: the scalar it stands in, the key of its parameter, its kind and what is known of it.
 
     ``param`` is None where the kind is a guess. ``at`` is the segment of a key, -1 for a value.
@@ -41,12 +41,12 @@ class Use(NamedTuple):
     layer: yaml.MappingNode
 
 
-class Uses(NamedTuple):
+class SectionNames(NamedTuple):
     """What a section holds: names, parameters by their known path, scalars that nothing is known
     of, keys without a value, keys that stand in one mapping twice, and keys that nothing is known of.
     """
 
-    names: list[Use]
+    names: list[NameSite]
     known: set[str]
     unclaimed: list[yaml.ScalarNode]
     empty: list[yaml.ScalarNode]
@@ -59,16 +59,20 @@ _Mark = tuple[yaml.ScalarNode, int, str]
 _State = tuple[Branch, tuple[_Mark, ...]]
 
 
-def read_uses(document: YamlText, section: Section, known: Known) -> Uses:
+def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> SectionNames:
     """Look at every parameter of a section; InputError for keys that are no words."""
-    uses = Uses([], set(), [], [], [], [])
+    uses = SectionNames([], set(), [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
     _walk(document, section.body, [(tree, ())], known, uses)
     return uses
 
 
 def _walk(
-    document: YamlText, body: yaml.MappingNode, states: list[_State], known: Known, uses: Uses
+    document: YamlText,
+    body: yaml.MappingNode,
+    states: list[_State],
+    known: KnownNodes,
+    uses: SectionNames,
 ) -> None:
     seen = set()
     for key, value in body.value:
@@ -110,8 +114,8 @@ def _claim(
     value: yaml.Node,
     states: list[_State],
     layer: yaml.MappingNode,
-    known: Known,
-    uses: Uses,
+    known: KnownNodes,
+    uses: SectionNames,
 ) -> None:
     """What one parameter is: one that is known, one that its name tells, or an unclaimed one."""
     if value.tag == NULL and not value.value:
@@ -123,7 +127,7 @@ def _claim(
             uses.known.add(param.path)
             for mark, at, kind in marks:
                 word = mark.value.split(".")[at]
-                uses.names.append(Use(mark, mark, kind, param, word, at, layer))
+                uses.names.append(NameSite(mark, mark, kind, param, word, at, layer))
             break
     if param is None or param.kind != "keep":
         _values(key, items(value), param, layer, known, uses)
@@ -134,8 +138,8 @@ def _values(
     scalars: list[yaml.Node],
     param: Param | None,
     layer: yaml.MappingNode,
-    known: Known,
-    uses: Uses,
+    known: KnownNodes,
+    uses: SectionNames,
 ) -> None:
     kind = param.kind if param else ""
     for scalar in scalars:
@@ -147,7 +151,7 @@ def _values(
             continue
         kind = kind or guess(known, key.value)
         if kind:
-            uses.names.append(Use(scalar, key, kind, param, text, -1, layer))
+            uses.names.append(NameSite(scalar, key, kind, param, text, -1, layer))
         else:
             uses.unclaimed.append(scalar)
 

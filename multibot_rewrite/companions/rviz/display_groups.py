@@ -8,8 +8,28 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.graph_names import robot_topic
-from multibot_rewrite.companions.rviz.blocks import (
+from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.companions.rviz.colours import Colour
+from multibot_rewrite.companions.rviz.read_config import (
+    ABSOLUTE,
+    DOCK,
+    GROUP,
+    PROCESS,
+    SHARED,
+    RvizConfig,
+    RvizItem,
+    rviz_data,
+    value,
+)
+from multibot_rewrite.companions.rviz.values import (
+    FRAME,
+    RvizRobot,
+    changed_values,
+    is_name,
+    item_splices,
+    robot_value,
+)
+from multibot_rewrite.companions.yaml_blocks import (
     Block,
     blocks,
     cut_out,
@@ -18,53 +38,35 @@ from multibot_rewrite.companions.rviz.blocks import (
     moved,
     newline,
 )
-from multibot_rewrite.companions.rviz.colours import Colour
-from multibot_rewrite.companions.rviz.names import (
-    FRAME,
-    RvizRobot,
-    changed,
-    edits,
-    is_name,
-    spelled,
-)
-from multibot_rewrite.companions.rviz.read import (
-    ABSOLUTE,
-    DOCK,
-    GROUP,
-    PROCESS,
-    SHARED,
-    Config,
-    Shown,
-    rviz_data,
-    value,
-)
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted, replaced
 
 Robots = Sequence[RvizRobot]
-Wanted = Callable[[Shown], bool]
+Wanted = Callable[[RvizItem], bool]
 
 
-class Job(NamedTuple):
+class RvizJob(NamedTuple):
     """A config, the robots of one window with a colour each (None: as it is), and what of it each
     robot has for itself, by the places of the displays in the text."""
 
-    config: Config
+    config: RvizConfig
     robots: Robots
     colours: tuple[Colour | None, ...]
     own: frozenset[int]
 
 
-def make_job(config: Config, robots: Robots, colours: tuple[Colour | None, ...]) -> Job:
+def make_rviz_job(
+    config: RvizConfig, robots: Robots, colours: tuple[Colour | None, ...]
+) -> RvizJob:
     """Find out which displays are each robot's own: those that say something else for one."""
     own = {
         one.block.start
         for one in leaves(config.displays)
-        if one.flag != SHARED and any(next(changed(one, robot), None) for robot in robots)
+        if one.flag != SHARED and any(next(changed_values(one, robot), None) for robot in robots)
     }
-    return Job(config, robots, colours, frozenset(own))
+    return RvizJob(config, robots, colours, frozenset(own))
 
 
-def leaves(shown: Iterable[Shown]) -> Iterator[Shown]:
+def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
     """Displays that are no groups, and groups with nothing in them."""
     for one in shown:
         if one.children:
@@ -73,18 +75,18 @@ def leaves(shown: Iterable[Shown]) -> Iterator[Shown]:
             yield one
 
 
-def for_one_process(one: Shown) -> bool:
+def for_one_process(one: RvizItem) -> bool:
     """It serves the one robot that the rviz2 process is set up for."""
     return one.flag in (PROCESS, ABSOLUTE)
 
 
-def grouped(job: Job) -> Iterator[Splice]:
+def robot_groups(job: RvizJob) -> Iterator[Splice]:
     """The splices that put every robot's displays in a group of its own, behind the shared ones."""
     document, shown = job.config.document, job.config.displays
     if not shown:
         return
 
-    def shared(one: Shown) -> bool:
+    def shared(one: RvizItem) -> bool:
         return one.block.start not in job.own and not for_one_process(one)
 
     for one in shown:
@@ -95,7 +97,7 @@ def grouped(job: Job) -> Iterator[Splice]:
 
 
 def _kept(
-    one: Shown, wanted: Wanted, made: Callable[[Shown], Iterable[Splice]]
+    one: RvizItem, wanted: Wanted, made: Callable[[RvizItem], Iterable[Splice]]
 ) -> Iterator[Splice]:
     """The splices that leave of a display what is wanted, with those made in it."""
     if not any(map(wanted, leaves([one]))):
@@ -107,15 +109,15 @@ def _kept(
         yield from made(one)
 
 
-def _group(job: Job, at: int) -> str:
+def _group(job: RvizJob, at: int) -> str:
     """The group of one robot: copies of the displays with its names; empty where it has none."""
     document, robot = job.config.document, job.robots[at]
 
-    def own(one: Shown) -> bool:
+    def own(one: RvizItem) -> bool:
         return one.block.start in job.own and not for_one_process(one)
 
-    def made(one: Shown) -> Iterator[Splice]:
-        yield from edits(one, robot, job.colours[at])
+    def made(one: RvizItem) -> Iterator[Splice]:
+        yield from item_splices(one, robot, job.colours[at])
         yield from _renamed(one, robot)
 
     copies = [
@@ -131,7 +133,7 @@ def _group(job: Job, at: int) -> str:
     return f"{head}{body}{lead}  Enabled: true{end}{lead}  Name: {quoted(robot.name)}{end}"
 
 
-def _renamed(one: Shown, robot: RvizRobot) -> Iterator[Splice]:
+def _renamed(one: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
     """Windows have titles of their own; a list of the displays beside it is not true any more."""
     name = value(one.node, "Name")
     if one.flag == DOCK and isinstance(name, yaml.ScalarNode):
@@ -141,7 +143,7 @@ def _renamed(one: Shown, robot: RvizRobot) -> Iterator[Splice]:
         yield Splice(beside.start_mark.index, end_of(beside), "{}")
 
 
-def titled(one: Shown, robot: RvizRobot) -> str:
+def titled(one: RvizItem, robot: RvizRobot) -> str:
     """The name of a robot's window."""
     return f"{robot.name} {one.name}"
 
@@ -156,7 +158,7 @@ def entry_blocks(
     yield from zip(found, blocks(document, node), strict=True)
 
 
-def entries(document: YamlText, one: Shown, robots: Robots) -> Iterator[Splice]:
+def entries(document: YamlText, one: RvizItem, robots: Robots) -> Iterator[Splice]:
     """A shared display lists the frames of all robots; its tree comes from tf anyway."""
     for place_map, deep in (("Frames", False), ("Tree", True)):
         node = value(one.node, place_map)
@@ -169,21 +171,21 @@ def entries(document: YamlText, one: Shown, robots: Robots) -> Iterator[Splice]:
             yield Splice(block.start, block.end, _for_all(document, one, key, block, robots))
 
 
-def _moves(one: Shown, key: str, robot: RvizRobot) -> bool:
-    return any(place.path.startswith(key) for place, _ in changed(one, robot))
+def _moves(one: RvizItem, key: str, robot: RvizRobot) -> bool:
+    return any(place.path.startswith(key) for place, _ in changed_values(one, robot))
 
 
 def _for_all(
-    document: YamlText, one: Shown, key: yaml.ScalarNode, block: Block, robots: Robots
+    document: YamlText, one: RvizItem, key: yaml.ScalarNode, block: Block, robots: Robots
 ) -> str:
     place = next((it for it in one.places if it.node is key and is_name(it)), None)
     if place is None or place.word != FRAME:
         return cut_out(document, block.start, block.end)
-    made = dict.fromkeys(replaced(key, spelled(place, robot)) for robot in robots)
+    made = dict.fromkeys(replaced(key, robot_value(place, robot)) for robot in robots)
     return "".join(cut_out(document, block.start, block.end, [one]) for one in made)
 
 
-def tools(job: Job) -> Iterator[Splice]:
+def tools(job: RvizJob) -> Iterator[Splice]:
     """A tool for each robot where it publishes; a tool that serves one process is left out."""
     document = job.config.document
     for tool in job.config.tools:
@@ -196,9 +198,9 @@ def tools(job: Job) -> Iterator[Splice]:
             yield Splice(start, end, "".join(cut_out(document, start, end, one) for one in made))
 
 
-def tool_edits(document: YamlText, tool: Shown, robot: RvizRobot) -> Iterator[Splice]:
+def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
     """The splices that make a tool publish for the robot, where the file leaves the topic out too."""
-    yield from edits(tool, robot, None)
+    yield from item_splices(tool, robot, None)
     default = rviz_data()["tools"].get(tool.cls, "")
     if value(tool.node, "Topic") is not None or not default:
         return
@@ -214,7 +216,7 @@ def tool_edits(document: YamlText, tool: Shown, robot: RvizRobot) -> Iterator[Sp
         yield Splice(at, at, f"{newline(document)}{lead}Topic: {quoted(topic)}")
 
 
-def panels(job: Job) -> Iterator[Splice]:
+def panels(job: RvizJob) -> Iterator[Splice]:
     """Panels without those that serve one process, and without what they say of moved displays."""
     document = job.config.document
     for panel in job.config.panels:
@@ -230,13 +232,13 @@ def panels(job: Job) -> Iterator[Splice]:
                 break
 
 
-def _docks(job: Job) -> list[Shown]:
+def _docks(job: RvizJob) -> list[RvizItem]:
     """The displays with a window that each robot has for itself."""
     own = (one for one in leaves(job.config.displays) if one.block.start in job.own)
     return [one for one in own if one.flag == DOCK]
 
 
-def _gone(job: Job) -> re.Pattern[str]:
+def _gone(job: RvizJob) -> re.Pattern[str]:
     """How paths start that lead to displays which stand in groups now: a name and its count."""
     shown = job.config.displays
     kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
@@ -258,7 +260,7 @@ def _collapsed(
     yield from (Splice(block.start, block.end, "") for block in left)
 
 
-def windows(job: Job) -> Iterator[Splice]:
+def windows(job: RvizJob) -> Iterator[Splice]:
     """Where windows stand: those of the copies; what Qt has put in hex cannot be edited."""
     document = job.config.document
     docks = _docks(job)
@@ -274,7 +276,7 @@ def windows(job: Job) -> Iterator[Splice]:
             yield Splice(block.start, block.end, "".join(copies))
 
 
-def remark(document: YamlText, one: Shown) -> str:
+def remark(document: YamlText, one: RvizItem) -> str:
     """The comment that stands for what is left out."""
     title = f" {one.name!r}" if one.name else ""
     why = "it serves the robot of its rviz2 process"

@@ -16,7 +16,7 @@ from multibot_rewrite.sources.read import read_file
 _LINES = (".md", ".py", ".sh")
 
 
-class Written(NamedTuple):
+class OutputText(NamedTuple):
     """A file of the output: its path below the folder, its text, what it was made from."""
 
     path: str
@@ -24,7 +24,7 @@ class Written(NamedTuple):
     sources: tuple[str, ...]
 
 
-class Value(NamedTuple):
+class OutputValue(NamedTuple):
     """One value of a file; ``key`` is the key or attribute it belongs to, itself for a key."""
 
     text: str
@@ -33,10 +33,12 @@ class Value(NamedTuple):
     line: int
 
 
-def values(file: Written) -> Iterator[Value]:
+def values_in(file: OutputText) -> Iterator[OutputValue]:
     """Every scalar of YAML, every attribute and text of XML, else every line."""
     if file.path.endswith(_LINES):
-        yield from (Value(it, "", False, at) for at, it in enumerate(file.text.splitlines(), 1))
+        yield from (
+            OutputValue(it, "", False, at) for at, it in enumerate(file.text.splitlines(), 1)
+        )
     elif file.text.lstrip("\ufeff \t\r\n").startswith("<"):
         yield from _of_xml(file)
     else:
@@ -44,28 +46,28 @@ def values(file: Written) -> Iterator[Value]:
         yield from _of_yaml(root, "") if root else ()
 
 
-def _of_xml(file: Written) -> Iterator[Value]:
+def _of_xml(file: OutputText) -> Iterator[OutputValue]:
     parser = etree.XMLParser(resolve_entities=False, huge_tree=True)
     for element in etree.fromstring(file.text.encode(), parser).iter(etree.Element):
         line = int(str(element.sourceline or 1))
         for key, text in element.attrib.items():
-            yield Value(str(text), str(key), False, line)
+            yield OutputValue(str(text), str(key), False, line)
         if element.text and element.text.strip():
-            yield Value(element.text.strip(), str(element.tag), False, line)
+            yield OutputValue(element.text.strip(), str(element.tag), False, line)
 
 
-def _of_yaml(node: yaml.Node, key: str) -> Iterator[Value]:
+def _of_yaml(node: yaml.Node, key: str) -> Iterator[OutputValue]:
     if isinstance(node, yaml.ScalarNode):
-        yield Value(node.value, key, False, line_of(node))
+        yield OutputValue(node.value, key, False, line_of(node))
     elif isinstance(node, yaml.SequenceNode):
         for item in node.value:
             yield from _of_yaml(item, key)
     for name, value in pairs(node):
-        yield Value(name.value, name.value, True, line_of(name))
+        yield OutputValue(name.value, name.value, True, line_of(name))
         yield from _of_yaml(value, name.value)
 
 
-def line_in_source(file: Written, line: int) -> tuple[str, int]:
+def line_in_source(file: OutputText, line: int) -> tuple[str, int]:
     """The source of a file, and the line of it that a line of the file was made from."""
     from difflib import SequenceMatcher
 

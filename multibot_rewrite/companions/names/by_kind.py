@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable, Mapping
 
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.respell import is_declared, respell
-from multibot_rewrite.companions.template import GRAPH, SPELLED
+from multibot_rewrite.companions.names.rename_map import is_declared, spell
+from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, affix
 
 Speller = Callable[[Context, str], str]
@@ -22,11 +22,11 @@ def is_plain(value: str) -> bool:
 def joint(context: Context, value: str) -> str:
     """A joint, or that of another controller: ``controller/joint``."""
     if is_declared(context.names, "joint", value):
-        return respell(context.names, "joint", value)
+        return spell(context.names, "joint", value)
     above, slash, name = value.rpartition("/")
     if not slash or not is_declared(context.names, "joint", name):
         return value
-    return f"{_chain(context, above)}/{respell(context.names, 'joint', name)}"
+    return f"{_chain(context, above)}/{spell(context.names, 'joint', name)}"
 
 
 def interface(context: Context, value: str) -> str:
@@ -37,7 +37,7 @@ def interface(context: Context, value: str) -> str:
     if "/" in owner or is_component(context, owner):
         return f"{_chain(context, owner)}/{last}"
     # A description's gpios are not among the names that are known of it.
-    return f"{respell(context.names, 'gpio', owner)}/{last}"
+    return f"{spell(context.names, 'gpio', owner)}/{last}"
 
 
 def is_component(context: Context, value: str) -> bool:
@@ -48,7 +48,7 @@ def is_component(context: Context, value: str) -> bool:
 def _chain(context: Context, value: str) -> str:
     """What stands before an interface: parts of the robot and controllers, which export theirs."""
     parts = (
-        respell(context.names, "component", it)
+        spell(context.names, "component", it)
         if is_component(context, it)
         else controller(context, it)
         for it in value.split("/")
@@ -59,17 +59,17 @@ def _chain(context: Context, value: str) -> str:
 def controller(context: Context, value: str) -> str:
     """A controller, which is a node: its name is its own where robots have no namespaces."""
     there = affix(context.topics.naming, "node", value) if is_plain(value) else None
-    return there.spell(value, GRAPH) if there else value
+    return there.spell(value, NAMESPACE_SLOT) if there else value
 
 
 def node(context: Context, value: str) -> str:
     """A node's name as others ask for it; one that serves all robots keeps its own."""
     place = context.nodes.get(value.strip("/"), "")
-    if place and GRAPH not in place:
+    if place and NAMESPACE_SLOT not in place:
         return place if context.topics.naming.topics == NAMESPACE else value
     above, slash, name = value.rpartition("/")
     if slash and not above and context.topics.naming.topics == NAMESPACE and is_plain(value):
-        return f"/{GRAPH}{value}"
+        return f"/{NAMESPACE_SLOT}{value}"
     return above + slash + controller(context, name)
 
 
@@ -79,12 +79,12 @@ def namespace(context: Context, value: str) -> str:
     if not value.startswith("/") or naming.topics != NAMESPACE:
         return value
     there = affix(naming, "namespace", value)
-    return there.spell(value, GRAPH) if there else value
+    return there.spell(value, NAMESPACE_SLOT) if there else value
 
 
 def stem(context: Context, value: str) -> str:
     """The beginning of frames: only a prefix can stand there."""
-    return respell(context.names, "frame", value) if _prefixes(context) else value
+    return spell(context.names, "frame", value) if _prefixes(context) else value
 
 
 def link_prefix(context: Context, value: str) -> str:
@@ -105,7 +105,7 @@ def words(context: Context, value: str) -> str:
 def _word(context: Context, value: str) -> str:
     kinds = (kind for kind in ("joint", "link") if is_declared(context.names, kind, value))
     kind = next(kinds, "")
-    return respell(context.names, kind, value) if kind else value
+    return spell(context.names, kind, value) if kind else value
 
 
 def _prefixes(context: Context) -> bool:
@@ -116,11 +116,11 @@ def _prefix(context: Context, kind: str, value: str) -> str:
     separator = context.names.naming.separators.get(kind)
     if separator is None or not _prefixes(context) or (value and not is_plain(value)):
         return value
-    return f"{SPELLED}{separator}{value}"
+    return f"{TAG_SLOT}{separator}{value}"
 
 
 def _declared(word: str) -> Speller:
-    return lambda context, value: respell(context.names, word, value)
+    return lambda context, value: spell(context.names, word, value)
 
 
 # Topics and services need their node as well.
@@ -149,6 +149,6 @@ def is_shared_frame(context: Context, value: str) -> bool:
     return value.strip("/") in context.names.naming.shared_frames
 
 
-def frames_are_spelled(context: Context) -> bool:
+def frames_differ(context: Context) -> bool:
     """Do robots differ by their frames?"""
     return not FRAME_KINDS.isdisjoint(context.names.naming.separators)

@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 _BOOLEAN = "tag:yaml.org,2002:bool"
 _NULL = "tag:yaml.org,2002:null"
 _LINE = "\n"
-Value: TypeAlias = "str | bool | Mapping[str, Item] | tuple[Item, ...] | None"
+Value: TypeAlias = "str | bool | Mapping[str, YamlItem] | tuple[YamlItem, ...] | None"
 
 
-class Item(NamedTuple):
+class YamlItem(NamedTuple):
     """A value of a YAML file; ``where`` is ``file:line``."""
 
     where: str
     value: Value
 
 
-def read_marked(text: str, file: str) -> Item:
+def read_yaml_with_lines(text: str, file: str) -> YamlItem:
     """The one document of a YAML text; raises UsageError naming ``file`` and the line."""
     import yaml  # tens of milliseconds that only stacks need
 
@@ -31,7 +31,7 @@ def read_marked(text: str, file: str) -> Item:
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         node = yaml.compose(text, Loader=loader)
-        return Item(f"{file}:1", None) if node is None else _item(node, file, frozenset())
+        return YamlItem(f"{file}:1", None) if node is None else _item(node, file, frozenset())
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         # A document that ends too early is at fault on the line after its last.
@@ -42,7 +42,7 @@ def read_marked(text: str, file: str) -> Item:
         raise UsageError(f"{file}: broken YAML, nested too deep") from None
 
 
-def _item(node: yaml.Node, file: str, above: frozenset[int]) -> Item:
+def _item(node: yaml.Node, file: str, above: frozenset[int]) -> YamlItem:
     import yaml
 
     where = f"{file}:{node.start_mark.line + 1}"
@@ -50,20 +50,20 @@ def _item(node: yaml.Node, file: str, above: frozenset[int]) -> Item:
         raise UsageError(f"{where}: the alias stands inside what it repeats, write it out")
     above |= {id(node)}
     if isinstance(node, yaml.MappingNode):
-        return Item(where, _mapping(node, file, above))
+        return YamlItem(where, _mapping(node, file, above))
     if isinstance(node, yaml.SequenceNode):
-        return Item(where, tuple(_item(child, file, above) for child in node.value))
+        return YamlItem(where, tuple(_item(child, file, above) for child in node.value))
     if node.tag == _NULL:
-        return Item(where, None)
-    return Item(where, _truth(node.value) if node.tag == _BOOLEAN else str(node.value))
+        return YamlItem(where, None)
+    return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else str(node.value))
 
 
 def _truth(word: str) -> bool:
     return word.lower() in ("true", "yes", "on")
 
 
-def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[str, Item]:
-    found: dict[str, Item] = {}
+def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[str, YamlItem]:
+    found: dict[str, YamlItem] = {}
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"
         if not isinstance(key.value, str):
@@ -75,7 +75,7 @@ def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[s
     return found
 
 
-def table(item: Item, what: str, allowed: Sequence[str] = ()) -> Mapping[str, Item]:
+def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str, YamlItem]:
     """The keys of a mapping, an absent value being an empty one; other keys are an error."""
     if item.value is None:
         return {}
@@ -87,24 +87,24 @@ def table(item: Item, what: str, allowed: Sequence[str] = ()) -> Mapping[str, It
     return item.value
 
 
-def word(item: Item, what: str) -> str:
+def word(item: YamlItem, what: str) -> str:
     """A text, possibly empty."""
     if not isinstance(item.value, str):
         wrong(item, f"{what} is {_shape(item)}, write a text, in quotes where need be")
     return item.value
 
 
-def table_of(keys: Mapping[str, Item], key: str) -> Mapping[str, Item]:
+def table_of(keys: Mapping[str, YamlItem], key: str) -> Mapping[str, YamlItem]:
     """The mapping of a key, empty where it is absent."""
     return table(keys[key], key) if key in keys else {}
 
 
-def entries_of(keys: Mapping[str, Item], key: str) -> tuple[Item, ...]:
+def entries_of(keys: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
     """The list of a key, empty where it is absent; a single word is a list of one."""
     return entries(keys[key], key) if key in keys else ()
 
 
-def entries(item: Item, what: str) -> tuple[Item, ...]:
+def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
     """The entries of a list; a single word is a list of one."""
     if isinstance(item.value, str):
         return (item,)
@@ -113,17 +113,17 @@ def entries(item: Item, what: str) -> tuple[Item, ...]:
     return item.value
 
 
-def words_of(keys: Mapping[str, Item], key: str) -> tuple[str, ...]:
+def words_of(keys: Mapping[str, YamlItem], key: str) -> tuple[str, ...]:
     """The words listed by a key, none where it is absent."""
     return tuple(word(entry, key) for entry in entries_of(keys, key))
 
 
-def word_of(keys: Mapping[str, Item], key: str, otherwise: str = "") -> str:
+def word_of(keys: Mapping[str, YamlItem], key: str, otherwise: str = "") -> str:
     """The text of a key, ``otherwise`` where it is absent."""
     return word(keys[key], key) if key in keys else otherwise
 
 
-def flag_of(keys: Mapping[str, Item], key: str, otherwise: bool = False) -> bool:
+def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> bool:
     """True or false as a key says, ``otherwise`` where it is absent."""
     if key not in keys:
         return otherwise
@@ -133,7 +133,7 @@ def flag_of(keys: Mapping[str, Item], key: str, otherwise: bool = False) -> bool
     return value
 
 
-def wrong(item: Item, message: str) -> NoReturn:
+def wrong(item: YamlItem, message: str) -> NoReturn:
     """Raise UsageError at the place of ``item``."""
     raise UsageError(f"{item.where}: {message}")
 
@@ -148,7 +148,7 @@ def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()
     return f"{what} {name!r} is not known; {hint}known: {', '.join(known) or 'none'}"
 
 
-def _shape(item: Item) -> str:
+def _shape(item: YamlItem) -> str:
     if isinstance(item.value, str):
         return f"the text {item.value!r}"
     if isinstance(item.value, bool):

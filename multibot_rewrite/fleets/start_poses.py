@@ -10,13 +10,13 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.rviz.rewrite import world_frame
-from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
-from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.transforms import Edge, description_edges
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import Naming
-from multibot_rewrite.remap.bridge import TF_TYPE, known_topics
+from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.table import placed, target_of
 from multibot_rewrite.steps.collect import Inventory
@@ -48,7 +48,7 @@ class InitialPose(NamedTuple):
     values: Mapping[str, object]
 
 
-class Placed(NamedTuple):
+class StartPoses(NamedTuple):
     """The places of a fleet's robots, and why some have none."""
 
     transforms: tuple[StaticTransform, ...]
@@ -56,13 +56,13 @@ class Placed(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def place(plan: FleetPlan) -> Placed:
+def start_poses(plan: FleetPlan) -> StartPoses:
     """A transform from the world for each robot that has a pose and that nothing else places."""
     found: list[object] = []
     for robot in plan.robots:
         if robot.spec.pose is not None:
             found += _place(plan, robot, robot.spec.pose)
-    return Placed(
+    return StartPoses(
         tuple(it for it in found if isinstance(it, StaticTransform)),
         tuple(it for it in found if isinstance(it, InitialPose)),
         tuple(it for it in found if isinstance(it, Finding)),
@@ -74,7 +74,7 @@ def world_of(file: FleetFile, naming: Naming) -> str:
     return file.world or world_frame(naming)
 
 
-def _place(plan: FleetPlan, robot: Described, pose: Pose) -> Iterator[object]:
+def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[object]:
     naming, name = plan.fleet.naming, robot.spec.namespace
     world = world_of(plan.file, naming)
     if not world:
@@ -132,7 +132,7 @@ def initial_pose(pose: Pose) -> dict[str, object]:
     return {"set_initial_pose": True, **values}
 
 
-def _sent(plan: FleetPlan, robot: Described) -> dict[str, list[Edge]]:
+def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
     """What each node of a robot sends; the description's tree under an empty name."""
     name, inventory = robot.spec.namespace, robot.member.inventory
     sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
@@ -151,7 +151,7 @@ def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
     """The frames that gz-sim's systems start their odometry at, and a bridge brings to tf."""
     for host in inventory.hosts:
         name = host.node.rewriter.names[0] if host.node.rewriter else ""
-        topics = known_topics()["plugins"].get(name, ())
+        topics = bridge_data()["plugins"].get(name, ())
         if any(row[2] == TF_TYPE for row in topics):
             told = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)
             yield next(filter(None, told), f"{model}/odom")
@@ -172,6 +172,6 @@ def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
     return [it for it in parents if it not in children and it not in naming.shared_frames]
 
 
-def _finding(robot: Described, code: str, what: str, hint: str) -> Finding:
+def _finding(robot: RewrittenRobot, code: str, what: str, hint: str) -> Finding:
     spec = robot.spec
     return Finding(code, WARNING, f"robot {spec.name!r}: {what}", hint, spec.file, spec.line, 1)

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import yaml
 
-from multibot_rewrite.companions.params.sections import found_sections, pattern_of
+from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 from multibot_rewrite.model import InputError
 
@@ -39,7 +39,7 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
     Raises InputError for a value that rcl refuses.
     """
     sections: dict[str, dict[str, Value]] = {}
-    for found in found_sections(document):
+    for found in raw_sections(document):
         if re.fullmatch(pattern_of(found.path), full):
             sections.setdefault(found.path, {}).update(_flat(document, found.body, ""))
     return {name: value for section in sections.values() for name, value in section.items()}
@@ -47,14 +47,14 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
 
 def check_values(document: YamlText) -> None:
     """Read every value of a parameter file; InputError for one that rcl refuses."""
-    for found in found_sections(document):
+    for found in raw_sections(document):
         for _ in _flat(document, found.body, ""):
             pass
 
 
 def exact_nodes(document: YamlText) -> list[str]:
     """Full names of the nodes that have a section of their own."""
-    paths = dict.fromkeys(found.path for found in found_sections(document))
+    paths = dict.fromkeys(found.path for found in raw_sections(document))
     return [f"/{path}" for path in paths if "*" not in path]
 
 

@@ -11,9 +11,9 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.params.spelled import is_plain
-from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.companions.template import GRAPH
+from multibot_rewrite.companions.names.by_kind import is_plain
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in
@@ -26,7 +26,7 @@ Facts = Mapping[str, NodeFacts]
 FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
 
 
-class Landing(NamedTuple):
+class TopicText(NamedTuple):
     """What is written for a topic; ``astray`` is where it leads if not where it should, and
     ``moved`` tells that a relative name had to be written in full."""
 
@@ -52,16 +52,18 @@ def facts_by_name(facts: Iterable[NodeFacts]) -> Facts:
     return {it.name: it for it in facts} or built_in_facts()
 
 
-def topic(context: Context, node: str, kind: str, value: str, reach: str, facts: Facts) -> Landing:
+def spell_topic(
+    context: Context, node: str, kind: str, value: str, reach: str, facts: Facts
+) -> TopicText:
     """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
     if not is_plain(value) or value.startswith("~") or check_topic_name(value):
-        return Landing(value)
+        return TopicText(value)
     text = _spelled(context, kind, value, reach == IN_FULL)
     moved = reach == IN_FULL and not value.startswith("/")
     ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
     if not ruled:
-        return Landing(text, moved=moved)
-    return _landing(context, kind, (text, value), reach, ruled)._replace(moved=moved)
+        return TopicText(text, moved=moved)
+    return _ruled_text(context, kind, (text, value), reach, ruled)._replace(moved=moved)
 
 
 def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
@@ -71,7 +73,7 @@ def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
     if value.strip("/") in naming.shared_topics:
         return lead + value if absolute or naming.topics == NAMESPACE else value
     full = lead + value if absolute else value
-    return _below_node(context, full) or respell(context.topics, kind, full)
+    return _below_node(context, full) or spell(context.topics, kind, full)
 
 
 def _below_node(context: Context, value: str) -> str:
@@ -97,25 +99,27 @@ def _ruled(endpoint: Endpoint, context: Context) -> bool:
     if endpoint.fixed:
         return False
     naming = context.topics.naming
-    return bool(endpoint.remapped or target_of(endpoint.name, endpoint.kind, GRAPH, naming))
+    return bool(
+        endpoint.remapped or target_of(endpoint.name, endpoint.kind, NAMESPACE_SLOT, naming)
+    )
 
 
-def _landing(
+def _ruled_text(
     context: Context, kind: str, texts: tuple[str, str], reach: str, node: NodeFacts
-) -> Landing:
+) -> TopicText:
     """The spelled name if it leads to the right place, else the old one if a rule moves that."""
     naming = context.topics.naming
-    table = node_table(GRAPH, node, naming, frozenset(context.nodes))
+    table = node_table(NAMESPACE_SLOT, node, naming, frozenset(context.nodes))
     bound = bind(table.name, table.namespace, parsed(table.rules))
     wanted = _wanted(context, kind, texts[1], node)
-    root = placed(GRAPH, "node", naming)[0] if reach == FROM_PARENT else table.namespace
+    root = placed(NAMESPACE_SLOT, "node", naming)[0] if reach == FROM_PARENT else table.namespace
     led = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
     good = [text for text, full in zip(texts, led, strict=True) if full == wanted]
     if not good:
-        return Landing(texts[0], led[0])
+        return TopicText(texts[0], led[0])
     # A rule moves what the node makes of the name as well: <costmap>_updates, <image>/compressed.
     ruled = naming.topics != NAMESPACE and reach == FROM_NODE
-    return Landing(good[-1] if ruled else good[0])
+    return TopicText(good[-1] if ruled else good[0])
 
 
 def _wanted(context: Context, kind: str, value: str, node: NodeFacts) -> str:

@@ -12,10 +12,10 @@ from importlib.resources import files
 from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.marked import (
-    Item,
+from multibot_rewrite.remap.yaml_with_lines import (
+    YamlItem,
     flag_of,
-    read_marked,
+    read_yaml_with_lines,
     table,
     table_of,
     unknown,
@@ -81,7 +81,7 @@ class KnownNode(NamedTuple):
     defaults: tuple[Param, ...]
 
 
-class Known(NamedTuple):
+class KnownNodes(NamedTuple):
     """All known nodes; ``names`` and ``types`` lead to them. ``anywhere`` holds what is the same in
     every node that has it, ``guesses`` last words of other paths (``guessing`` as one expression),
     ``sent`` frames that nodes send.
@@ -97,7 +97,7 @@ class Known(NamedTuple):
 
 
 @lru_cache
-def built_in_params() -> Known:
+def built_in_nodes() -> KnownNodes:
     """What this package knows."""
     text = (
         files("multibot_rewrite.companions.params")
@@ -107,13 +107,13 @@ def built_in_params() -> Known:
     return _known({}, {}, frozenset(), text, "params.yaml")
 
 
-def known_params(path: str = "") -> Known:
+def load_known_nodes(path: str = "") -> KnownNodes:
     """The built-in knowledge and what a file of the same shape adds to it or says anew.
 
     Raises UsageError, with file and line, for whatever is wrong in it.
     """
     if not path:
-        return built_in_params()
+        return built_in_nodes()
     try:
         with open(path, encoding="utf-8-sig") as file:
             text = file.read()
@@ -121,7 +121,7 @@ def known_params(path: str = "") -> Known:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    base = built_in_params()
+    base = built_in_nodes()
     return _known(base.nodes, base.guesses, base.sent, text, path)
 
 
@@ -137,7 +137,7 @@ def in_release(words: str, distro: str) -> bool:
     return at >= bound if words.endswith("+") else at == bound
 
 
-def guess(known: Known, path: str) -> str:
+def guess(known: KnownNodes, path: str) -> str:
     """The kind that the last word of a path makes likely; empty for none."""
     found = known.guessing.fullmatch(path, path.rfind(".") + 1)
     return (found.lastgroup or "") if found else ""
@@ -158,8 +158,8 @@ def _known(
     sent: frozenset[str],
     text: str,
     file: str,
-) -> Known:
-    top = table(read_marked(text, file), "the file", ("sent", "guesses", "nodes"))
+) -> KnownNodes:
+    top = table(read_yaml_with_lines(text, file), "the file", ("sent", "guesses", "nodes"))
     given = table_of(top, "guesses")
     for key, item in given.items():
         _one_of(item, "kind", key, KINDS)
@@ -172,10 +172,12 @@ def _known(
     names |= {name: name for name in nodes}
     sent |= frozenset(words_of(top, "sent"))
     guessing = _guessing(guesses)
-    return Known(nodes, names, types, _tree(_anywhere(nodes, guessing)), guesses, guessing, sent)
+    return KnownNodes(
+        nodes, names, types, _tree(_anywhere(nodes, guessing)), guesses, guessing, sent
+    )
 
 
-def _node(name: str, item: Item, old: KnownNode | None) -> KnownNode:
+def _node(name: str, item: YamlItem, old: KnownNode | None) -> KnownNode:
     """A node as a file has it; what it says of a node that is known is added to that."""
     keys = table(item, f"node {name!r}", NODE_KEYS)
     absolute = _releases(keys, "absolute")
@@ -200,7 +202,7 @@ def _has_default(param: Param) -> bool:
     return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
 
 
-def _param(path: str, item: Item, absolute: str) -> Param:
+def _param(path: str, item: YamlItem, absolute: str) -> Param:
     _check_path(path, item)
     if isinstance(item.value, str):
         kind = _one_of(item, "kind", item.value, KINDS)
@@ -220,7 +222,7 @@ def _param(path: str, item: Item, absolute: str) -> Param:
     )
 
 
-def _check_path(path: str, item: Item) -> None:
+def _check_path(path: str, item: YamlItem) -> None:
     for segment in path.split("."):
         if not segment:
             wrong(item, f"parameter {path!r} has an empty segment; write names with dots between")
@@ -228,13 +230,13 @@ def _check_path(path: str, item: Item) -> None:
             _one_of(item, "segment", segment[1:-1], SEGMENTS)
 
 
-def _one_of(item: Item, what: str, value: str, allowed: tuple[str, ...]) -> str:
+def _one_of(item: YamlItem, what: str, value: str, allowed: tuple[str, ...]) -> str:
     if value not in allowed:
         wrong(item, unknown(what, value, allowed))
     return value
 
 
-def _releases(keys: Mapping[str, Item], key: str) -> str:
+def _releases(keys: Mapping[str, YamlItem], key: str) -> str:
     words = word_of(keys, key)
     if words:
         _one_of(keys[key], "release", words.removeprefix("<=").removesuffix("+"), RELEASES)

@@ -9,27 +9,27 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.respell import KINDS, Names, is_declared
+from multibot_rewrite.companions.names.rename_map import KINDS, RenameMap, is_declared
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 
 KEEP = "keep"
 # A word for names, or keys with what stands below them.
-Rule = Any
-Rules = Mapping[str, Rule]
+Shape = Any
+Shapes = Mapping[str, Shape]
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MERGE = "<<"
 
 
-class Kind(NamedTuple):
+class FileKind(NamedTuple):
     """A kind of file: what tells it, words in its file's name, and its names."""
 
     name: str
     tells: tuple[str, ...]
     files: tuple[str, ...]
-    names: Rules
+    names: Shapes
 
 
-class Site(NamedTuple):
+class MoveitName(NamedTuple):
     """A name: the scalar it stands in, where in its value, and what it is."""
 
     scalar: yaml.ScalarNode
@@ -38,27 +38,27 @@ class Site(NamedTuple):
     word: str
 
 
-class Sites(NamedTuple):
+class MoveitNames(NamedTuple):
     """The names of a file, the scalars that nothing is known of, and keys that stand twice."""
 
-    names: list[Site]
+    names: list[MoveitName]
     unclaimed: list[yaml.ScalarNode]
     twice: list[yaml.ScalarNode]
 
 
 class _Walk(NamedTuple):
-    names: Names
-    found: list[Site]
+    names: RenameMap
+    found: list[MoveitName]
     claimed: set[int]
     seen: set[tuple[int, int]]
 
 
 # The names in a key, and the rule for what is below it.
-_Match = tuple[tuple[tuple[int, str, str], ...], Rule]
+_Match = tuple[tuple[tuple[int, str, str], ...], Shape]
 
 
 @cache
-def kinds() -> tuple[Kind, ...]:
+def kinds() -> tuple[FileKind, ...]:
     """All kinds of files, in the order in which they are tried."""
     text = (
         files("multibot_rewrite.companions.moveit")
@@ -67,19 +67,19 @@ def kinds() -> tuple[Kind, ...]:
     )
     data = yaml.load(text, Loader=_LOADER)
     return tuple(
-        Kind(name, tuple(it["tells"]), tuple(it["files"]), {**data["common"], **it["names"]})
+        FileKind(name, tuple(it["tells"]), tuple(it["files"]), {**data["common"], **it["names"]})
         for name, it in data["kinds"].items()
     )
 
 
-def find_sites(root: yaml.Node | None, rules: Rules, names: Names) -> Sites:
+def find_names(root: yaml.Node | None, rules: Shapes, names: RenameMap) -> MoveitNames:
     """Every name below ``root``; an aliased value is looked at under every rule that reaches it."""
     walk = _Walk(names, [], set(), set())
     if root is not None:
         _below(root, rules, walk)
     scalars = list(_scalars(root))
     unclaimed = [it for it in scalars if id(it) not in walk.claimed]
-    return Sites(walk.found, unclaimed, list(_twice(root)))
+    return MoveitNames(walk.found, unclaimed, list(_twice(root)))
 
 
 def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
@@ -98,7 +98,7 @@ def is_merge(key: yaml.Node) -> bool:
     return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
 
 
-def _below(node: yaml.Node, rule: Rule, walk: _Walk) -> None:
+def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
     if (id(node), id(rule)) in walk.seen:
         return
     walk.seen.add((id(node), id(rule)))
@@ -114,23 +114,25 @@ def _below(node: yaml.Node, rule: Rule, walk: _Walk) -> None:
             _entry(key, value, rule, walk)
 
 
-def _value(node: yaml.ScalarNode, rule: Rule, walk: _Walk) -> None:
+def _value(node: yaml.ScalarNode, rule: Shape, walk: _Walk) -> None:
     if isinstance(rule, str) and is_text(node):
         walk.claimed.add(id(node))
-        walk.found.append(Site(node, 0, str(node.value), rule))
+        walk.found.append(MoveitName(node, 0, str(node.value), rule))
 
 
-def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Rules, walk: _Walk) -> None:
+def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -> None:
     match = _resolved(str(key.value), 0, value, rules, walk.names)
     if match is None:
         return
     marks, rule = match
     walk.claimed.add(id(key))
-    walk.found.extend(Site(key, at, text, word) for at, text, word in marks)
+    walk.found.extend(MoveitName(key, at, text, word) for at, text, word in marks)
     _below(value, rule, walk)
 
 
-def _resolved(word: str, at: int, value: yaml.Node, rules: Rules, names: Names) -> _Match | None:
+def _resolved(
+    word: str, at: int, value: yaml.Node, rules: Shapes, names: RenameMap
+) -> _Match | None:
     """What a key says: nested maps and keys with dots are the same parameter."""
     found = _exact(word, at, value, rules, names)
     if found:
@@ -143,7 +145,7 @@ def _resolved(word: str, at: int, value: yaml.Node, rules: Rules, names: Names) 
     return _open(word, at, value, rules)
 
 
-def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: Names) -> _Match | None:
+def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RenameMap) -> _Match | None:
     marks, rule = head
     if rule == KEEP:
         known = all(is_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
@@ -153,7 +155,7 @@ def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: Names) -> _
 
 
 def _exact(
-    word: str, at: int, value: yaml.Node | None, rules: Rules, names: Names
+    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: RenameMap
 ) -> _Match | None:
     """A literal key, a declared name, or one that what is below it tells."""
     if word in rules and word[:1] not in ("<", "*"):
@@ -166,7 +168,7 @@ def _exact(
     return None
 
 
-def _open(word: str, at: int, value: yaml.Node | None, rules: Rules) -> _Match | None:
+def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
     """A key of which nothing is asked."""
     for kind, telling, rule in _wild(rules):
         if not telling or (value is None and "declared" not in telling):
@@ -174,7 +176,7 @@ def _open(word: str, at: int, value: yaml.Node | None, rules: Rules) -> _Match |
     return ((), rules["*"]) if "*" in rules else None
 
 
-def _wild(rules: Rules) -> Iterator[tuple[str, tuple[str, ...], Rule]]:
+def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
     for key, rule in rules.items():
         if key.startswith("<"):
             kind, _, telling = key[1:-1].partition(" if ")

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
-from multibot_rewrite.companions.respell import Names
+from multibot_rewrite.companions.names.rename_map import RenameMap
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
 from multibot_rewrite.library import Rewrite, rewrite_all
@@ -20,7 +20,7 @@ from multibot_rewrite.steps.collect import NOTHING
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
 
 
-class Described(NamedTuple):
+class RewrittenRobot(NamedTuple):
     """A robot with its rewritten description and SRDF (empty where it has none).
 
     ``names`` is the rename map of what it declares, ``topics`` that of its ROS names; ``semantics``
@@ -30,16 +30,16 @@ class Described(NamedTuple):
     spec: RobotSpec
     description: bytes
     srdf: bytes
-    names: Names
-    topics: Names
+    names: RenameMap
+    topics: RenameMap
     semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
 
 
-def describe(
+def rewrite_robots(
     robots: Sequence[RobotSpec], policy: Mapping[str, Any], vocabulary: Sequence[str]
-) -> list[Described]:
+) -> list[RewrittenRobot]:
     """Rewrite every robot's description and SRDF, in the order of the robots.
 
     Raises as ``rewrite_all``.
@@ -58,7 +58,7 @@ def describe(
 
 def _described(
     group: Sequence[RobotSpec], policy: dict[str, Any], vocabulary: tuple[str, ...]
-) -> Iterator[Described]:
+) -> Iterator[RewrittenRobot]:
     first, naming, tree = group[0], make_naming(**policy), builtin_tree(vocabulary)
     more: dict[str, Any] = {"vocabulary": vocabulary, "xacro_args": first.arguments}
     robots = [robot.namespace for robot in group]
@@ -70,12 +70,12 @@ def _described(
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _spelled(text, robot, naming)
         declared = text.template.inventory.declared
-        yield Described(
+        yield RewrittenRobot(
             robot,
             data,
             _spelled(semantic, robot, naming) if semantic else b"",
-            Names(declared, naming, robot.spelled),
-            Names(declared, naming, robot.namespace),
+            RenameMap(declared, naming, robot.spelled),
+            RenameMap(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.spelled, tree),
             (*text.findings, *(semantic.findings if semantic else ())),

@@ -9,14 +9,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from multibot_rewrite.companions.params.sections import PARAMETERS, found_sections
+from multibot_rewrite.companions.params.sections import PARAMETERS, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
-from multibot_rewrite.fleets.companions import Kin, kin_of
-from multibot_rewrite.fleets.describe import Described
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.fleets.node_params import node_parameters
-from multibot_rewrite.fleets.plan import FleetPlan
-from multibot_rewrite.fleets.written import Written, line_in_source
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_values import OutputText, line_in_source
+from multibot_rewrite.fleets.rcl_parameters import node_parameters
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge, description_edges
 from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
@@ -29,7 +29,7 @@ SWITCHES = ("publish_tf", "tf_broadcast", "enable_odom_tf", "publish_odom_tf", "
 WORLD, MAP, ODOM = "world_frame", "map_frame", "odom_frame"
 
 
-class Sent(NamedTuple):
+class SentTransform(NamedTuple):
     """A transform, and the node that sends it: its name in the stack, its full name."""
 
     edge: Edge
@@ -37,26 +37,28 @@ class Sent(NamedTuple):
     full: str
 
 
-Parsed = Sequence[tuple[Written, YamlText]]
+Parsed = Sequence[tuple[OutputText, YamlText]]
 
 
-def parents(plan: FleetPlan, fleet: Fleet, files: Sequence[Written]) -> Iterator[Finding]:
+def tf_conflicts(plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText]) -> Iterator[Finding]:
     """What two nodes of a robot send, and what two robots send on one topic."""
-    for kin in kin_of(plan):
+    for kin in group_robots(plan):
         robot = kin.robots[0]
         parsed = list(_parsed(it for it in files if it.path.startswith(f"{robot.spec.name}/")))
         yield from _twice(robot, list(_sent(fleet, kin, parsed)), parsed)
     yield from _between(plan, fleet)
 
 
-def _parsed(files: Iterable[Written]) -> Iterator[tuple[Written, YamlText]]:
+def _parsed(files: Iterable[OutputText]) -> Iterator[tuple[OutputText, YamlText]]:
     for file in files:
         if PARAMETERS in file.text:
             yield file, read_yaml(file.text.encode(), file.path)
 
 
-def _twice(robot: Described, sent: Sequence[Sent], files: Parsed) -> Iterator[Finding]:
-    first: dict[str, Sent] = {}
+def _twice(
+    robot: RewrittenRobot, sent: Sequence[SentTransform], files: Parsed
+) -> Iterator[Finding]:
+    first: dict[str, SentTransform] = {}
     told: set[str] = set()
     for it in sent:
         child = it.edge.child
@@ -71,20 +73,20 @@ def _twice(robot: Described, sent: Sequence[Sent], files: Parsed) -> Iterator[Fi
         yield Finding("MF607", WARNING, message, hint, *_place(robot, it, files), 1)
 
 
-def _place(robot: Described, sent: Sent, files: Parsed) -> tuple[str, int]:
+def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[str, int]:
     """The node's section in a source, else the robot in the fleet file."""
     for file, document in files:
-        for found in found_sections(document):
+        for found in raw_sections(document):
             if file.sources and f"/{found.path}" == sent.full:
                 return line_in_source(file, line_of(found.keys[0]))
     return robot.spec.file, robot.spec.line
 
 
-def _sent(fleet: Fleet, kin: Kin, files: Parsed) -> Iterator[Sent]:
+def _sent(fleet: Fleet, kin: RobotGroup, files: Parsed) -> Iterator[SentTransform]:
     robot = kin.robots[0]
     name = robot.spec.namespace
     tree = list(description_edges(robot.member.inventory))
-    yield from (Sent(edge, DESCRIPTION, "") for edge in tree)
+    yield from (SentTransform(edge, DESCRIPTION, "") for edge in tree)
     facts = {it.name: it for it in kin.facts if it.sends}
     full = {
         it.node: f"{it.namespace.rstrip('/')}/{it.name}"
@@ -95,7 +97,9 @@ def _sent(fleet: Fleet, kin: Kin, files: Parsed) -> Iterator[Sent]:
         if owner == name:
             known = facts.get(node)
             said = _as_given(known, _given(files, full[node]), edges) if known else edges
-            yield from (Sent(it, node, full.get(node, "")) for it in said if it not in tree)
+            yield from (
+                SentTransform(it, node, full.get(node, "")) for it in said if it not in tree
+            )
 
 
 def _as_given(node: NodeFacts, given: Mapping[str, Any], edges: Iterable[Edge]) -> list[Edge]:

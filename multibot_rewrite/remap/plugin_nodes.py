@@ -15,10 +15,10 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     Endpoint,
-    Frame,
+    FrameParameter,
     NodeFacts,
+    NodeRule,
     NodeTable,
-    Rule,
 )
 from multibot_rewrite.rewriters.switches import switched_off, switches
 from multibot_rewrite.rewriters.vocabulary import Rewriter
@@ -93,7 +93,7 @@ def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
             yield Endpoint(kind, "", claim.value, parameter=claim.site.path)
 
 
-def _frames(inventory: Inventory, host: Host) -> Iterator[Frame]:
+def _frames(inventory: Inventory, host: Host) -> Iterator[FrameParameter]:
     """The frames that its parameters name, as the description spells them, or their defaults."""
     told = {
         claim.site.path: claim.value
@@ -104,7 +104,7 @@ def _frames(inventory: Inventory, host: Host) -> Iterator[Frame]:
     for site in filter(_is_frame, host.node.rewriter.sites):
         value = told.get(site.path, site.default)
         if value:
-            yield Frame(site.path, value)
+            yield FrameParameter(site.path, value)
 
 
 def _is_frame(site: Site) -> bool:
@@ -118,7 +118,7 @@ def _sends_none(host: Host, rewriter: Rewriter) -> bool:
 
 
 def _sends(
-    rewriter: Rewriter, frames: tuple[Frame, ...], links: Container[str], off: bool
+    rewriter: Rewriter, frames: tuple[FrameParameter, ...], links: Container[str], off: bool
 ) -> Iterator[tuple[str, str]]:
     """What a plugin that publishes tf sends: from a frame of its own to a link, as odometry is."""
     own = [frame.parameter for frame in frames if frame.default not in links]
@@ -132,13 +132,13 @@ def _sets_topic(claim: Claim) -> bool:
     return site.form == "whole" and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 
 
-def _rules(host: Host, robot: str, node: str) -> Iterator[Rule]:
+def _rules(host: Host, robot: str, node: str) -> Iterator[NodeRule]:
     for element in (host.element.find("ros"), host.element):
         for remapping in element.iterchildren("remapping") if element is not None else ():
             rule = parse_remap((remapping.text or "").strip())
             if rule is not None:
                 why = f"in the description, line {remapping.sourceline}"
-                yield Rule(robot, node, rule.source, rule.target, "", why)
+                yield NodeRule(robot, node, rule.source, rule.target, "", why)
 
 
 def _told(element: etree._Element, tag: str) -> str:

@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.bulk import uncollected
-from multibot_rewrite.fleets.describe import Described, describe
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, rewrite_robots
 
 
 class FleetPlan(NamedTuple):
     """A fleet file, its robots with their descriptions, their tables and what to expect of them."""
 
     file: FleetFile
-    robots: tuple[Described, ...]
+    robots: tuple[RewrittenRobot, ...]
     fleet: Fleet
 
 
@@ -30,8 +30,8 @@ def plan_fleet(file: FleetFile, also: Sequence[str] = ()) -> FleetPlan:
 
 
 def _planned(file: FleetFile, also: Sequence[str]) -> FleetPlan:
-    robots = describe(file.robots, file.policy, file.vocabulary)
-    stacks: dict[tuple[str, ...], list[Described]] = {}
+    robots = rewrite_robots(file.robots, file.policy, file.vocabulary)
+    stacks: dict[tuple[str, ...], list[RewrittenRobot]] = {}
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
     fleets = [

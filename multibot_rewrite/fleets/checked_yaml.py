@@ -25,14 +25,14 @@ TYPES = {
 SHOWN = 60
 
 
-class Fitting(NamedTuple):
+class CheckedYaml(NamedTuple):
     """The data of a file, and the line of each of its values by path."""
 
     data: dict[str, Any]
     lines: Mapping[Path, int]
 
 
-def read_fitting(path: str, schema: Mapping[str, Any], hint: str) -> Fitting:
+def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
     """Read a file; InputError with its line, the key and what is allowed. ``hint`` is what to write
     into one that is empty."""
     document = read_yaml(read_file(path), path)
@@ -52,7 +52,7 @@ def read_fitting(path: str, schema: Mapping[str, Any], hint: str) -> Fitting:
     except RecursionError:
         raise InputError(f"{path}: lists and maps go too deep; write it flat") from None
     _validate(data, schema, path, lines)
-    return Fitting(data, lines)
+    return CheckedYaml(data, lines)
 
 
 def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:
@@ -83,14 +83,14 @@ def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Pa
     line = next(lines[path[:end]] for end in range(len(path), -1, -1) if path[:end] in lines)
     if error.validator == "additionalProperties":
         line = lines.get((*path, _unknown(error)), line)
-    raise InputError(f"{file}:{line}: {_where(path)}{_said(error)}")
+    raise InputError(f"{file}:{line}: {_where(path)}{_in_words(error)}")
 
 
 def _unknown(error: Any) -> Any:
     return next(key for key in error.instance if key not in error.schema["properties"])
 
 
-def _said(error: Any) -> str:
+def _in_words(error: Any) -> str:
     """A validation error in words, with what is allowed."""
     given, wanted = error.instance, error.validator_value
     if error.validator == "additionalProperties":

@@ -12,12 +12,12 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.graph_names import NOTHING, is_topic, robot_topic
-from multibot_rewrite.companions.respell import is_declared, respell
-from multibot_rewrite.companions.rviz.blocks import Block, blocks, cut_out, is_block, moved, newline
-from multibot_rewrite.companions.rviz.names import without_placeholder
-from multibot_rewrite.companions.rviz.read import text_of
-from multibot_rewrite.companions.template import Template, cut, fill
+from multibot_rewrite.companions.names.rename_map import is_declared, spell
+from multibot_rewrite.companions.names.robot_topics import NOTHING, is_topic, robot_topic
+from multibot_rewrite.companions.rviz.read_config import text_of
+from multibot_rewrite.companions.rviz.values import without_placeholder
+from multibot_rewrite.companions.template import FileTemplate, fill_template, make_template
+from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, moved, newline
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
@@ -30,10 +30,10 @@ from multibot_rewrite.companions.yaml_text import (
     read_yaml,
     replaced,
 )
-from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
 from multibot_rewrite.naming import POSTFIX
-from multibot_rewrite.remap.bridge import Bridged, as_yaml
+from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml
 
 # Stands for the name of the spawned model, which may be a third word.
 MODEL = "multibotModelHole"
@@ -86,7 +86,9 @@ class _Entry(NamedTuple):
     own: bool
 
 
-def bridge(document: YamlText, context: Context, known: Mapping[str, str] = NOTHING) -> BridgeFile:
+def rewrite_bridge(
+    document: YamlText, context: Context, known: Mapping[str, str] = NOTHING
+) -> BridgeFile:
     """Find what each robot needs for itself; ``known`` is ``known_topics`` of the robot hole.
 
     Names come out in full, so it makes no difference which namespace the bridge runs in, whether it
@@ -99,7 +101,11 @@ def bridge(document: YamlText, context: Context, known: Mapping[str, str] = NOTH
     own = [it for it in entries if it.own]
     shared = [it for it in entries if not it.own]
     splices = [splice for it in own for splice in _splices(document, it, context)]
-    template = cut(document.text, [*_only(document, own), *splices]) if own else cut("", ())
+    template = (
+        make_template(document.text, [*_only(document, own), *splices])
+        if own
+        else make_template("", ())
+    )
     text = cut_out(document, 0, len(document.text), _only(document, shared)) if shared else ""
     return BridgeFile(Companion(template, tuple(findings)), text)
 
@@ -122,9 +128,9 @@ def _entries(
     return found
 
 
-def filled(template: Template, graph: str, spelled: str, model: str) -> str:
+def fill_bridge(template: FileTemplate, graph: str, spelled: str, model: str) -> str:
     """A robot's bridge file; InputError where its model's name cannot be part of a gz topic."""
-    text = fill(template, graph, spelled)
+    text = fill_template(template, graph, spelled)
     if MODEL in text and not _GZ_WORD.fullmatch(model):
         raise InputError(
             f"model {model!r}: a gz topic cannot hold it; use letters, digits, _ . and - in it"
@@ -218,14 +224,14 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     if bare in WORLD or bare.startswith("world/"):
         return name
     base, ending = _family(name, gz_type) if context.topics.naming.topics == POSTFIX else (name, "")
-    return respell(context.topics, "topic", base, namespaced=False) + ending
+    return spell(context.topics, "topic", base, namespaced=False) + ending
 
 
 def _part(context: Context, found: re.Match[str]) -> str:
     """A link, joint or sensor in a topic's name; one that is not declared stays."""
     kind, name = found.groups()
     known = is_declared(context.names, kind, name)
-    return f"{kind}/{respell(context.names, kind, name) if known else name}"
+    return f"{kind}/{spell(context.names, kind, name) if known else name}"
 
 
 def _family(name: str, gz_type: str) -> tuple[str, str]:
@@ -267,7 +273,7 @@ def _side(
 
 
 def _frame(node: yaml.ScalarNode, context: Context) -> Iterator[Splice]:
-    new = respell(context.names, "frame", node.value)
+    new = spell(context.names, "frame", node.value)
     if new != node.value:
         yield replaced(node, new)
 
@@ -332,7 +338,9 @@ def _finding(
     return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
 
 
-def as_spawned(carried: Iterable[Bridged], robots: Iterable[Described]) -> list[Bridged]:
+def as_spawned(
+    carried: Iterable[BridgedTopic], robots: Iterable[RewrittenRobot]
+) -> list[BridgedTopic]:
     """What descriptions say has to be carried, below the names that the models are spawned by.
 
     ``ros_gz_sim create -name`` gives a model another name than its description has.
@@ -341,7 +349,7 @@ def as_spawned(carried: Iterable[Bridged], robots: Iterable[Described]) -> list[
     return [_spawned(it, names[it.robot]) if it.robot in names else it for it in carried]
 
 
-def _spawned(it: Bridged, robot: Described) -> Bridged:
+def _spawned(it: BridgedTopic, robot: RewrittenRobot) -> BridgedTopic:
     # Where frames stay bare the generated name is the robot's, not that of the description.
     inner = robot.member.inventory.document.root.get("name", "")
     found = _MODEL.fullmatch(it.gz)
@@ -350,8 +358,8 @@ def _spawned(it: Bridged, robot: Described) -> Bridged:
     return it._replace(gz=f"{found['above']}{robot.spec.model}{found['rest'] or ''}")
 
 
-def merged(
-    texts: Iterable[tuple[str, str]], generated: Iterable[Bridged]
+def merge_bridges(
+    texts: Iterable[tuple[str, str]], generated: Iterable[BridgedTopic]
 ) -> tuple[str, tuple[Finding, ...]]:
     """One file of several (file, text) and what descriptions say has to be carried.
 

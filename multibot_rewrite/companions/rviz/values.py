@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.graph_names import NOTHING, robot_topic
-from multibot_rewrite.companions.respell import Names, respell
+from multibot_rewrite.companions.names.rename_map import RenameMap, spell
+from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
-from multibot_rewrite.companions.rviz.read import Place, Shown, rviz_data, text_of
+from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, rviz_data, text_of
 from multibot_rewrite.companions.yaml_text import Splice, replaced
 from multibot_rewrite.naming import NAMESPACE
 
@@ -30,20 +30,20 @@ class RvizRobot(NamedTuple):
     """
 
     name: str
-    names: Names
-    topics: Names
+    names: RenameMap
+    topics: RenameMap
     colour: str | tuple[int, ...] = ""
     known: Mapping[str, str] = NOTHING
     tf_prefix: str = ""
 
 
-def is_name(place: Place) -> bool:
+def is_name(place: ValuePlace) -> bool:
     """A place of a name that may be the robot's; nothing, null and blocks of text are none."""
     node = place.node
     return place.word in NAMED and node.tag != _NULL and node.style not in ("|", ">")
 
 
-def spelled(place: Place, robot: RvizRobot) -> str:
+def robot_value(place: ValuePlace, robot: RvizRobot) -> str:
     """The value of a place as the robot has it."""
     value = str(place.node.value)
     if place.word == TF_PREFIX:
@@ -53,7 +53,7 @@ def spelled(place: Place, robot: RvizRobot) -> str:
     if place.word == GRAPH_NAMESPACE:
         reached = robot.topics.naming.topics == NAMESPACE
         return robot_topic(robot.topics, without_placeholder(value, "/")) if reached else value
-    return respell(robot.names, place.word, without_placeholder(value, ""))
+    return spell(robot.names, place.word, without_placeholder(value, ""))
 
 
 def without_placeholder(value: str, lead: str) -> str:
@@ -68,21 +68,21 @@ def without_placeholder(value: str, lead: str) -> str:
     return value
 
 
-def changed(one: Shown, robot: RvizRobot) -> Iterator[tuple[Place, str]]:
+def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[ValuePlace, str]]:
     """The places of a display or tool that say something else for the robot, and what."""
     for place in filter(is_name, one.places):
-        new = spelled(place, robot)
+        new = robot_value(place, robot)
         if new != place.node.value:
             yield place, new
 
 
-def edits(one: Shown, robot: RvizRobot, colour: Colour | None) -> list[Splice]:
+def item_splices(one: RvizItem, robot: RvizRobot, colour: Colour | None) -> list[Splice]:
     """The splices that make a display or tool the robot's."""
-    made = [replaced(place.node, new) for place, new in changed(one, robot)]
+    made = [replaced(place.node, new) for place, new in changed_values(one, robot)]
     return made + ([*_painted(one, colour)] if colour else [])
 
 
-def _painted(one: Shown, colour: Colour) -> Iterator[Splice]:
+def _painted(one: RvizItem, colour: Colour) -> Iterator[Splice]:
     """A colour that shows whose data it is, where the display has one colour for all of it."""
     flat = text_of(one.node, "Color Transformer") == "FlatColor"
     for place in one.places:
@@ -99,4 +99,4 @@ def painted(node: yaml.ScalarNode, colour: Colour) -> Splice:
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:
     """The frame that a scalar names, as the robot has it; empty for any other node."""
     given = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
-    return respell(robot.names, FRAME, without_placeholder(given, ""))
+    return spell(robot.names, FRAME, without_placeholder(given, ""))

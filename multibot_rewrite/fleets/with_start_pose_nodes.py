@@ -6,17 +6,17 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.fleets.plan import FleetPlan
-from multibot_rewrite.fleets.transforms import NODE, place
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.start_poses import NODE, start_poses
 from multibot_rewrite.graph.transforms import Edge
-from multibot_rewrite.remap.bridge import TF_TYPE
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.remap.records import (
     PUBLISHES,
     TOPIC,
     Endpoint,
-    Name,
     NodeFacts,
     NodeTable,
+    ResolvedName,
     Table,
 )
 from multibot_rewrite.remap.table import joined, names_of, node_table
@@ -25,10 +25,10 @@ STATIC = "/tf_static"
 HOLDER = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
 
 
-def started(plan: FleetPlan) -> Fleet:
+def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
     """The planned fleet, and a publisher of a static transform for each robot that needs one."""
     fleet = plan.fleet
-    held = [it for one in alone(plan) for it in place(one).transforms]
+    held = [it for one in split_per_robot(plan) for it in start_poses(one).transforms]
     if not held:
         return fleet
     tables = [node_table(it.robot, HOLDER, fleet.naming) for it in held]
@@ -40,12 +40,12 @@ def started(plan: FleetPlan) -> Fleet:
     )
 
 
-def alone(plan: FleetPlan) -> Iterator[FleetPlan]:
+def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
     """Each robot as a fleet of its own: for steps that look through everything there is of a robot,
     which would else look through all the others as well."""
     fleet = plan.fleet
     nodes: dict[str, list[NodeTable]] = defaultdict(list)
-    names: dict[str, list[Name]] = defaultdict(list)
+    names: dict[str, list[ResolvedName]] = defaultdict(list)
     for node in fleet.table.nodes:
         nodes[node.robot].append(node)
     for name in fleet.table.names:

@@ -9,18 +9,18 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.params.known import KnownNode, Param, in_release
+from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
+from multibot_rewrite.companions.params.known_nodes import KnownNode, Param, in_release
+from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
-    Found,
-    Section,
+    ParamSection,
+    RawSection,
     finding,
     flattened,
     pattern_of,
 )
-from multibot_rewrite.companions.params.spelled import SPELLERS, expressible
-from multibot_rewrite.companions.params.uses import Uses
-from multibot_rewrite.companions.params.values import Desk
-from multibot_rewrite.companions.template import GRAPH
+from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
@@ -30,7 +30,7 @@ OFF = "# multibot: the default puts the namespace before frames"
 _FRAMES = ("frame", "link", "stem", "joint_prefix")
 
 
-class Line(NamedTuple):
+class DefaultLine(NamedTuple):
     """A parameter to insert: its comment, path and value as YAML."""
 
     comment: str
@@ -38,11 +38,13 @@ class Line(NamedTuple):
     value: str
 
 
-def inserted(
-    desk: Desk, pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
+def default_lines(
+    desk: ParamsJob,
+    pages: Sequence[tuple[ParamSection, SectionNames]],
+    beside: Sequence[RawSection],
 ) -> Iterator[Splice | Finding]:
     """Lines for the first section of each known node; what ``beside`` sets is set as well."""
-    everywhere = _everywhere(pages, beside)
+    everywhere = _set_anywhere(pages, beside)
     done: set[str] = set()
     for section, _ in pages:
         if section.node is None or section.shared or section.inner or section.full in done:
@@ -50,14 +52,14 @@ def inserted(
         done.add(section.full)
         same = [uses.known for other, uses in pages if other.full == section.full]
         here = set().union(*same) | _set_for(section, everywhere)
-        lines = list(missing(desk.context, section.node, here))
+        lines = list(missing_defaults(desk.context, section.node, here))
         if lines:
             yield _insert(desk.document, section.body, lines)
         yield from _inexpressible(desk, section, section.node, here)
 
 
 def _inexpressible(
-    desk: Desk, section: Section, node: KnownNode, here: set[str]
+    desk: ParamsJob, section: ParamSection, node: KnownNode, here: set[str]
 ) -> Iterator[Finding]:
     for param in node.defaults:
         if param.path not in here and not expressible(desk.context, param.kind):
@@ -68,25 +70,25 @@ def _inexpressible(
             yield finding(desk.document, key, "MF117", WARNING, message, "use affix: prefix")
 
 
-def missing(context: Context, node: KnownNode, here: set[str]) -> Iterator[Line]:
+def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
     """What a node takes by default and no two robots may share."""
     for param in node.defaults:
-        if param.path in here or not _has(param, context):
+        if param.path in here or not _is_in_release(param, context):
             continue
         if param.kind == "off":
-            yield Line(OFF, param.path, "false")
+            yield DefaultLine(OFF, param.path, "false")
         elif param.kind in _FRAMES and expressible(context, param.kind):
             text = SPELLERS[param.kind](context, param.default)
             if text != param.default:
-                yield Line(DEFAULT, param.path, quoted(text))
+                yield DefaultLine(DEFAULT, param.path, quoted(text))
 
 
-def _has(param: Param, context: Context) -> bool:
+def _is_in_release(param: Param, context: Context) -> bool:
     return not param.distros or in_release(param.distros, context.distro)
 
 
-def _everywhere(
-    pages: Sequence[tuple[Section, Uses]], beside: Sequence[Found]
+def _set_anywhere(
+    pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
 ) -> list[tuple[str, set[str]]]:
     """What is set for which nodes, where patterns or other files make that more than the section."""
     if not beside and not any(it.wild for it, _ in pages):
@@ -96,20 +98,26 @@ def _everywhere(
     return [(full, {name for name, _ in flattened(body)}) for full, body in bodies]
 
 
-def _set_for(section: Section, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
+def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
     """What any section sets that is for the same node, or may be."""
     found: set[str] = set()
     for full, names in everywhere:
-        if f"/{section.path}" == full or _meet(full, section.full) or _meet(section.full, full):
+        if (
+            f"/{section.path}" == full
+            or _matches(full, section.full)
+            or _matches(section.full, full)
+        ):
             found |= names
     return found
 
 
-def _meet(pattern: str, full: str) -> bool:
+def _matches(pattern: str, full: str) -> bool:
     return "*" in pattern and re.fullmatch(pattern_of(pattern), full) is not None
 
 
-def _insert(document: YamlText, body: yaml.MappingNode, lines: Sequence[Line]) -> Splice | Finding:
+def _insert(
+    document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
+) -> Splice | Finding:
     """The lines before the first parameter, as far in as it is."""
     if not body.value:
         text = ", ".join(f"{line.path}: {line.value}" for line in lines)
@@ -129,13 +137,13 @@ def _insert(document: YamlText, body: yaml.MappingNode, lines: Sequence[Line]) -
     return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
 
 
-def _texts(lines: Sequence[Line]) -> Iterator[str]:
+def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
     for comment in dict.fromkeys(line.comment for line in lines):
         yield comment
         yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
 
 
-def sources_without_topic(desk: Desk, section: Section) -> Iterator[Finding]:
+def sources_without_topic(desk: ParamsJob, section: ParamSection) -> Iterator[Finding]:
     """Sources of a costmap's layer that take their own id for the topic, below the costmap."""
     top = "observation_sources"
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
@@ -173,9 +181,9 @@ def without_section(
     patterns = [re.compile(pattern_of(full)) for full in sections]
     for name, node in nodes.items():
         place = context.nodes[name]
-        if GRAPH not in place or any(it.fullmatch(place) for it in patterns):
+        if NAMESPACE_SLOT not in place or any(it.fullmatch(place) for it in patterns):
             continue
-        lines = list(missing(context, node, set()))
+        lines = list(missing_defaults(context, node, set()))
         if lines:
             words = ", ".join(it.path for it in lines)
             message = f"{name} has no section, and what it takes then is every robot's: {words}"
