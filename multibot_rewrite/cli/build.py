@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import print_findings, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import (
@@ -20,7 +21,7 @@ from multibot_rewrite.fleets.manifest import (
     output_changes,
     read_manifest,
 )
-from multibot_rewrite.fleets.output_files import OutputFile, make_outputs
+from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import ERROR, Finding, UsageError
 from multibot_rewrite.remap.records import Problem
 from multibot_rewrite.sources.read import read_file

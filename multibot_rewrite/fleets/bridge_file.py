@@ -1,4 +1,4 @@
-"""A user's ros_gz_bridge file -> one for each robot, and what one bridge carries for all.
+"""A user's ros_gz_bridge file for one robot -> its entries for any robot, and those that all share.
 
 Sources: ros_gz jazzy ``ros_gz_bridge/src/bridge_config.cpp``; gz-sim's names ``/model/<name>/...``.
 """
@@ -16,33 +16,30 @@ from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, is_topic, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.rviz.values import without_placeholder
-from multibot_rewrite.companions.template import FileTemplate, fill_template, make_template
-from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, moved, newline
+from multibot_rewrite.companions.template import make_template
+from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
     anchors,
+    finding_at,
     is_text,
     items,
     line_of,
     pairs,
     quoted,
-    read_yaml,
     replaced,
 )
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
+from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import POSTFIX
-from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml
 
-# Stands for the name of the spawned model, which may be a third word.
-MODEL = "multibotModelHole"
+# Stands for the name of the spawned model: it may differ from the namespace and the tag.
+MODEL_SLOT = "multibotModelSlot"
 BOTH, ROS, GZ = "topic_name", "ros_topic_name", "gz_topic_name"
 TYPES = ("ros_type_name", "gz_type_name")
 DIRECTIONS = ("BIDIRECTIONAL", "GZ_TO_ROS", "ROS_TO_GZ")
 SERVICE = "service_name"
-# One topic that several gz topics may come out on.
-TF = frozenset({"/tf", "/tf_static"})
+
 KEYS: tuple[str, ...] = (
     BOTH,
     ROS,
@@ -55,26 +52,24 @@ KEYS: tuple[str, ...] = (
     "lazy",
 )
 KEYS += ("publish_optical_frame", "frame_id", "qos_profile", "gz_req_type_name", "gz_rep_type_name")
-# gz topics of the whole simulation beside those below /world.
+# gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})
-_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
+GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
 _PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")
 _PLACEHOLDER = re.compile(r"[<>{}$%]")
-# What gz-transport takes in a topic (gz-transport TopicUtils).
-_GZ_WORD = re.compile(r"[A-Za-z0-9_.-]+")
 
 
 class BridgeFile(NamedTuple):
-    """A bridge file: the entries of each robot with holes, and the text of those for all."""
+    """A bridge file: the entries of each robot with slots, and the text of those that all share."""
 
     own: Companion
     shared: str
 
 
 class _Entry(NamedTuple):
-    """An entry and its names: of both sides as they are, and as each robot has them.
+    """An entry and its names: both sides as they are, and as each robot has them.
 
-    ``own`` tells that each robot has it for itself.
+    ``own`` is true if each robot needs its own.
     """
 
     node: yaml.MappingNode
@@ -89,7 +84,7 @@ class _Entry(NamedTuple):
 def rewrite_bridge(
     document: YamlText, context: Context, known: Mapping[str, str] = NOTHING
 ) -> BridgeFile:
-    """Find what each robot needs for itself; ``known`` is ``known_topics`` of the robot hole.
+    """Find what each robot needs for itself; ``known`` is ``fleet_topics`` of the namespace slot.
 
     Names come out in full, so it makes no difference which namespace the bridge runs in, whether it
     expands gz names, and whether one bridge carries all robots. Raises InputError for a file that
@@ -113,29 +108,19 @@ def rewrite_bridge(
 def _entries(
     document: YamlText, context: Context, known: Mapping[str, str], findings: list[Finding]
 ) -> list[_Entry]:
-    """The entries that the bridge loads; what is to be told of any goes to the findings."""
+    """The entries that the bridge loads; what is wrong with others goes to ``findings``."""
     model = _model_of(document, findings)
     found: list[_Entry] = []
     assert document.root is not None
     for node, block in zip(document.root.value, blocks(document, document.root), strict=True):
         fault = _fault(node)
         if fault:
-            hint = "the bridge skips the entry, so it is left out"
-            findings.append(_finding(document, node, "MF502", WARNING, fault, hint))
+            hint = "ros_gz_bridge skips this entry, so it is left out"
+            findings.append(finding_at(document, node, "MF502", WARNING, fault, hint))
             continue
         found.append(_entry(node, block, context, model, known))
-        findings += _remarks(document, found[-1], context)
+        findings += _entry_findings(document, found[-1], context)
     return found
-
-
-def fill_bridge(template: FileTemplate, graph: str, spelled: str, model: str) -> str:
-    """A robot's bridge file; InputError where its model's name cannot be part of a gz topic."""
-    text = fill_template(template, graph, spelled)
-    if MODEL in text and not _GZ_WORD.fullmatch(model):
-        raise InputError(
-            f"model {model!r}: a gz topic cannot hold it; use letters, digits, _ . and - in it"
-        )
-    return text.replace(MODEL, model)
 
 
 def _refuse(document: YamlText) -> None:
@@ -143,22 +128,26 @@ def _refuse(document: YamlText) -> None:
     if root is None:
         raise InputError(f"{file}: the bridge file is empty; write a list of topics")
     if not isinstance(root, yaml.SequenceNode):
-        raise InputError(f"{file}:{line_of(root)}: no list of topics; start each with a dash")
+        raise InputError(
+            f"{file}:{line_of(root)}: not a list of topics; start each entry with a dash"
+        )
     if root.value and not is_block(root):
         raise InputError(
-            f"{file}:{line_of(root)}: a list in brackets; start each entry with a dash"
+            f"{file}:{line_of(root)}: the list is in brackets; start each entry with a dash"
         )
     for line, anchor in anchors(document):
-        raise InputError(f"{file}:{line}: the anchor or alias {anchor}; write the value out")
+        raise InputError(
+            f"{file}:{line}: anchor or alias {anchor} is not supported; write the value out"
+        )
 
 
 def _fault(node: yaml.Node) -> str:
-    """Why the bridge does not load an entry; empty where it does."""
+    """Why the bridge does not load an entry; empty if it does."""
     if not isinstance(node, yaml.MappingNode):
-        return "the entry is no map of keys and values"
+        return "the entry is not a map of keys and values"
     both, ros, gz = (text_of(node, key) for key in (BOTH, ROS, GZ))
     if both and (ros or gz):
-        return f"{BOTH} and {ROS if ros else GZ} exclude each other"
+        return f"{BOTH} cannot be used together with {ROS if ros else GZ}"
     if text_of(node, SERVICE):
         return ""
     missing = [key for key in TYPES if not text_of(node, key)]
@@ -166,25 +155,25 @@ def _fault(node: yaml.Node) -> str:
         return f"{' and '.join(missing or (ROS, GZ))} is missing"
     direction = text_of(node, "direction")
     known = not direction or direction in DIRECTIONS
-    return "" if known else f"direction {direction!r} is none of {', '.join(DIRECTIONS)}"
+    return "" if known else f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}"
 
 
 def _model_of(document: YamlText, findings: list[Finding]) -> str:
-    """The one model the file is for; others are told."""
+    """The one model the file is for; others are findings."""
     first = ""
-    told: set[str] = set()
+    reported: set[str] = set()
     for node in items(document.root):
         for key in (BOTH, ROS, GZ):
-            found = _MODEL.fullmatch(text_of(node, key))
+            found = GZ_MODEL.fullmatch(text_of(node, key))
             name = found["model"] if found else ""
             if not name or _PLACEHOLDER.search(name) or key == ROS:
                 continue
             first = first or name
-            if name != first and name not in told:
-                told.add(name)
-                message = f"model {name!r} beside {first!r}, of which there is one for each robot"
-                hint = "its topics stay as they are, once for all robots"
-                findings.append(_finding(document, node, "MF505", WARNING, message, hint))
+            if name != first and name not in reported:
+                reported.add(name)
+                message = f"model {name!r} is not the robot's model {first!r}"
+                hint = "its topics stay as they are and are bridged once for all robots"
+                findings.append(finding_at(document, node, "MF505", WARNING, message, hint))
     return first
 
 
@@ -195,7 +184,7 @@ def _entry(
     ros = both or text_of(node, ROS) or text_of(node, GZ)
     gz = both or text_of(node, GZ) or text_of(node, ROS)
     bare_ros, bare_gz = (without_placeholder(name, "/") for name in (ros, gz))
-    found = _MODEL.fullmatch(bare_gz)
+    found = GZ_MODEL.fullmatch(bare_gz)
     another = found and found["model"] != model and not _PLACEHOLDER.search(found["model"])
     if text_of(node, SERVICE) or another:
         return _Entry(node, block, ros, gz, ros, gz, False)
@@ -208,18 +197,18 @@ def _entry(
 
 
 def _in_full(name: str) -> str:
-    """A relative name would follow the namespace of the bridge; one to be filled in stays."""
+    """A relative name would follow the namespace of the bridge; a placeholder stays."""
     return name if _PLACEHOLDER.search(name) else f"/{name.lstrip('/')}"
 
 
 def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     """A gz topic as the rewritten description and the spawned model have it."""
-    found = _MODEL.fullmatch(name)
+    found = GZ_MODEL.fullmatch(name)
     rest = (found["rest"] or "") if found else name
     if _PLACEHOLDER.search(rest):
         return name
     if found:
-        return found["above"] + MODEL + _PART.sub(lambda it: _part(context, it), rest)
+        return found["above"] + MODEL_SLOT + _PART.sub(lambda it: _part(context, it), rest)
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):
         return name
@@ -228,7 +217,7 @@ def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
 
 
 def _part(context: Context, found: re.Match[str]) -> str:
-    """A link, joint or sensor in a topic's name; one that is not declared stays."""
+    """A link, joint or sensor in a topic; one that the description does not declare stays."""
     kind, name = found.groups()
     known = is_declared(context.names, kind, name)
     return f"{kind}/{spell(context.names, kind, name) if known else name}"
@@ -263,12 +252,12 @@ def _splices(document: YamlText, entry: _Entry, context: Context) -> Iterator[Sp
 def _side(
     entry: _Entry, key: str, node: yaml.ScalarNode, names: Mapping[str, str], ends: str
 ) -> Iterator[Splice]:
-    """One side's name, and the other's where the file leaves it to be the same."""
+    """One side's name, and the other's if the file leaves it out because it is the same."""
     other = GZ if key == ROS else ROS
     new = entry.new_ros if key == ROS else entry.new_gz
-    alone = not text_of(entry.node, other) and entry.new_ros != entry.new_gz
-    if alone or new != node.value:
-        text = names[key] + (f"{ends}{other}: {names[other]}" if alone else "")
+    single = not text_of(entry.node, other) and entry.new_ros != entry.new_gz
+    if single or new != node.value:
+        text = names[key] + (f"{ends}{other}: {names[other]}" if single else "")
         yield Splice(node.start_mark.index, node.end_mark.index, text)
 
 
@@ -286,33 +275,40 @@ def _only(document: YamlText, kept: Sequence[_Entry]) -> list[Splice]:
     return [Splice(it.start, it.end, "") for it in found if it not in stay]
 
 
-def _remarks(document: YamlText, entry: _Entry, context: Context) -> Iterator[Finding]:
+def _entry_findings(document: YamlText, entry: _Entry, context: Context) -> Iterator[Finding]:
     node = entry.node
     if _PLACEHOLDER.search(entry.new_ros + entry.new_gz):
-        message = f"{entry.ros!r} or its gz topic holds a placeholder that stays"
-        hint = "fill it for each robot, or write the names of one robot without its own name"
-        yield _finding(document, node, "MF503", WARNING, message, hint)
+        message = f"the placeholder in {entry.ros!r} or its gz topic is not replaced"
+        hint = "replace it for each robot, or write the topic without the robot's name"
+        yield finding_at(document, node, "MF503", WARNING, message, hint)
     elif not text_of(node, SERVICE) and not is_topic(entry.ros):
-        message = f"{entry.ros!r} is no name of a ROS topic"
-        yield _finding(document, node, "MF501", WARNING, message, f"give the entry a {ROS}")
-    for kind, name in _PART.findall(entry.gz if MODEL in entry.new_gz else ""):
+        message = f"{entry.ros!r} is not a valid ROS topic name"
+        yield finding_at(document, node, "MF501", WARNING, message, f"add a {ROS}")
+    for kind, name in _PART.findall(entry.gz if MODEL_SLOT in entry.new_gz else ""):
         if not is_declared(context.names, kind, name) and not _PLACEHOLDER.search(name):
             message = f"the description has no {kind} {name!r}{_nearest(name, context, kind)}"
-            yield _finding(document, node, "MF507", WARNING, message, "mend the name")
+            yield finding_at(document, node, "MF507", WARNING, message, "correct the name")
     if text_of(node, SERVICE) and not text_of(node, SERVICE).strip("/").startswith("world/"):
         message = f"service {text_of(node, SERVICE)!r} is bridged once for all robots"
-        yield _finding(document, node, "MF503", WARNING, message, "name it by hand for each robot")
+        yield finding_at(document, node, "MF503", WARNING, message, "add an entry for each robot")
     for key, there in pairs(node):
         if key.value not in KEYS:
             message = (
-                f"unknown key {key.value!r}, which the bridge reads over{_near(key.value, KEYS)}"
+                f"unknown key {key.value!r}, which ros_gz_bridge ignores{_near(key.value, KEYS)}"
             )
-            yield _finding(document, key, "MF504", WARNING, message, "mend the key")
+            yield finding_at(document, key, "MF504", WARNING, message, "correct the key")
         elif key.value not in (BOTH, ROS, GZ, "frame_id") and _is_mention(there, context):
             message = (
-                f"{there.value!r} is a link or joint, and nothing known says what it means here"
+                f"{there.value!r} is the name of a link or joint, but its use here is not known"
             )
-            yield _finding(document, there, "MF508", WARNING, message, "rename it by hand")
+            yield finding_at(
+                document,
+                there,
+                "MF508",
+                WARNING,
+                message,
+                "if it is a name, rename it by hand",
+            )
 
 
 def _is_mention(node: yaml.Node, context: Context) -> bool:
@@ -329,70 +325,3 @@ def _near(name: str, known: Iterable[str]) -> str:
 
     near = get_close_matches(name, list(known), 1, 0.6)
     return f", did you mean {near[0]!r}?" if near else ""
-
-
-def _finding(
-    document: YamlText, node: yaml.Node, code: str, level: str, message: str, hint: str
-) -> Finding:
-    mark = node.start_mark
-    return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
-
-
-def as_spawned(
-    carried: Iterable[BridgedTopic], robots: Iterable[RewrittenRobot]
-) -> list[BridgedTopic]:
-    """What descriptions say has to be carried, below the names that the models are spawned by.
-
-    ``ros_gz_sim create -name`` gives a model another name than its description has.
-    """
-    names = {it.spec.namespace: it for it in robots}
-    return [_spawned(it, names[it.robot]) if it.robot in names else it for it in carried]
-
-
-def _spawned(it: BridgedTopic, robot: RewrittenRobot) -> BridgedTopic:
-    # Where frames stay bare the generated name is the robot's, not that of the description.
-    inner = robot.member.inventory.document.root.get("name", "")
-    found = _MODEL.fullmatch(it.gz)
-    if not found or found["model"] not in (inner, robot.spec.namespace):
-        return it
-    return it._replace(gz=f"{found['above']}{robot.spec.model}{found['rest'] or ''}")
-
-
-def merge_bridges(
-    texts: Iterable[tuple[str, str]], generated: Iterable[BridgedTopic]
-) -> tuple[str, tuple[Finding, ...]]:
-    """One file of several (file, text) and what descriptions say has to be carried.
-
-    An entry of a file wins over a generated one of the same gz topic. Two gz topics that would come
-    out on one ROS topic are an error.
-    """
-    parts: list[str] = []
-    findings: list[Finding] = []
-    carried: dict[str, tuple[int, str]] = {}
-    for at, (file, text) in enumerate(texts):
-        document = read_yaml(text.encode(), file)
-        root = document.root
-        if not isinstance(root, yaml.SequenceNode) or not root.value:
-            continue
-        for node, (start, end, column) in zip(root.value, blocks(document, root), strict=True):
-            gz = _full(text_of(node, BOTH) or text_of(node, GZ) or text_of(node, ROS))
-            ros = _full(text_of(node, BOTH) or text_of(node, ROS) or text_of(node, GZ))
-            # What several files carry for all, as the clock, one does.
-            if carried.setdefault(gz, (at, ros))[0] == at:
-                findings += _meeting(document, node, gz, ros, carried)
-                parts.append(moved(cut_out(document, start, end), -column))
-    more = [it for it in generated if _full(it.gz) not in carried]
-    return "".join(parts) + as_yaml(more), tuple(findings)
-
-
-def _full(name: str) -> str:
-    return f"/{name.lstrip('/')}"
-
-
-def _meeting(
-    document: YamlText, node: yaml.Node, gz: str, ros: str, carried: Mapping[str, tuple[int, str]]
-) -> Iterator[Finding]:
-    first = next((other for other, (_, name) in carried.items() if name == ros), gz)
-    if first != gz and ros not in TF and text_of(node, "direction") != "ROS_TO_GZ":
-        message = f"gz topics {first} and {gz} both come out on {ros}"
-        yield _finding(document, node, "MF506", ERROR, message, "give each a ROS topic of its own")

@@ -98,7 +98,7 @@ def _owned(plan: FleetPlan, fleet: Fleet) -> list[RobotNames]:
 
 def _own(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     spec = robot.spec
-    names = robot.names._replace(robot=spec.spelled)
+    names = robot.names._replace(robot=spec.tag)
     kinds = {word: names.declared.get(word, ()) for word in ("link", "joint", "frame", "sensor")}
     bare: dict[str, set[str]] = {}
     for word, declared in (*kinds.items(), ("frame", USUAL_FRAMES)):
@@ -107,7 +107,7 @@ def _own(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     inventory = robot.member.inventory.declared
     right = {name for kind in inventory.values() for name in kind}
     right |= {name for spelled in bare.values() for name in spelled}
-    words = tuple(dict.fromkeys((spec.namespace, spec.spelled, spec.model)))
+    words = tuple(dict.fromkeys((spec.namespace, spec.tag, spec.model)))
     changed = {name: frozenset(it) for name, it in bare.items() if it != {name}}
     return RobotNames(robot, words, frozenset((*right, *graph)), changed)
 
@@ -181,7 +181,7 @@ def _masked(text: str, words: Iterable[str]) -> str:
 def _pattern(owned: RobotNames) -> tuple[object, ...]:
     """Which of a robot's words are the same: robots that differ in it cannot be compared."""
     spec = owned.robot.spec
-    return spec.namespace == spec.spelled, spec.namespace == spec.model, spec.spelled == spec.model
+    return spec.namespace == spec.tag, spec.namespace == spec.model, spec.tag == spec.model
 
 
 def _in_file(
@@ -273,7 +273,7 @@ def _on_top(look: ValueInFile) -> Iterator[Draft]:
 
 
 def _separators(look: ValueInFile) -> Iterator[Draft]:
-    word, bare = look.owned.robot.spec.spelled, look.owned.bare
+    word, bare = look.owned.robot.spec.tag, look.owned.bare
     for token in (it for it in _tokens(look) if not it.startswith("/")):
         for rest in _rests(token, word):
             right = bare.get(rest.strip(_BETWEEN), frozenset())
@@ -296,7 +296,7 @@ def _as_a_frame(look: ValueInFile, token: str, name: str) -> bool:
     if name in USUAL_FRAMES or any(name in declared.get(kind, ()) for kind in ("link", "frame")):
         return False
     return (
-        spell(look.owned.robot.names._replace(robot=look.owned.robot.spec.spelled), "frame", name)
+        spell(look.owned.robot.names._replace(robot=look.owned.robot.spec.tag), "frame", name)
         == token
     )
 

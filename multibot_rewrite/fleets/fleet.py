@@ -30,7 +30,7 @@ class Member(NamedTuple):
     """
 
     robot: str
-    spelled: str
+    tag: str
     inventory: Inventory
     places: tuple[str, ...]
 
@@ -78,12 +78,12 @@ def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts
     return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
 
 
-def member(source: Rewrite, data: bytes, spelled: str, tree: Tree) -> Member:
+def member(source: Rewrite, data: bytes, tag: str, tree: Tree) -> Member:
     """The robot of a rewrite; ``data`` is its description as it is in the end."""
     document = source.template.inventory.document
     # Lines of the source: those of a rewritten text are moved by what was inserted.
     places = tuple(plugin_places(source.template.inventory))
-    return Member(source.robot, spelled, collect(read_document(data, document.file), tree), places)
+    return Member(source.robot, tag, collect(read_document(data, document.file), tree), places)
 
 
 def assemble(
@@ -96,7 +96,7 @@ def assemble(
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
-        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.spelled)
+        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
     return Fleet(
         build_table([it.robot for it in members], facts, naming, plugins),
         inventories,
@@ -104,7 +104,7 @@ def assemble(
         edges,
         facts,
         _sources(members, plugins),
-        {it.robot: it.spelled for it in members if it.spelled != it.robot},
+        {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
 

@@ -41,7 +41,7 @@ class Pose(NamedTuple):
 class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
-    ``namespace`` has no slash in front; ``spelled`` is what stands before or behind its frames and
+    ``namespace`` has no slash in front; ``tag`` is what stands before or behind its frames and
     joints; ``pose`` is None where the file says none. ``companions`` maps a kind of ``KINDS`` to
     files. ``line`` is where it is in ``file``.
     """
@@ -51,7 +51,7 @@ class RobotSpec(NamedTuple):
     srdf: str
     arguments: Mapping[str, str]
     namespace: str
-    spelled: str
+    tag: str
     model: str
     pose: Pose | None
     colour: str | tuple[int, ...]
@@ -293,14 +293,14 @@ def _spelled(own: Mapping[str, Any], side: str, place: str) -> str:
 
 def _check_apart(robots: Sequence[RobotSpec]) -> None:
     """No two robots of one name, namespace, spelling or model, nor at one place."""
-    for what in ("name", "namespace", "spelled", "model", "pose"):
+    for what in ("name", "namespace", "tag", "model", "pose"):
         seen: dict[object, RobotSpec] = {}
         for robot in robots:
             value = getattr(robot, what)
             first = seen.setdefault(value, robot) if value is not None else robot
             if first is robot:
                 continue
-            word = {"spelled": "prefix or postfix"}.get(what, what)
+            word = {"tag": "prefix or postfix"}.get(what, what)
             shown = "the pose" if what == "pose" else f"the {word} {value!r}"
             both = f"{robot.name!r} has {shown} of {first.name!r} (line {first.line})"
             both = (

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from typing import NamedTuple
 
-from multibot_rewrite.fleets.output_files import OutputFile
+from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import InputError
 
 MANIFEST = "manifest.json"

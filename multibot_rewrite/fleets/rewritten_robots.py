@@ -74,10 +74,10 @@ def _described(
             robot,
             data,
             _spelled(semantic, robot, naming) if semantic else b"",
-            RenameMap(declared, naming, robot.spelled),
+            RenameMap(declared, naming, robot.tag),
             RenameMap(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
-            member(text, data, robot.spelled, tree),
+            member(text, data, robot.tag, tree),
             (*text.findings, *(semantic.findings if semantic else ())),
         )
 
@@ -85,12 +85,12 @@ def _described(
 def _spelled(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
     """The text with the robot's two names where each belongs: two rewrites, each proved, where the
     namespace and what is spelled into frames are not one word."""
-    if robot.spelled == robot.namespace:
+    if robot.tag == robot.namespace:
         return text.data
     template = text.template
     source, file = template.inventory.document.source, template.inventory.document.file
     data = _half(source, file, robot.namespace, _kinds(naming, graph=True), template)
-    return _half(data, file, robot.spelled, _kinds(naming, graph=False), template)
+    return _half(data, file, robot.tag, _kinds(naming, graph=False), template)
 
 
 def _kinds(naming: Naming, graph: bool) -> Naming:

@@ -16,11 +16,12 @@ from typing import Any, NamedTuple, NoReturn
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.fleets import spawn, teleop, transforms
+from multibot_rewrite.fleets import spawn, start_poses, teleop
+from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.output_files import OutputFile, Outputs, make_outputs
+from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rcl_parameters import (
     Value,
     check_values,
@@ -85,7 +86,7 @@ class NodeNames(NamedTuple):
 class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
-    ``namespace`` starts at the root; ``spelled`` is what stands in its frames and joints; ``pose`` is
+    ``namespace`` starts at the root; ``tag`` is what stands in its frames and joints; ``pose`` is
     None where the fleet file has none.
     """
 
@@ -95,7 +96,7 @@ class LoadedRobot:
         self._graph = spec.namespace
         self.name: str = spec.name
         self.model: str = spec.model
-        self.spelled: str = spec.spelled
+        self.tag: str = spec.tag
         self.pose: Pose | None = spec.pose
         namespaced = described.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
@@ -201,7 +202,7 @@ class LoadedRobot:
     def transform_arguments(self) -> list[str]:
         """``arguments`` of the ``static_transform_publisher`` of its pose; none if none is needed."""
         made = self._fleet.placed.transforms
-        return next((transforms.arguments(it) for it in made if it.robot == self._graph), [])
+        return next((start_poses.arguments(it) for it in made if it.robot == self._graph), [])
 
     def start_parameters(self, node: str) -> dict[str, Any]:
         """Parameters that tell ``node`` where the robot starts; empty where it does not take them."""
@@ -251,9 +252,9 @@ class LoadedFleet:
         return with_start_pose_nodes(self.plan)
 
     @cached_property
-    def placed(self) -> transforms.Placed:
+    def placed(self) -> start_poses.StartPoses:
         """Where its robots stand."""
-        return transforms.place(self.plan)
+        return start_poses.start_poses(self.plan)
 
     @cached_property
     def made(self) -> Outputs:

@@ -42,10 +42,10 @@ Parsed = Sequence[tuple[OutputText, YamlText]]
 
 def tf_conflicts(plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText]) -> Iterator[Finding]:
     """What two nodes of a robot send, and what two robots send on one topic."""
-    for kin in group_robots(plan):
-        robot = kin.robots[0]
+    for group in group_robots(plan):
+        robot = group.robots[0]
         parsed = list(_parsed(it for it in files if it.path.startswith(f"{robot.spec.name}/")))
-        yield from _twice(robot, list(_sent(fleet, kin, parsed)), parsed)
+        yield from _twice(robot, list(_sent(fleet, group, parsed)), parsed)
     yield from _between(plan, fleet)
 
 
@@ -82,12 +82,12 @@ def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[s
     return robot.spec.file, robot.spec.line
 
 
-def _sent(fleet: Fleet, kin: RobotGroup, files: Parsed) -> Iterator[SentTransform]:
-    robot = kin.robots[0]
+def _sent(fleet: Fleet, group: RobotGroup, files: Parsed) -> Iterator[SentTransform]:
+    robot = group.robots[0]
     name = robot.spec.namespace
     tree = list(description_edges(robot.member.inventory))
     yield from (SentTransform(edge, DESCRIPTION, "") for edge in tree)
-    facts = {it.name: it for it in kin.facts if it.sends}
+    facts = {it.name: it for it in group.facts if it.sends}
     full = {
         it.node: f"{it.namespace.rstrip('/')}/{it.name}"
         for it in fleet.table.nodes

@@ -209,7 +209,7 @@ def test_bytes_around_stay() -> None:
         (b"<robot/>", "t.xml:1: no behavior tree: it starts with <robot>"),
         (b"<!DOCTYPE root><root/>", "DOCTYPE and entities are not accepted"),
         ("<root a='ä'/>".encode("latin-1"), "UTF-8"),
-        (b"<root a='multibotGraphHole'/>", "this tool's own"),
+        (b"<root a='multibotNamespaceSlot'/>", "this tool's own"),
     ],
 )
 def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:

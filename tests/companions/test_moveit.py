@@ -96,7 +96,7 @@ def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
         ("/**:\n  ros__parameters:\n    a: 1\n", "a.yaml:2: it has ros__parameters"),
         ("speed: fast\nheight: 1\n", "no file of MoveIt's that is known: it starts with speed"),
         ("{}\n", "it starts with nothing"),
-        ("arm: {kinematics_solver: multibotSpelledHole}\n", "this tool's own"),
+        ("arm: {kinematics_solver: multibotTagSlot}\n", "this tool's own"),
         ("joint_limits: {? |\n  j1\n : 1}\n", "not YAML"),
         ("controller_list:\n  - joints: [*a]\n", "not YAML"),
         ("hardware_interface:\n  joints:\n    - >-\n      j1\n", "a.yaml:3: a name is a block"),

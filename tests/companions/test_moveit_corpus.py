@@ -17,7 +17,7 @@ from robots import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit
-from multibot_rewrite.companions.template import fill_template
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.naming import make_naming
@@ -100,7 +100,7 @@ def allowed(layout: str, old: str, names: Names) -> set[str]:
 
 
 def text_of(document: YamlText, context: Context) -> str:
-    return fill_template(rewrite_moveit(document, context).template, GRAPH, SPELLED)
+    return fill_template(rewrite_moveit(document, context).template, NAMESPACE_SLOT, TAG_SLOT)
 
 
 def prove(path: Path, layout: str, counted: Counter[str]) -> None:

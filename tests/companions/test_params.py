@@ -19,7 +19,7 @@ from multibot_rewrite.companions.params.known_nodes import (
     load_known_nodes,
 )
 from multibot_rewrite.companions.params.page import page
-from multibot_rewrite.companions.params.rewrite import rewrite_params, without_sections
+from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.model import Finding, InputError, UsageError
@@ -452,15 +452,17 @@ def test_lines_are_inserted_as_the_file_is_written() -> None:
 
 def test_a_node_without_any_section_is_told() -> None:
     document = read_yaml(section("amcl", "x: 1").encode(), "p.yaml")
-    found = without_sections([document], setting(L2))
+    found = nodes_without_section([document], setting(L2))
     assert {it.code for it in found} == {"MF125"}
     told = " ".join(it.message for it in found)
     assert "collision_monitor" in told
     assert "amcl" not in told.split()
     wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
-    assert "collision_monitor" not in str(without_sections([document, wild], setting(L2)))
-    assert without_sections([document], setting(L1)) == tuple(
-        it for it in without_sections([document], setting(L1)) if "tf_frame_prefix" in it.message
+    assert "collision_monitor" not in str(nodes_without_section([document, wild], setting(L2)))
+    assert nodes_without_section([document], setting(L1)) == tuple(
+        it
+        for it in nodes_without_section([document], setting(L1))
+        if "tf_frame_prefix" in it.message
     )
 
 

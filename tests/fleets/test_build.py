@@ -249,8 +249,8 @@ def test_findings_are_sorted_and_said_once(
     assert len(told) == 1
     assert "robot 'robot1'" in told[0]
     assert "so for 1 more robot" in told[0]
-    assert "multibotGraphHole" not in "".join(lines)
-    assert "multibotSpelledHole" not in "".join(lines)
+    assert "multibotNamespaceSlot" not in "".join(lines)
+    assert "multibotTagSlot" not in "".join(lines)
 
 
 def test_errors_stop_the_job_and_strict_makes_errors(

@@ -43,7 +43,7 @@ def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
 
 def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
     found = robot(tmp_path, "")
-    assert (found.name, found.namespace, found.spelled, found.model) == ("a",) * 4
+    assert (found.name, found.namespace, found.tag, found.model) == ("a",) * 4
     assert (found.pose, found.colour, found.stacks, dict(found.companions)) == (None, "", (), {})
     assert (found.line, found.file) == (2, str(tmp_path / "fleet.yaml"))
 
@@ -53,8 +53,8 @@ def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
     [
         pytest.param("namespace: b", "", "namespace", "b", id="namespace"),
         pytest.param("namespace: /b", "", "namespace", "b", id="slash"),
-        pytest.param("postfix: b", "", "spelled", "b", id="postfix"),
-        pytest.param("prefix: b", "affix: prefix\n", "spelled", "b", id="prefix"),
+        pytest.param("postfix: b", "", "tag", "b", id="postfix"),
+        pytest.param("prefix: b", "affix: prefix\n", "tag", "b", id="prefix"),
         pytest.param("model: b.1", "", "model", "b.1", id="model"),
         pytest.param("pose: {x: 1, yaw: 2.5}", "", "pose", Pose(x=1.0, yaw=2.5), id="pose"),
         pytest.param("pose: {}", "", "pose", Pose(), id="origin"),

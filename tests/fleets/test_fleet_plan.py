@@ -13,9 +13,9 @@ import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
 from lxml import etree
 
+from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
-from multibot_rewrite.fleets.output_files import make_outputs
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.model import MultibotError

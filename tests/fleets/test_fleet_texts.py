@@ -14,7 +14,7 @@ from robots import CORPUS
 
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets import spawn, teleop, transforms
+from multibot_rewrite.fleets import spawn, start_poses, teleop
 from multibot_rewrite.fleets.bridge_file import (
     BridgeFile,
     as_spawned,
@@ -305,9 +305,9 @@ def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 def test_a_pose_is_a_static_transform(
     fleet: Any, layout: str, body: str, child: str, rules: list[str]
 ) -> None:
-    found = transforms.place(fleet(layout, body=body))
+    found = start_poses.start_poses(fleet(layout, body=body))
     assert len(found.transforms) == 1 and not found.findings
-    words = shlex.split(transforms.command(found.transforms[0]))
+    words = shlex.split(start_poses.command(found.transforms[0]))
     assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
     assert words[4:16] == shlex.split("--x 1.0 --y -0.5 --z 0.0 --roll 0.0 --pitch 0.0 --yaw 1.57")
     assert words[16:20] == ["--frame-id", "map", "--child-frame-id", child]
@@ -315,7 +315,7 @@ def test_a_pose_is_a_static_transform(
 
 
 def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
-    found = transforms.place(fleet("L2", "diff_drive_controller"))
+    found = start_poses.start_poses(fleet("L2", "diff_drive_controller"))
     assert [it.child for it in found.transforms] == ["r1/odom"]
 
 
@@ -324,7 +324,7 @@ def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
 def test_no_second_parent_beside_a_localisation(
     fleet: Any, layout: str, stack: str, initial: list[str]
 ) -> None:
-    found = transforms.place(fleet(layout, stack, DRIVE))
+    found = start_poses.start_poses(fleet(layout, stack, DRIVE))
     assert not found.transforms
     assert [it.code for it in found.findings] == ([] if initial else ["MF701"])
     assert [it.node for it in found.initial] == initial
@@ -338,10 +338,12 @@ def test_no_second_parent_beside_a_localisation(
 
 def test_a_map_of_each_robot_stands_in_the_world(fleet: Any) -> None:
     more = "shared_frames: [world]\n"
-    slam = transforms.place(fleet("L2", "[robot_state, slam_toolbox]", DRIVE, more)).transforms
+    slam = start_poses.start_poses(
+        fleet("L2", "[robot_state, slam_toolbox]", DRIVE, more)
+    ).transforms
     assert [(it.parent, it.child, it.pose.x) for it in slam] == [("world", "r1/map", 1.0)]
-    amcl = transforms.place(fleet("L2", "[robot_state, amcl]", DRIVE, more))
-    assert [(it.child, it.pose) for it in amcl.transforms] == [("r1/map", transforms.ORIGIN)]
+    amcl = start_poses.start_poses(fleet("L2", "[robot_state, amcl]", DRIVE, more))
+    assert [(it.child, it.pose) for it in amcl.transforms] == [("r1/map", start_poses.ORIGIN)]
     assert [it.node for it in amcl.initial] == ["amcl"]
 
 
@@ -350,12 +352,12 @@ def test_a_description_that_stands_in_the_world_already(fleet: Any) -> None:
         '<link name="world"/><joint name="fix" type="fixed">'
         '<parent link="world"/><child link="base"/></joint>'
     )
-    found = transforms.place(fleet("L2", body=body))
+    found = start_poses.start_poses(fleet("L2", body=body))
     assert not found.transforms and [it.code for it in found.findings] == ["MF702"]
 
 
 def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
-    found = transforms.place(fleet("L2", more="world: world\n"))
+    found = start_poses.start_poses(fleet("L2", more="world: world\n"))
     assert found.transforms[0].parent == "world"
 
 

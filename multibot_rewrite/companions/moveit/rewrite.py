@@ -36,9 +36,16 @@ from multibot_rewrite.companions.names.undeclared import (
     renamed_names,
     undeclared_message,
 )
-from multibot_rewrite.companions.params.sections import PARAMETERS, finding
+from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, make_template
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
+from multibot_rewrite.companions.yaml_text import (
+    Splice,
+    YamlText,
+    finding_at,
+    is_text,
+    line_of,
+    quoted,
+)
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import NodeFacts
@@ -157,21 +164,21 @@ def _moveit(document: YamlText, context: Context, facts: Facts) -> Companion:
     kind = _kind(document)
     sites = find_names(document.root, kind.names if kind else {}, context.names)
     node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
-    desk = _MoveitJob(document, context, node, facts)
-    splices = [*_spliced(desk, sites.names), *_inserted(document, context)]
+    job = _MoveitJob(document, context, node, facts)
+    splices = [*_spliced(job, sites.names), *_inserted(document, context)]
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     found = sorted(set(_findings(document, context, sites)), key=lambda it: it[5:])
     return Companion(make_template(document.text, [*shift, *splices]), tuple(found))
 
 
-def _spliced(desk: _MoveitJob, sites: Iterable[MoveitName]) -> Iterator[Splice]:
+def _spliced(job: _MoveitJob, sites: Iterable[MoveitName]) -> Iterator[Splice]:
     """One splice for each scalar; a key may hold several names, an alias may reach one twice."""
     texts: dict[int, dict[int, tuple[MoveitName, str]]] = {}
     for site in sites:
-        new = _new_text(desk, site.word, site.text)
+        new = _new_text(job, site.word, site.text)
         _, other = texts.setdefault(id(site.scalar), {}).setdefault(site.at, (site, new))
         if other != new:
-            place = f"{desk.document.file}:{line_of(site.scalar)}"
+            place = f"{job.document.file}:{line_of(site.scalar)}"
             raise InputError(
                 f"{place}: an alias uses {site.text!r} as two kinds of name, which become {other!r}"
                 f" and {new!r}; write it out at both places".replace(TAG_SLOT, "ROBOT")
@@ -182,7 +189,7 @@ def _spliced(desk: _MoveitJob, sites: Iterable[MoveitName]) -> Iterator[Splice]:
         for at, (site, new) in sorted(parts.items(), reverse=True):
             value = value[:at] + new + value[at + len(site.text) :]
         if value != scalar.value:
-            yield _replaced(desk.document, scalar, value)
+            yield _replaced(job.document, scalar, value)
 
 
 def _replaced(document: YamlText, scalar: yaml.ScalarNode, new: str) -> Splice:
@@ -195,26 +202,26 @@ def _replaced(document: YamlText, scalar: yaml.ScalarNode, new: str) -> Splice:
     return Splice(marks.end() if marks else start, end, quoted(new, scalar.style or ""))
 
 
-def _new_text(desk: _MoveitJob, word: str, value: str) -> str:
+def _new_text(job: _MoveitJob, word: str, value: str) -> str:
     if word == "id":
         return value
     if word in _GRAPH_WORDS:
-        return spell_topic(desk.context, desk.node, word, value, FROM_NODE, desk.facts).text
+        return spell_topic(job.context, job.node, word, value, FROM_NODE, job.facts).text
     if word == "controller_topic":
-        return _controller_topic(desk, value)
+        return _controller_topic(job, value)
     if word == "controller":
-        return node_name(desk.context, value) if is_plain(value) else value
-    return SPELLERS[word](desk.context, value)
+        return node_name(job.context, value) if is_plain(value) else value
+    return SPELLERS[word](job.context, value)
 
 
-def _controller_topic(desk: _MoveitJob, value: str) -> str:
+def _controller_topic(job: _MoveitJob, value: str) -> str:
     """``/arm_controller/joint_trajectory``: below a node, whose name it follows."""
     head, slash, rest = value.rpartition("/")
     if not is_plain(value) or not head or value.startswith("~"):
-        return spell_topic(desk.context, desk.node, "topic", value, FROM_NODE, desk.facts).text
-    if desk.context.topics.naming.topics == NAMESPACE:
-        return spell(desk.context.topics, "topic", value)
-    return node_name(desk.context, head) + slash + rest
+        return spell_topic(job.context, job.node, "topic", value, FROM_NODE, job.facts).text
+    if job.context.topics.naming.topics == NAMESPACE:
+        return spell(job.context.topics, "topic", value)
+    return node_name(job.context, head) + slash + rest
 
 
 def _asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
@@ -245,7 +252,7 @@ def _inserted(document: YamlText, context: Context) -> Iterator[Splice]:
 def _findings(document: YamlText, context: Context, sites: MoveitNames) -> Iterator[Finding]:
     for key in sites.twice:
         message = f"{key.value!r} stands here twice, and PyYAML takes the last one"
-        yield finding(document, key, "MF303", WARNING, message, "delete one of them")
+        yield finding_at(document, key, "MF303", WARNING, message, "delete one of them")
     yield from _unreachable(document, context, sites)
     told: set[tuple[str, str]] = set()
     for site in sites.names:
@@ -266,7 +273,7 @@ def _unreachable(document: YamlText, context: Context, sites: MoveitNames) -> It
         if key is not None:
             message = "MoveIt asks for /controller_manager, and each robot's has a name of its own"
             hint = "use moveit_simple_controller_manager, or a layout with namespaces"
-            yield finding(document, key, "MF308", WARNING, message, hint)
+            yield finding_at(document, key, "MF308", WARNING, message, hint)
 
 
 def _named(site: MoveitName) -> Iterator[tuple[str, str]]:
@@ -284,22 +291,22 @@ def _name_finding(
     word, text = name
     naming = context.names.naming
     if word in _CLOSED and is_undeclared(context, word, text):
-        yield finding(
+        yield finding_at(
             document, site.scalar, "MF301", WARNING, *undeclared_message(context, word, text)
         )
     elif text and not is_plain(text) and _matters(context, word):
         message = f"{word} {text!r} holds a substitution, and stays as it is"
         hint = "see that what it is filled with is the robot's own name of it"
-        yield finding(document, site.scalar, "MF304", WARNING, message, hint)
+        yield finding_at(document, site.scalar, "MF304", WARNING, message, hint)
     elif word == "group" and "group" in naming.separators and not _has_groups(context):
         message = f"groups are renamed, but the SRDF that has {text!r} is not known: it stays"
-        yield finding(document, site.scalar, "MF305", WARNING, message, "give the SRDF: srdf:")
+        yield finding_at(document, site.scalar, "MF305", WARNING, message, "give the SRDF: srdf:")
     elif not expressible(context, word):
         message = f"{word} can only stand before names, and the naming is a postfix"
-        yield finding(document, site.scalar, "MF306", WARNING, message, "use affix: prefix")
+        yield finding_at(document, site.scalar, "MF306", WARNING, message, "use affix: prefix")
     elif word in _GRAPH_WORDS and is_plain(text) and (fault := check_topic_name(text)):
         message = f"{word} {text!r} is none: {fault.reason}"
-        yield finding(document, site.scalar, "MF307", WARNING, message, "correct it")
+        yield finding_at(document, site.scalar, "MF307", WARNING, message, "correct it")
 
 
 def _has_groups(context: Context) -> bool:
@@ -323,4 +330,4 @@ def _mentions(
         if is_text(scalar) and holds_a_name(text, names):
             message = f"unclaimed mention: {text!r}, and nothing known says what it means"
             hint = "it stays as it is: see whether it has to name one robot's"
-            yield finding(document, scalar, "MF302", WARNING, message, hint)
+            yield finding_at(document, scalar, "MF302", WARNING, message, hint)

@@ -1,4 +1,4 @@
-"""What each name of a parameter file becomes for a robot: one function for each kind of name."""
+"""What each name becomes for a robot: one function for each kind of name."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
-from multibot_rewrite.companions.template import NAMESPACE_SLOT
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, affix
 
 Speller = Callable[[Context, str], str]
@@ -15,12 +15,12 @@ _WORD = re.compile(r"[\w./-]+")
 
 
 def is_plain(value: str) -> bool:
-    """Is it a name, and no substitution or placeholder that a launch file fills?"""
+    """Is it a name, without substitutions or placeholders for a launch file?"""
     return bool(value) and "<" not in value and NOT_PLAIN.isdisjoint(value)
 
 
 def joint(context: Context, value: str) -> str:
-    """A joint, or that of another controller: ``controller/joint``."""
+    """A joint, or a joint of another controller: ``controller/joint``."""
     if is_declared(context.names, "joint", value):
         return spell(context.names, "joint", value)
     above, slash, name = value.rpartition("/")
@@ -36,7 +36,7 @@ def interface(context: Context, value: str) -> str:
         return value
     if "/" in owner or is_component(context, owner):
         return f"{_chain(context, owner)}/{last}"
-    # A description's gpios are not among the names that are known of it.
+    # Descriptions do not declare all their gpios.
     return f"{spell(context.names, 'gpio', owner)}/{last}"
 
 
@@ -46,7 +46,7 @@ def is_component(context: Context, value: str) -> bool:
 
 
 def _chain(context: Context, value: str) -> str:
-    """What stands before an interface: parts of the robot and controllers, which export theirs."""
+    """What is before an interface: parts of the robot, and controllers that export interfaces."""
     parts = (
         spell(context.names, "component", it)
         if is_component(context, it)
@@ -57,13 +57,13 @@ def _chain(context: Context, value: str) -> str:
 
 
 def controller(context: Context, value: str) -> str:
-    """A controller, which is a node: its name is its own where robots have no namespaces."""
+    """A controller is a node: without namespaces each robot's has a different name."""
     there = affix(context.topics.naming, "node", value) if is_plain(value) else None
     return there.spell(value, NAMESPACE_SLOT) if there else value
 
 
 def node(context: Context, value: str) -> str:
-    """A node's name as others ask for it; one that serves all robots keeps its own."""
+    """A node's name as others use it; a node that serves all robots keeps its name."""
     place = context.nodes.get(value.strip("/"), "")
     if place and NAMESPACE_SLOT not in place:
         return place if context.topics.naming.topics == NAMESPACE else value
@@ -74,7 +74,7 @@ def node(context: Context, value: str) -> str:
 
 
 def namespace(context: Context, value: str) -> str:
-    """A namespace from the root on; a relative one is below the robot's already."""
+    """An absolute namespace; a relative one is below the robot's already."""
     naming = context.topics.naming
     if not value.startswith("/") or naming.topics != NAMESPACE:
         return value
@@ -83,17 +83,17 @@ def namespace(context: Context, value: str) -> str:
 
 
 def stem(context: Context, value: str) -> str:
-    """The beginning of frames: only a prefix can stand there."""
+    """The beginning of frame names: only a prefix can be added."""
     return spell(context.names, "frame", value) if _prefixes(context) else value
 
 
 def link_prefix(context: Context, value: str) -> str:
-    """What the node puts before links, nothing at all included."""
+    """What the node adds before links; it may be empty."""
     return _prefix(context, "link", value)
 
 
 def joint_prefix(context: Context, value: str) -> str:
-    """What the node puts before joints, nothing at all included."""
+    """What the node adds before joints; it may be empty."""
     return _prefix(context, "joint", value)
 
 
@@ -123,7 +123,7 @@ def _declared(word: str) -> Speller:
     return lambda context, value: spell(context.names, word, value)
 
 
-# Topics and services need their node as well.
+# Topics and services depend on their node as well, see ``node_topics``.
 SPELLERS: Mapping[str, Speller] = {
     "joint": joint,
     "interface": interface,
@@ -139,7 +139,7 @@ SPELLERS: Mapping[str, Speller] = {
 
 
 def expressible(context: Context, kind: str) -> bool:
-    """Can the naming be written as what stands before names?"""
+    """Can a prefix parameter of this kind express the fleet's naming?"""
     of = {"stem": "frame", "link_prefix": "link", "joint_prefix": "joint"}.get(kind)
     return of is None or of not in context.names.naming.separators or _prefixes(context)
 
@@ -150,5 +150,5 @@ def is_shared_frame(context: Context, value: str) -> bool:
 
 
 def frames_differ(context: Context) -> bool:
-    """Do robots differ by their frames?"""
+    """Do the robots have different frame names?"""
     return not FRAME_KINDS.isdisjoint(context.names.naming.separators)

@@ -1,7 +1,7 @@
-"""Topics that parameters hold: what each becomes, proved by resolving it as the node does.
+"""Topics in parameters: what each becomes for a robot, checked by resolving it as the node does.
 
-A name read from a parameter is remapped like any other, so the rules of the remap table can move it
-as well: what a value becomes has to lead, with them, where the one robot's name led without them.
+A name read from a parameter is remapped like any other. So the new value must resolve, with the
+robot's remap rules, to the robot's version of the name that the old value resolves to without rules.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from multibot_rewrite.remap.table import node_table, parsed, placed, target_of
 from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound
 
 Facts = Mapping[str, NodeFacts]
-# How a relative name is taken: in the node's namespace, in the one above it (the node joins the two
-# itself), or in one that is not the robot's, so that it has to be written in full.
+# Where a relative name is resolved: in the node's namespace, in the one above it (the node joins the
+# two itself), or outside of the robot's namespace, so that it has to be made absolute.
 FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
 
 
 class TopicText(NamedTuple):
-    """What is written for a topic; ``astray`` is where it leads if not where it should, and
-    ``moved`` tells that a relative name had to be written in full."""
+    """The new text for a topic. ``wrong_target`` is what it resolves to if that is wrong, else empty;
+    ``made_absolute`` is true if a relative name had to be made absolute."""
 
     text: str
-    astray: str = ""
-    moved: bool = False
+    wrong_target: str = ""
+    made_absolute: bool = False
 
 
 @lru_cache
 def built_in_facts() -> Facts:
-    """Node -> facts, as the stacks have them; those of nodes with rules of their own first."""
+    """Node -> facts, as in the stacks; nodes with their own remap rules first."""
     library = built_in()
     facts = [node for stack in library.stacks.values() for node in stack.nodes]
     facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
@@ -48,7 +48,7 @@ def built_in_facts() -> Facts:
 
 
 def facts_by_name(facts: Iterable[NodeFacts]) -> Facts:
-    """The facts of the robots' nodes; the built-in ones where none are given."""
+    """The facts of the robots' nodes, or the built-in ones if none are given."""
     return {it.name: it for it in facts} or built_in_facts()
 
 
@@ -59,15 +59,17 @@ def spell_topic(
     if not is_plain(value) or value.startswith("~") or check_topic_name(value):
         return TopicText(value)
     text = _spelled(context, kind, value, reach == IN_FULL)
-    moved = reach == IN_FULL and not value.startswith("/")
+    made_absolute = reach == IN_FULL and not value.startswith("/")
     ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
     if not ruled:
-        return TopicText(text, moved=moved)
-    return _ruled_text(context, kind, (text, value), reach, ruled)._replace(moved=moved)
+        return TopicText(text, made_absolute=made_absolute)
+    return _ruled_text(context, kind, (text, value), reach, ruled)._replace(
+        made_absolute=made_absolute
+    )
 
 
 def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
-    """The name for a robot; ``absolute`` where it does not fall below the robot's namespace."""
+    """The name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
     naming = context.topics.naming
     lead = "" if value.startswith("/") else "/"
     if value.strip("/") in naming.shared_topics:
@@ -107,24 +109,24 @@ def _ruled(endpoint: Endpoint, context: Context) -> bool:
 def _ruled_text(
     context: Context, kind: str, texts: tuple[str, str], reach: str, node: NodeFacts
 ) -> TopicText:
-    """The spelled name if it leads to the right place, else the old one if a rule moves that."""
+    """The new name if it resolves correctly, else the old one if a rule moves that."""
     naming = context.topics.naming
     table = node_table(NAMESPACE_SLOT, node, naming, frozenset(context.nodes))
     bound = bind(table.name, table.namespace, parsed(table.rules))
     wanted = _wanted(context, kind, texts[1], node)
     root = placed(NAMESPACE_SLOT, "node", naming)[0] if reach == FROM_PARENT else table.namespace
-    led = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
-    good = [text for text, full in zip(texts, led, strict=True) if full == wanted]
+    resolved = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
+    good = [text for text, full in zip(texts, resolved, strict=True) if full == wanted]
     if not good:
-        return TopicText(texts[0], led[0])
-    # A rule moves what the node makes of the name as well: <costmap>_updates, <image>/compressed.
+        return TopicText(texts[0], resolved[0])
+    # A rule also moves names that the node derives: <costmap>_updates, <image>/compressed.
     ruled = naming.topics != NAMESPACE and reach == FROM_NODE
     return TopicText(good[-1] if ruled else good[0])
 
 
 def _wanted(context: Context, kind: str, value: str, node: NodeFacts) -> str:
-    """The robot's name for what the value means in a system of one robot, with the stack's rules."""
+    """The robot's name for the topic that the value means for a single robot with the stack's rules."""
     meant = expand(value, "/", "")
-    said = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
-    full = _spelled(context, kind, expand(said or meant, "/", ""), True)
+    remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
+    full = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
     return full if full.startswith("/") else f"/{full}"

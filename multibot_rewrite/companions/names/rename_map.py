@@ -1,4 +1,4 @@
-"""The rename map of one robot, for names that stand in other files than its description."""
+"""The rename map of one robot, for names in other files than its description."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from multibot_rewrite.naming import NOT_PLAIN, Naming, affix
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import resolve
 
-# What a word of the facts may be, tried in order.
+# Kinds of names in a description that a kind of value may refer to, tried in order.
 KINDS = {
     "frame": ("link", "frame"),
     "link": ("link",),
@@ -25,7 +25,7 @@ KINDS = {
 
 
 class RenameMap(NamedTuple):
-    """What the description declares (not rewritten), how it is spelled, and for whom."""
+    """The names that a description declares (not rewritten), the naming, and the robot."""
 
     declared: Declared
     naming: Naming
@@ -33,9 +33,9 @@ class RenameMap(NamedTuple):
 
 
 def spell(names: RenameMap, word: str, value: str, namespaced: bool = True) -> str:
-    """``value``, a name of the kind ``word``, as the robot spells it; what is no name stays.
+    """The robot's version of ``value``, a name of the kind ``word``; other values stay.
 
-    ``namespaced`` tells that a relative topic ends below the robot's namespace.
+    ``namespaced`` is true if a relative topic is resolved in the robot's namespace.
     """
     if not value or not NOT_PLAIN.isdisjoint(value) or "<" in value:
         return value

@@ -1,4 +1,4 @@
-"""Names of the ROS graph as files for one robot give them -> a robot's own, written in full."""
+"""Topics in files for one robot -> the absolute topic that each robot has instead."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ NOTHING: Mapping[str, str] = {}
 
 
 def is_topic(value: str) -> bool:
-    """A topic's name, and not a placeholder, a private name or nothing at all."""
+    """Is it a topic name: not empty, not private, without placeholders?"""
     if not value or value.startswith("~") or not NOT_PLAIN.isdisjoint(value):
         return False
     return "//" not in value and check_topic_name(value) is None
 
 
 def robot_topic(names: RenameMap, value: str, known: Mapping[str, str] = NOTHING) -> str:
-    """The robot's full name of a topic; ``value`` itself where it is shared or is none.
+    """The robot's absolute topic; ``value`` itself if it is shared or not a topic name.
 
     ``known`` is ``fleet_topics`` of the robot, for names that its nodes do not follow the rule in.
     """
@@ -37,7 +37,7 @@ def robot_topic(names: RenameMap, value: str, known: Mapping[str, str] = NOTHING
 
 
 def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
-    """What one robot alone calls its nodes' topics -> what they are in a fleet's table."""
+    """Topics of a single robot's nodes -> the same topics of ``robot`` in a fleet's table."""
     ours = {node.name for node in facts if not node.shared}
     stack = {
         f"{node.namespace.rstrip('/')}/{node.name}": node.node

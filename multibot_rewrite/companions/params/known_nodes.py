@@ -1,6 +1,6 @@
-"""What is known of nodes' parameters: which hold names, of what, and what is taken where none is set.
+"""Known nodes and their parameters: which of them hold names, of what kind, and their defaults.
 
-From ``params.yaml`` and files of the same shape.
+Read from ``params.yaml`` and files of the same shape.
 """
 
 from __future__ import annotations
@@ -30,20 +30,20 @@ NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "
 GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
 OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
 KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, "off", "exclusive", "keep")
-# What may stand for a segment of a path; no name of a robot is in an id.
+# Placeholders for a segment of a path; an id holds no name of a robot.
 SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
 NODE_KEYS = ("package", "aliases", "types", "known_by", "absolute", "note", "params")
 PARAM_KEYS = ("kind", "default", "list", "distros", "absolute", "note")
-# Undeclared names of these kinds stay as they are, so that a wrong guess does no harm.
+# Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")
 _INDEX = "<index>"
 
 
 class Param(NamedTuple):
-    """A parameter by its flattened path: what its value is, and what the node takes without one.
+    """A parameter by its dotted path: what its value is, and its default.
 
-    ``distros`` are the only releases that have it, ``absolute`` those in which a relative topic of
-    it does not fall below the robot's namespace; both empty for none.
+    ``distros`` are the only releases that have it, ``absolute`` those in which a relative topic in
+    it is not resolved in the robot's namespace; both may be empty.
     """
 
     path: str
@@ -66,9 +66,8 @@ class Branch(NamedTuple):
 
 
 class KnownNode(NamedTuple):
-    """A node's parameters; ``types`` are those of controllers, ``known_by`` parameters that tell
-    the node where its section has another name, ``defaults`` parameters of one name each that the
-    node takes for granted."""
+    """A node's parameters; ``types`` are controller types, ``known_by`` parameters that identify the
+    node if its section has another name, ``defaults`` parameters that hold one name by default."""
 
     name: str
     package: str
@@ -98,7 +97,7 @@ class KnownNodes(NamedTuple):
 
 @lru_cache
 def built_in_nodes() -> KnownNodes:
-    """What this package knows."""
+    """The nodes that this package knows."""
     text = (
         files("multibot_rewrite.companions.params")
         .joinpath("params.yaml")
@@ -108,7 +107,7 @@ def built_in_nodes() -> KnownNodes:
 
 
 def load_known_nodes(path: str = "") -> KnownNodes:
-    """The built-in knowledge and what a file of the same shape adds to it or says anew.
+    """The built-in nodes, and those that a file of the same shape adds or changes.
 
     Raises UsageError, with file and line, for whatever is wrong in it.
     """
@@ -126,7 +125,7 @@ def load_known_nodes(path: str = "") -> KnownNodes:
 
 
 def in_release(words: str, distro: str) -> bool:
-    """Is this release among ``jazzy``, ``<=jazzy`` or ``kilted+``? An unknown one is the newest."""
+    """Is this release in ``jazzy``, ``<=jazzy`` or ``kilted+``? An unknown release is the newest."""
     if not words:
         return False
     last = len(RELEASES) - 1
@@ -138,7 +137,7 @@ def in_release(words: str, distro: str) -> bool:
 
 
 def guess(known: KnownNodes, path: str) -> str:
-    """The kind that the last word of a path makes likely; empty for none."""
+    """The kind that the last word of a path suggests; empty for none."""
     found = known.guessing.fullmatch(path, path.rfind(".") + 1)
     return (found.lastgroup or "") if found else ""
 
@@ -178,7 +177,7 @@ def _known(
 
 
 def _node(name: str, item: YamlItem, old: KnownNode | None) -> KnownNode:
-    """A node as a file has it; what it says of a node that is known is added to that."""
+    """A node as a file describes it; of a known node, what the file adds."""
     keys = table(item, f"node {name!r}", NODE_KEYS)
     absolute = _releases(keys, "absolute")
     params = dict(old.params) if old else {}
@@ -198,7 +197,7 @@ def _node(name: str, item: YamlItem, old: KnownNode | None) -> KnownNode:
 
 
 def _has_default(param: Param) -> bool:
-    """Does the node take something for granted that has to be there once, under this very path?"""
+    """Does the parameter have a default, and a path without placeholders?"""
     return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
 
 
@@ -209,7 +208,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         return Param(path, kind, absolute=absolute if kind == "topic" else "")
     keys = table(item, f"parameter {path!r}", PARAM_KEYS)
     if "kind" not in keys:
-        wrong(item, f"parameter {path!r} has no kind; write one of {', '.join(KINDS)}")
+        wrong(item, f"parameter {path!r} has no kind; add kind: with one of {', '.join(KINDS)}")
     kind = _one_of(keys["kind"], "kind", word(keys["kind"], "kind"), KINDS)
     return Param(
         path,
@@ -225,7 +224,10 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
 def _check_path(path: str, item: YamlItem) -> None:
     for segment in path.split("."):
         if not segment:
-            wrong(item, f"parameter {path!r} has an empty segment; write names with dots between")
+            wrong(
+                item,
+                f"parameter {path!r} has an empty segment; separate names by single dots",
+            )
         if segment.startswith("<"):
             _one_of(item, "segment", segment[1:-1], SEGMENTS)
 
@@ -244,8 +246,8 @@ def _releases(keys: Mapping[str, YamlItem], key: str) -> str:
 
 
 def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:
-    """Parameters that are likely the same in a node nobody knows: several nodes have them, all with
-    one meaning, or their name says as much."""
+    """Parameters that likely mean the same in an unknown node: several nodes have them with one
+    meaning, or their name suggests it."""
     found: dict[str, list[Param]] = {}
     for node in nodes.values():
         for param in node.params.values():

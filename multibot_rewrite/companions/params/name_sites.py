@@ -1,4 +1,4 @@
-"""Every parameter of a section -> the names in it: of what kind, in keys and in values."""
+"""Every parameter of a section -> the names in its key and value, and the kind of each."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from multibot_rewrite.model import InputError
 
 STRING = "tag:yaml.org,2002:str"
 NULL = "tag:yaml.org,2002:null"
-# What rcl takes for a boolean, though PyYAML does not.
+# Booleans for rcl, but not for PyYAML.
 _BOOLEANS = frozenset("yYnN")
 _NUMBER = re.compile(r"[-+.\d]")
 _STEM = re.compile(r"(.*?)\d+")
-# Words of a path that hold no name of the robot.
+# Segments of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
-# Nothing at all is what stands before a name that has no prefix yet.
+# An empty prefix is replaced as well.
 _TAKE_EMPTY = ("link_prefix", "joint_prefix")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
 
 
 class NameSite(NamedTuple):
-    """A name: the scalar it stands in, the key of its parameter, its kind and what is known of it.
+    """A name: its scalar, the key of its parameter, its kind and what is known of the parameter.
 
-    ``param`` is None where the kind is a guess. ``at`` is the segment of a key, -1 for a value.
-    ``layer`` is the mapping that the parameter stands in.
+    ``param`` is None if the kind is a guess. ``at`` is the segment of a key, -1 for a value.
+    ``layer`` is the mapping that the parameter is in.
     """
 
     scalar: yaml.ScalarNode
@@ -42,11 +42,11 @@ class NameSite(NamedTuple):
 
 
 class SectionNames(NamedTuple):
-    """What a section holds: names, parameters by their known path, scalars that nothing is known
-    of, keys without a value, keys that stand in one mapping twice, and keys that nothing is known of.
+    """What a section holds: names, known parameters by path, scalars of unknown parameters, keys
+    without a value, keys that are twice in one mapping, and keys of unknown parameters.
     """
 
-    names: list[NameSite]
+    sites: list[NameSite]
     known: set[str]
     unclaimed: list[yaml.ScalarNode]
     empty: list[yaml.ScalarNode]
@@ -54,17 +54,17 @@ class SectionNames(NamedTuple):
     keys: list[yaml.ScalarNode]
 
 
-# Where the path so far leads to, and the names in its keys: key, segment and what it is.
+# The branch that the path so far leads to, and the names in its keys: key, segment and kind.
 _Mark = tuple[yaml.ScalarNode, int, str]
 _State = tuple[Branch, tuple[_Mark, ...]]
 
 
 def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> SectionNames:
-    """Look at every parameter of a section; InputError for keys that are no words."""
-    uses = SectionNames([], set(), [], [], [], [])
+    """Look at every parameter of a section; InputError for keys that are not scalars."""
+    names = SectionNames([], set(), [], [], [], [])
     tree = section.node.tree if section.node else known.anywhere
-    _walk(document, section.body, [(tree, ())], known, uses)
-    return uses
+    _walk(document, section.body, [(tree, ())], known, names)
+    return names
 
 
 def _walk(
@@ -72,24 +72,24 @@ def _walk(
     body: yaml.MappingNode,
     states: list[_State],
     known: KnownNodes,
-    uses: SectionNames,
+    names: SectionNames,
 ) -> None:
     seen = set()
     for key, value in body.value:
         if not isinstance(key, yaml.ScalarNode):
             place = f"{document.file}:{line_of(key)}"
-            raise InputError(f"{place}: a key is a mapping or a list; write a name")
+            raise InputError(f"{place}: a key is a mapping or a list; use a name as key")
         if key.value in seen:
-            uses.twice.append(key)
+            names.twice.append(key)
         seen.add(key.value)
         below = _below(states, key.value, key) if states else states
         if not below:
-            uses.keys.append(key)
+            names.keys.append(key)
         if isinstance(value, yaml.MappingNode):
-            _walk(document, value, below, known, uses)
-        # Most parameters are numbers that nothing is known of.
+            _walk(document, value, below, known, names)
+        # Most parameters are numbers that hold no name.
         elif below or value.tag not in _NO_NAMES:
-            _claim(key, value, below, body, known, uses)
+            _claim(key, value, below, body, known, names)
 
 
 def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
@@ -115,22 +115,22 @@ def _claim(
     states: list[_State],
     layer: yaml.MappingNode,
     known: KnownNodes,
-    uses: SectionNames,
+    names: SectionNames,
 ) -> None:
-    """What one parameter is: one that is known, one that its name tells, or an unclaimed one."""
+    """What one parameter holds: known, guessed from its name, or unclaimed."""
     if value.tag == NULL and not value.value:
-        uses.empty.append(key)
+        names.empty.append(key)
     param = None
     for branch, marks in states:
         if branch.params:
             param = branch.params[0]
-            uses.known.add(param.path)
+            names.known.add(param.path)
             for mark, at, kind in marks:
                 word = mark.value.split(".")[at]
-                uses.names.append(NameSite(mark, mark, kind, param, word, at, layer))
+                names.sites.append(NameSite(mark, mark, kind, param, word, at, layer))
             break
     if param is None or param.kind != "keep":
-        _values(key, items(value), param, layer, known, uses)
+        _values(key, items(value), param, layer, known, names)
 
 
 def _values(
@@ -139,25 +139,25 @@ def _values(
     param: Param | None,
     layer: yaml.MappingNode,
     known: KnownNodes,
-    uses: SectionNames,
+    names: SectionNames,
 ) -> None:
     kind = param.kind if param else ""
     for scalar in scalars:
         if not isinstance(scalar, yaml.ScalarNode):
             continue
-        # Theirs may be booleans and numbers.
+        # These kinds may hold booleans and numbers.
         text = str(scalar.value) if kind in ("off", "exclusive") else name_in(scalar)
         if not text and not (scalar.style and kind in _TAKE_EMPTY):
             continue
         kind = kind or guess(known, key.value)
         if kind:
-            uses.names.append(NameSite(scalar, key, kind, param, text, -1, layer))
+            names.sites.append(NameSite(scalar, key, kind, param, text, -1, layer))
         else:
-            uses.unclaimed.append(scalar)
+            names.unclaimed.append(scalar)
 
 
 def name_in(scalar: yaml.ScalarNode) -> str:
-    """The text of a scalar where rcl reads it as a string too; empty where it does not."""
+    """The text of a scalar if rcl reads it as a string; otherwise empty."""
     text = str(scalar.value)
     if scalar.tag != STRING or (text in _BOOLEANS and not scalar.style):
         return ""

@@ -1,7 +1,8 @@
 """ROS 2 parameter files and controllers' files for any number of robots.
 
-What stands where is read from ``params.yaml`` (``known_params``); how sections are found and named,
-which values are names, what those become and which lines are missing are steps of their own.
+``known_nodes`` knows which parameters hold names (``params.yaml``). One step each: ``sections`` finds
+and renames sections, ``name_sites`` finds names, ``values`` renames them, ``shared_defaults`` inserts
+what is missing.
 """
 
 from __future__ import annotations
@@ -38,10 +39,11 @@ from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
     TAG_SLOT,
     FileTemplate,
+    check_no_slots,
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
-from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.model import Finding
 from multibot_rewrite.remap.records import NodeFacts
 
 Page = tuple[ParamSection, SectionNames]
@@ -55,59 +57,52 @@ def rewrite_params(
     facts: Iterable[NodeFacts] = (),
     robots: Iterable[str] = (),
 ) -> Companion:
-    """A parameter file with holes for a robot, and what a person should know about it.
+    """A parameter file with slots for a robot, and the findings about it.
 
-    ``known`` is what is known of nodes' parameters, ``beside`` the other parameter files that the
-    robot's nodes get: what they set is not inserted here. ``facts`` are those of the robot's nodes,
-    whose remap rules move topics too. ``robots`` are the words that stand for robots in names: it is
-    an error to have one of them in a name. Raises InputError for a file that is none or that rcl
-    refuses.
+    ``known`` are the known nodes, ``beside`` the other parameter files that the robot's nodes get:
+    what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
+    move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
+    an error. Raises InputError for a file that is not a parameter file or that rcl rejects.
     """
     with uncollected():
-        _check_holes(document)
+        check_no_slots(document.text, document.file)
         words = frozenset(robots)
-        desk = ParamsJob(document, context, known or built_in_nodes(), facts_by_name(facts), words)
-        return _params(desk, beside)
+        job = ParamsJob(document, context, known or built_in_nodes(), facts_by_name(facts), words)
+        return _params(job, beside)
 
 
-def _params(desk: ParamsJob, beside: Sequence[YamlText]) -> Companion:
-    document, context, known = desk.document, desk.context, desk.known
+def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
+    document, context, known = job.document, job.context, job.known
     sections = identify_sections(raw_sections(document), context, known)
     pages = [(it, find_names(document, it, known)) for it in sections if not it.shared]
     others = [it for other in beside for it in raw_sections(other)]
-    made = list(_made(desk, sections, pages, others))
+    made = list(_made(job, sections, pages, others))
     splices = [it for it in made if isinstance(it, Splice)]
-    told = [it for it in made if isinstance(it, Finding)]
+    findings = [it for it in made if isinstance(it, Finding)]
     template = make_template(document.text, splices)
     pieces = (document.bom + template.pieces[0], *template.pieces[1:])
-    return Companion(FileTemplate(pieces), _once(told))
-
-
-def _check_holes(document: YamlText) -> None:
-    for hole in (NAMESPACE_SLOT, TAG_SLOT):
-        if hole in document.text:
-            raise InputError(f"{document.file}: the word {hole} is this tool's own; write another")
+    return Companion(FileTemplate(pieces), _once(findings))
 
 
 def _made(
-    desk: ParamsJob,
+    job: ParamsJob,
     sections: Sequence[ParamSection],
     pages: Sequence[Page],
     others: Sequence[RawSection],
 ) -> Iterator[Splice | Finding]:
-    yield from key_splices(desk.document, sections)
-    yield from section_findings(desk.document, sections, desk.context)
-    yield from robot_in_name(desk, sections, [uses for _, uses in pages])
-    for section, uses in pages:
-        yield from name_splices(desk, section, uses)
-        yield from name_findings(desk, section, uses)
-        yield from sources_without_topic(desk, section)
-    yield from unclaimed_names(desk, [uses for _, uses in pages])
-    yield from default_lines(desk, pages, others)
+    yield from key_splices(job.document, sections)
+    yield from section_findings(job.document, sections, job.context)
+    yield from robot_in_name(job, sections, [names for _, names in pages])
+    for section, names in pages:
+        yield from name_splices(job, section, names)
+        yield from name_findings(job, section, names)
+        yield from sources_without_topic(job, section)
+    yield from unclaimed_names(job, [names for _, names in pages])
+    yield from default_lines(job, pages, others)
 
 
 def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """What is the same at many places is told at the first."""
+    """What is the same at many places is reported at the first."""
     first: dict[tuple[str, str], Finding] = {}
     for found in sorted(findings, key=lambda it: (it.line, it.column, it.code)):
         first.setdefault((found.code, found.message), found)
@@ -115,7 +110,7 @@ def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:
 
 
 def _in_words(found: Finding) -> Finding:
-    """A finding is about every robot: no name stands in its holes."""
+    """A finding is about every robot: its slots read ``<robot>``."""
     message, hint = (
         text.replace(NAMESPACE_SLOT, "<robot>").replace(TAG_SLOT, "<robot>")
         for text in (found.message, found.hint)
@@ -123,11 +118,11 @@ def _in_words(found: Finding) -> Finding:
     return found._replace(message=message, hint=hint)
 
 
-def without_sections(
+def nodes_without_section(
     documents: Sequence[YamlText], context: Context, known: KnownNodes | None = None
 ) -> tuple[Finding, ...]:
-    """Nodes of the stack that none of a robot's parameter files has a section for, though what they
-    take by default is every robot's; told at the first file."""
+    """Nodes of the stack that have no section in any of a robot's parameter files, though all robots
+    would share their defaults; reported at the first file."""
     known = known or built_in_nodes()
     if not documents:
         return ()

@@ -1,4 +1,4 @@
-"""Parameters that a file does not set and whose default is every robot's: lines to insert."""
+"""Parameters that a file does not set, with a default that all robots would share: lines to insert."""
 
 from __future__ import annotations
 
@@ -15,13 +15,12 @@ from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
-    finding,
     flattened,
     pattern_of,
 )
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, finding_at, pairs, quoted
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
@@ -39,39 +38,37 @@ class DefaultLine(NamedTuple):
 
 
 def default_lines(
-    desk: ParamsJob,
+    job: ParamsJob,
     pages: Sequence[tuple[ParamSection, SectionNames]],
     beside: Sequence[RawSection],
 ) -> Iterator[Splice | Finding]:
-    """Lines for the first section of each known node; what ``beside`` sets is set as well."""
+    """Lines for the first section of each known node, without those that ``beside`` sets."""
     everywhere = _set_anywhere(pages, beside)
     done: set[str] = set()
     for section, _ in pages:
         if section.node is None or section.shared or section.inner or section.full in done:
             continue
         done.add(section.full)
-        same = [uses.known for other, uses in pages if other.full == section.full]
+        same = [names.known for other, names in pages if other.full == section.full]
         here = set().union(*same) | _set_for(section, everywhere)
-        lines = list(missing_defaults(desk.context, section.node, here))
+        lines = list(missing_defaults(job.context, section.node, here))
         if lines:
-            yield _insert(desk.document, section.body, lines)
-        yield from _inexpressible(desk, section, section.node, here)
+            yield _insert(job.document, section.body, lines)
+        yield from _inexpressible(job, section, section.node, here)
 
 
 def _inexpressible(
-    desk: ParamsJob, section: ParamSection, node: KnownNode, here: set[str]
+    job: ParamsJob, section: ParamSection, node: KnownNode, here: set[str]
 ) -> Iterator[Finding]:
     for param in node.defaults:
-        if param.path not in here and not expressible(desk.context, param.kind):
-            message = (
-                f"{param.path} can only put something before names, and the naming is a postfix"
-            )
+        if param.path not in here and not expressible(job.context, param.kind):
+            message = f"{param.path} can only add a prefix, but the fleet uses a postfix"
             key = section.keys[-1]
-            yield finding(desk.document, key, "MF117", WARNING, message, "use affix: prefix")
+            yield finding_at(job.document, key, "MF117", WARNING, message, "set affix: prefix")
 
 
 def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
-    """What a node takes by default and no two robots may share."""
+    """The parameters of a node whose default must differ from robot to robot."""
     for param in node.defaults:
         if param.path in here or not _is_in_release(param, context):
             continue
@@ -90,7 +87,7 @@ def _is_in_release(param: Param, context: Context) -> bool:
 def _set_anywhere(
     pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
 ) -> list[tuple[str, set[str]]]:
-    """What is set for which nodes, where patterns or other files make that more than the section."""
+    """What is set for which nodes, if patterns or other files set more than the section itself."""
     if not beside and not any(it.wild for it, _ in pages):
         return []
     bodies = [(it.full, it.body) for it, _ in pages]
@@ -99,7 +96,7 @@ def _set_anywhere(
 
 
 def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
-    """What any section sets that is for the same node, or may be."""
+    """What is set by any section that is, or may be, for the same node."""
     found: set[str] = set()
     for full, names in everywhere:
         if (
@@ -118,7 +115,7 @@ def _matches(pattern: str, full: str) -> bool:
 def _insert(
     document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
 ) -> Splice | Finding:
-    """The lines before the first parameter, as far in as it is."""
+    """The lines before the first parameter, with its indentation."""
     if not body.value:
         text = ", ".join(f"{line.path}: {line.value}" for line in lines)
         at = body.start_mark.index + 1
@@ -130,9 +127,9 @@ def _insert(
         return Splice(at, at, text)
     if before.strip():
         names = ", ".join(line.path for line in lines)
-        message = f"{names}: the default is every robot's, and here is no place for a line"
-        hint = "put each parameter on a line of its own"
-        return finding(document, body, "MF124", WARNING, message, hint)
+        message = f"{names}: all robots would share the default, and no line can be inserted here"
+        hint = "write each parameter on its own line"
+        return finding_at(document, body, "MF124", WARNING, message, hint)
     end = ("\r\n" if "\r\n" in document.text else "\n") + before
     return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
 
@@ -143,12 +140,12 @@ def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
         yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
 
 
-def sources_without_topic(desk: ParamsJob, section: ParamSection) -> Iterator[Finding]:
-    """Sources of a costmap's layer that take their own id for the topic, below the costmap."""
+def sources_without_topic(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
+    """Observation sources of a costmap layer without a topic: their id is the topic."""
     top = "observation_sources"
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
-    namespaced = desk.context.topics.naming.topics == NAMESPACE
-    if param is None or (namespaced and not in_release(param.absolute, desk.context.distro)):
+    namespaced = job.context.topics.naming.topics == NAMESPACE
+    if param is None or (namespaced and not in_release(param.absolute, job.context.distro)):
         return
     names = dict(flattened(section.body))
     values = {id(key): value for key, value in _scalars(section.body)}
@@ -158,9 +155,9 @@ def sources_without_topic(desk: ParamsJob, section: ParamSection) -> Iterator[Fi
             continue
         for source in values.get(id(key), "").split():
             if f"{layer}.{source}.topic" not in names:
-                message = f"source {source} of {layer} has no topic, so that it is {source!r}"
-                hint = f"write {layer}.{source}.topic: /{source}, which is then each robot's own"
-                yield finding(desk.document, key, "MF127", WARNING, message, hint)
+                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
+                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
+                yield finding_at(job.document, key, "MF127", WARNING, message, hint)
 
 
 def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
@@ -174,7 +171,7 @@ def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
 def without_section(
     document: YamlText, sections: Iterable[str], context: Context, nodes: Mapping[str, KnownNode]
 ) -> Iterator[Finding]:
-    """Nodes of the stack that no section is for, though their defaults are every robot's.
+    """Nodes of the stack without a section, whose defaults all robots would share.
 
     ``nodes`` are the known ones by the stack's name, ``sections`` the full names that have one.
     """
@@ -186,6 +183,6 @@ def without_section(
         lines = list(missing_defaults(context, node, set()))
         if lines:
             words = ", ".join(it.path for it in lines)
-            message = f"{name} has no section, and what it takes then is every robot's: {words}"
-            hint = "write a section for it, if only with use_sim_time: the lines are put there"
+            message = f"{name} has no section, so all robots would share its defaults for {words}"
+            hint = "add a section for it (use_sim_time is enough); the lines are inserted there"
             yield Finding("MF125", WARNING, message, hint, document.file, 1, 1)
