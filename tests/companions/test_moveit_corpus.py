@@ -13,11 +13,11 @@ from pathlib import Path
 
 import pytest
 import yaml
-from robots import CORPUS, FIXTURES
+from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.naming import make_naming
@@ -91,16 +91,16 @@ def allowed(layout: str, old: str, names: Names) -> set[str]:
     for kind, separator in (("joint", "_"), ("link", "/"), ("frame", "/"), ("group", "_")):
         renamed = layout in ("L2", "L4") or (layout == "L3" and kind != "group")
         if renamed and old in names[kind]:
-            found.add(f"{TAG_SLOT}{separator}{old}" if prefix else f"{old}{separator}{TAG_SLOT}")
+            found.add(f"{SPELLED}{separator}{old}" if prefix else f"{old}{separator}{SPELLED}")
     if old.startswith("/") and layout != "L4":
-        found.add(f"/{NAMESPACE_SLOT}{old}")
+        found.add(f"/{GRAPH}{old}")
     if layout == "L4":
-        found |= {f"{old}_{NAMESPACE_SLOT}", f"{old}/{NAMESPACE_SLOT}"}
+        found |= {f"{old}_{GRAPH}", f"{old}/{GRAPH}"}
     return found
 
 
 def text_of(document: YamlText, context: Context) -> str:
-    return fill_template(rewrite_moveit(document, context).template, NAMESPACE_SLOT, TAG_SLOT)
+    return fill_template(rewrite_moveit(document, context).template, GRAPH, SPELLED)
 
 
 def prove(path: Path, layout: str, counted: Counter[str]) -> None:

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
+from multibot_rewrite.findings.finding import LEVELS, Finding
+from multibot_rewrite.findings.rule import SRDF, XACRO, Rule
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.records import LEVELS, SRDF, XACRO, LintFinding, Rule
 from multibot_rewrite.lint.registry import GROUPS, RULES
 from multibot_rewrite.lint.settings import Settings
 
@@ -27,7 +28,7 @@ def whole(example: str) -> str:
     )
 
 
-def linted(rule: Rule, example: str, folder: Path) -> list[LintFinding]:
+def linted(rule: Rule, example: str, folder: Path) -> list[Finding]:
     for name, content in rule.beside.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content)
