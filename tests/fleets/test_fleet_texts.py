@@ -15,13 +15,8 @@ from paths import CORPUS
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets import spawn, start_poses, teleop
-from multibot_rewrite.fleets.bridge_file import (
-    BridgeFile,
-    as_spawned,
-    bridge,
-    fill_bridge,
-    merge_bridges,
-)
+from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
+from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import InputError
@@ -41,7 +36,7 @@ def context(layout: str, *links: str) -> Any:
 
 
 def bridged(text: str, layout: str = "L2", *links: str) -> BridgeFile:
-    return bridge(read_yaml(text.encode(), "bridge.yaml"), context(layout, *links))
+    return rewrite_bridge(read_yaml(text.encode(), "bridge.yaml"), context(layout, *links))
 
 
 def own(text: str, layout: str = "L2", *links: str) -> list[dict[str, Any]]:

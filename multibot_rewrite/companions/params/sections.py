@@ -262,7 +262,8 @@ def section_findings(
         key = section.keys[-1]
         earlier = first.setdefault(section.path, section)
         if earlier is not section:
-            message = f"section {section.path} is repeated; the first is in line {line_of(earlier.keys[-1])}"
+            first_line = line_of(earlier.keys[-1])
+            message = f"section {section.path} is repeated; the first is in line {first_line}"
             hint = "rcl merges the two, PyYAML keeps only the last; merge them into one"
             yield finding_at(document, key, "MF102", WARNING, message, hint)
         if section.shared and section.path not in shared:
