@@ -1,7 +1,7 @@
-"""Nav2's behavior trees for any number of robots: the ports that name services, topics and frames.
+"""Nav2 behavior trees for any number of robots: ports that hold services, topics and frames.
 
-A name in a port is remapped by rcl as any other of the BT navigator's. ``{entry}`` is an entry of
-the blackboard and stays; what is put into one is followed into the subtrees that read it.
+rcl remaps a name in a port like any other name of the BT navigator. ``{entry}`` is a blackboard
+entry and stays; a value put into an entry is renamed like the ports of the subtrees that read it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ from multibot_rewrite.companions.names.undeclared import (
     undeclared_message,
 )
 from multibot_rewrite.companions.params.known_nodes import in_release
-from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, make_template
+from multibot_rewrite.companions.template import (
+    check_no_slots,
+    make_template,
+)
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.rosnames import check_topic_name
@@ -41,8 +44,7 @@ _GRAPH_KINDS = {"service": "service", "topic": "topic", "action": "topic"}
 
 
 class _Port(NamedTuple):
-    """A value: the element it stands at, where that starts, and what it names; empty for nothing
-    that is known."""
+    """A value: its element, where that starts, and the kind of name; empty if that is not known."""
 
     element: _Element
     start: int
@@ -52,25 +54,24 @@ class _Port(NamedTuple):
 
 
 class _Trees(NamedTuple):
-    """The trees of a file by their id; ``braces`` tells that only ``{entry}`` is an entry (4.x)."""
+    """The trees of a file by id; ``braces`` is true if only ``{entry}`` is an entry (BT.CPP 4)."""
 
     by_id: Mapping[str, _Element]
     braces: bool
 
 
 def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion:
-    """A behavior tree with holes for a robot, and what a person should know about it.
+    """A behavior tree with slots for a robot, and the findings about it.
 
-    Raises InputError, in one line, for what is no behavior tree.
+    Raises InputError for a file that is not a behavior tree.
     """
     if not data.strip():
         raise InputError(f"{file}:1: the file is empty; a behavior tree starts with <root>")
     document = read_document(data, file)
     if document.root.tag != "root":
         place = f"{file}:{document.root.sourceline or 1}"
-        raise InputError(f"{place}: no behavior tree: it starts with <{document.root.tag}>")
-    if any(hole.encode() in data for hole in (NAMESPACE_SLOT, TAG_SLOT)):
-        raise InputError(f"{file}: the words {NAMESPACE_SLOT} and {TAG_SLOT} are this tool's own")
+        raise InputError(f"{place}: not a behavior tree: the root is <{document.root.tag}>")
+    check_no_slots(data.decode(), file)
     ports = list(_ports(document))
     splices = [*_value_splices(document, context, ports), *_default_splices(document, context)]
     return Companion(
@@ -87,7 +88,7 @@ def _port_data() -> Mapping[str, Any]:
 
 
 def _ports(document: Document) -> Iterator[_Port]:
-    """Every literal with what it names, those of models for editors aside."""
+    """Every literal with the kind of name it is; models for editors are left out."""
     trees = _trees(document.root)
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         if _is_model(element):
@@ -121,7 +122,7 @@ def _model_default(element: _Element, start: int, trees: _Trees) -> Iterator[_Po
 
 
 def _kind(element: _Element, attribute: str, trees: _Trees) -> str:
-    """What a literal names; empty where that is not known."""
+    """The kind of name that a literal is; empty if that is not known."""
     if element.tag == "SetBlackboard" and attribute == "value":
         tree = next((it for it in element.iterancestors("BehaviorTree")), None)
         entries = _entry_kinds(trees, str(tree.get("ID", "")) if tree is not None else "", ())
@@ -144,7 +145,7 @@ def _node_name(element: _Element) -> str:
 
 
 def _blackboard_entry(element: _Element, value: str, trees: _Trees) -> str:
-    """The entry of the blackboard that a value is; empty for a literal."""
+    """The blackboard entry that a value stands for; empty for a literal."""
     if value.startswith("{") and value.endswith("}"):
         return value[1:-1]
     # A plain SubTree of BT.CPP 3 maps entries by their bare names.
@@ -152,7 +153,7 @@ def _blackboard_entry(element: _Element, value: str, trees: _Trees) -> str:
 
 
 def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, str]:
-    """What the entries that a tree reads are used as, in it and in the subtrees below."""
+    """The kind of name in each entry that a tree reads, by its use there and in subtrees."""
     tree = trees.by_id.get(name)
     if tree is None or name in above:
         return {}
@@ -171,7 +172,7 @@ def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, 
 
 def _new_text(context: Context, kind: str, value: str) -> str:
     if kind in _GRAPH_KINDS:
-        # Spelled out even where a rule of the navigator's would do: rules miss its helper nodes.
+        # Written out even if a rule would do: rules do not reach the navigator's helper nodes.
         return spell_topic(context, NAVIGATOR, _GRAPH_KINDS[kind], value, FROM_NODE, {}).text
     if not is_plain(value):
         return value
@@ -188,7 +189,9 @@ def _value_splices(
         slot = value_slot(document.source, port.start, port.attribute, port.value)
         if slot is None:
             place = f"{document.file}:{port.element.sourceline}"
-            raise InputError(f"{place}: {port.attribute} cannot be edited; write it on one line")
+            raise InputError(
+                f"{place}: {port.attribute} cannot be edited in place; write it on one line"
+            )
         written = document.source[slot[0] : slot[1]].decode() == port.value
         text = new if written else escape(new, {'"': "&quot;", "'": "&apos;"})
         first, last = (_character(document, at) for at in slot)
@@ -196,7 +199,7 @@ def _value_splices(
 
 
 def _default_splices(document: Document, context: Context) -> Iterator[Splice]:
-    """Ports whose default is every robot's: they are written out."""
+    """Ports that are left out and whose default all robots would share: they are added."""
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         name = _node_name(element)
         for it in _port_data()["defaults"] if not _is_model(element) else ():
@@ -215,32 +218,33 @@ def _character(document: Document, at: int) -> int:
 
 
 def _findings(document: Document, context: Context, ports: Iterable[_Port]) -> Iterator[Finding]:
-    told: set[tuple[str, str]] = set()
+    reported: set[tuple[str, str]] = set()
     names = renamed_names(context)
     for port in ports:
-        said = _problem_with(context, port, names)
-        if said is None or (said[0] == "MF401" and (port.kind, port.value) in told):
+        problem = _problem_with(context, port, names)
+        if problem is None or (problem[0] == "MF401" and (port.kind, port.value) in reported):
             continue
-        told.add((port.kind, port.value))
+        reported.add((port.kind, port.value))
         slot = value_slot(document.source, port.start, port.attribute, port.value)
-        code, message, hint = said
+        code, message, hint = problem
         yield finding(document, slot[0] if slot else port.start, code, WARNING, message, hint)
 
 
 def _problem_with(
     context: Context, port: _Port, names: frozenset[str]
 ) -> tuple[str, str, str] | None:
-    """What is to be said of one value."""
+    """Code, message and hint about one value, if there is anything to report."""
     if port.element.tag == "include":
-        message = f"another tree is included: {port.value!r}"
-        return "MF403", message, "give it as a behavior tree as well, for each robot"
+        message = f"includes another tree, {port.value!r}"
+        return "MF403", message, "list that file under behavior_trees as well"
     if port.kind == "frame":
         known = not is_undeclared(context, "frame", port.value)
         return None if known else ("MF401", *undeclared_message(context, "frame", port.value))
     if port.kind in _GRAPH_KINDS:
         fault = check_topic_name(port.value) if is_plain(port.value) else None
-        message = f"{port.kind} {port.value!r} is none: {fault.reason if fault else ''}"
-        return ("MF404", message, "it stays as it is: correct it") if fault else None
+        reason = fault.reason if fault else ""
+        message = f"{port.value!r} is not a valid {port.kind} name: {reason}"
+        return ("MF404", message, "it stays unchanged; correct it") if fault else None
     return None if port.kind else _mention(port, names)
 
 
@@ -256,5 +260,5 @@ def _mention(port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
     held = next((it for it in words if holds_a_name(it, names)), "")
     if not held:
         return None
-    message = f"unclaimed mention: {port.attribute} holds {held!r}, and nothing says what it means"
-    return "MF402", message, "it stays as it is: see whether it has to name one robot's"
+    message = f"{port.attribute} holds the name {held!r}, but its use here is not known"
+    return "MF402", message, "it stays unchanged; if each robot needs its own, rename it by hand"

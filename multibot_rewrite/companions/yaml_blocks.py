@@ -32,7 +32,7 @@ def newline(document: YamlText) -> str:
 def blocks(document: YamlText, node: yaml.Node) -> list[Block]:
     """The lines of each entry of a block list or map, comments above an entry included.
 
-    They lie side by side: comments behind the last one are not of it.
+    They lie side by side; comments after the last entry do not belong to it.
     """
     found: list[Block] = []
     at = line_start(document, node.start_mark.index)
@@ -45,7 +45,7 @@ def blocks(document: YamlText, node: yaml.Node) -> list[Block]:
 
 
 def end_of(node: yaml.Node) -> int:
-    """The place behind a node: PyYAML's own mark of a block stands at what follows it."""
+    """Where a node ends: PyYAML's own end mark of a block is at the start of what follows."""
     while is_block(node) and node.value:
         last = node.value[-1]
         node = last[1] if isinstance(last, tuple) else last
@@ -67,7 +67,7 @@ def line_end(document: YamlText, at: int) -> int:
 
 
 def cut_out(document: YamlText, start: int, end: int, splices: Iterable[Splice] = ()) -> str:
-    """The text between two positions with the splices made, each line of it ended."""
+    """The text between two positions with the splices made; it ends with a line end."""
     parts, at = [], start
     for first, last, new in sorted(set(splices)):
         assert at <= first <= last <= end, "a splice outside of its block, or two that overlap"
@@ -83,7 +83,7 @@ def lines_of(text: str) -> list[str]:
 
 
 def moved(text: str, by: int) -> str:
-    """Lines indented by so many columns more, or fewer as far as they have them."""
+    """Lines indented by ``by`` more columns; fewer if it is negative."""
     return "".join(_moved(line, by) for line in lines_of(text))
 
 

@@ -225,7 +225,9 @@ def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
     for path in bridges:
         document = read_yaml(path.read_bytes(), path.name)
         try:
-            made = bridge(document, context(layout, "base_link", "imu_link", "wheel_left_link"))
+            made = rewrite_bridge(
+                document, context(layout, "base_link", "imu_link", "wheel_left_link")
+            )
         except InputError as error:
             refused[str(error)] += 1
             continue

@@ -1,4 +1,4 @@
-"""Where the names are in MoveIt's YAML files: read from ``moveit.yaml``, which says its form."""
+"""Where MoveIt's YAML files hold names: read from ``moveit.yaml``, which explains its own form."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from multibot_rewrite.companions.names.rename_map import KINDS, RenameMap, is_de
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 
 KEEP = "keep"
-# A word for names, or keys with what stands below them.
+# The kind of name that a value is, or keys with the shape below each.
 Shape = Any
 Shapes = Mapping[str, Shape]
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -21,7 +21,7 @@ _MERGE = "<<"
 
 
 class FileKind(NamedTuple):
-    """A kind of file: what tells it, words in its file's name, and its names."""
+    """A kind of file: keys that identify it, words in its file name, and the shape of its names."""
 
     name: str
     tells: tuple[str, ...]
@@ -30,7 +30,7 @@ class FileKind(NamedTuple):
 
 
 class MoveitName(NamedTuple):
-    """A name: the scalar it stands in, where in its value, and what it is."""
+    """A name: its scalar, its place in the value, its text and its kind."""
 
     scalar: yaml.ScalarNode
     at: int
@@ -39,7 +39,7 @@ class MoveitName(NamedTuple):
 
 
 class MoveitNames(NamedTuple):
-    """The names of a file, the scalars that nothing is known of, and keys that stand twice."""
+    """The names of a file, the scalars of unknown use, and repeated keys."""
 
     names: list[MoveitName]
     unclaimed: list[yaml.ScalarNode]
@@ -53,7 +53,7 @@ class _Walk(NamedTuple):
     seen: set[tuple[int, int]]
 
 
-# The names in a key, and the rule for what is below it.
+# The names in a key, and the shape of what is below it.
 _Match = tuple[tuple[tuple[int, str, str], ...], Shape]
 
 
@@ -73,7 +73,7 @@ def kinds() -> tuple[FileKind, ...]:
 
 
 def find_names(root: yaml.Node | None, rules: Shapes, names: RenameMap) -> MoveitNames:
-    """Every name below ``root``; an aliased value is looked at under every rule that reaches it."""
+    """Every name below ``root``; an aliased value counts once for every shape that reaches it."""
     walk = _Walk(names, [], set(), set())
     if root is not None:
         _below(root, rules, walk)
@@ -94,7 +94,7 @@ def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node
 
 
 def is_merge(key: yaml.Node) -> bool:
-    """YAML's ``<<``, which is no key."""
+    """Is this YAML's merge key ``<<``?"""
     return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
 
 
@@ -133,7 +133,7 @@ def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -
 def _resolved(
     word: str, at: int, value: yaml.Node, rules: Shapes, names: RenameMap
 ) -> _Match | None:
-    """What a key says: nested maps and keys with dots are the same parameter."""
+    """The names in a key: nested maps and keys with dots are the same parameter."""
     found = _exact(word, at, value, rules, names)
     if found:
         return found
@@ -157,7 +157,7 @@ def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RenameMap) 
 def _exact(
     word: str, at: int, value: yaml.Node | None, rules: Shapes, names: RenameMap
 ) -> _Match | None:
-    """A literal key, a declared name, or one that what is below it tells."""
+    """A literal key, a declared name, or a name by what is below it."""
     if word in rules and word[:1] not in ("<", "*"):
         return (), rules[word]
     for kind, telling, rule in _wild(rules):
@@ -169,7 +169,7 @@ def _exact(
 
 
 def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
-    """A key of which nothing is asked."""
+    """A key that may be any name."""
     for kind, telling, rule in _wild(rules):
         if not telling or (value is None and "declared" not in telling):
             return ((at, word, kind),), rule

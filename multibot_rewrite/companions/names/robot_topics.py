@@ -23,7 +23,7 @@ def is_topic(value: str) -> bool:
 def robot_topic(names: RenameMap, value: str, known: Mapping[str, str] = NOTHING) -> str:
     """The robot's absolute topic; ``value`` itself if it is shared or not a topic name.
 
-    ``known`` is ``fleet_topics`` of the robot, for names that its nodes do not follow the rule in.
+    ``known`` is ``fleet_topics`` of the robot, for topics that do not follow the general rule.
     """
     if not is_topic(value):
         return value

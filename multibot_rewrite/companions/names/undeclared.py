@@ -1,4 +1,4 @@
-"""Names of companion files against those of the description: what it lacks, what stays unclaimed."""
+"""Names of companion files that the description does not declare."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ _MENTIONED = ("link", "joint", "frame", "group")
 
 
 def is_undeclared(context: Context, word: str, value: str) -> bool:
-    """Is this plain name one that the description should have and does not?
+    """Is this a name that the description should declare and does not?
 
-    False where it has none of the kind at all: then nothing is known of them.
+    False if it declares no name of the kind at all.
     """
     declared = context.names.declared.get("link" if word == "frame" else word)
     bare = value[1:] if word == "frame" and value.startswith("/") else value
@@ -31,14 +31,14 @@ def is_undeclared(context: Context, word: str, value: str) -> bool:
 def undeclared_message(context: Context, word: str, value: str) -> tuple[str, str]:
     """Message and hint about a name that the description lacks."""
     known = context.names.declared["link" if word == "frame" else word]
-    other = "it stays as it is"
+    other = "it stays unchanged; correct it"
     if word == "frame":
-        other = "a node or driver must send it under the robot's name"
+        other = "some node must publish it with the robot's name"
     return f"{word} {value!r} is not in the description", nearest(value, known) or other
 
 
 def nearest(value: str, known: Iterable[str]) -> str:
-    """The known name most like this one, as a question; empty for none."""
+    """The most similar known name, as a question; empty for none."""
     from difflib import get_close_matches  # only a message needs it
 
     near = get_close_matches(value, list(known), 1, 0.6)
@@ -46,7 +46,7 @@ def nearest(value: str, known: Iterable[str]) -> str:
 
 
 def renamed_names(context: Context) -> frozenset[str]:
-    """The names that the description declares and that each robot spells in its own way."""
+    """The names of the description that differ from robot to robot."""
     return frozenset(
         name
         for word in _MENTIONED
@@ -56,8 +56,7 @@ def renamed_names(context: Context) -> frozenset[str]:
 
 
 def holds_a_name(text: str, names: frozenset[str]) -> bool:
-    """Does a text that nothing is known of hold one of these names, or an absolute name of the
-    graph?"""
+    """Does a text of unknown use hold one of these names, or an absolute ROS name?"""
     if mentioned(text, names):
         return True
     return text[:1] == "/" and is_plain(text) and check_topic_name(text) is None

@@ -1,4 +1,4 @@
-"""One RViz config for all robots: what they share once, a group of displays for each."""
+"""One RViz config for all robots: shared displays once, and a group of displays for each robot."""
 
 from __future__ import annotations
 
@@ -45,8 +45,8 @@ Wanted = Callable[[RvizItem], bool]
 
 
 class RvizJob(NamedTuple):
-    """A config, the robots of one window with a colour each (None: as it is), and what of it each
-    robot has for itself, by the places of the displays in the text."""
+    """A config to rewrite, the robots of one window and their colours (None: unchanged), and the
+    displays that each robot needs for itself, by their place in the text."""
 
     config: RvizConfig
     robots: Robots
@@ -57,7 +57,7 @@ class RvizJob(NamedTuple):
 def make_rviz_job(
     config: RvizConfig, robots: Robots, colours: tuple[Colour | None, ...]
 ) -> RvizJob:
-    """Find out which displays are each robot's own: those that say something else for one."""
+    """Find the displays that each robot needs for itself: those that change for some robot."""
     own = {
         one.block.start
         for one in leaves(config.displays)
@@ -67,7 +67,7 @@ def make_rviz_job(
 
 
 def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
-    """Displays that are no groups, and groups with nothing in them."""
+    """Displays that are not groups, and empty groups."""
     for one in shown:
         if one.children:
             yield from leaves(one.children)
@@ -76,12 +76,12 @@ def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
 
 
 def for_one_process(one: RvizItem) -> bool:
-    """It serves the one robot that the rviz2 process is set up for."""
+    """Does it serve only the robot that the rviz2 process is set up for?"""
     return one.flag in (PROCESS, ABSOLUTE)
 
 
 def robot_groups(job: RvizJob) -> Iterator[Splice]:
-    """The splices that put every robot's displays in a group of its own, behind the shared ones."""
+    """The splices that put each robot's displays into a group, after the shared ones."""
     document, shown = job.config.document, job.config.displays
     if not shown:
         return
@@ -99,7 +99,7 @@ def robot_groups(job: RvizJob) -> Iterator[Splice]:
 def _kept(
     one: RvizItem, wanted: Wanted, made: Callable[[RvizItem], Iterable[Splice]]
 ) -> Iterator[Splice]:
-    """The splices that leave of a display what is wanted, with those made in it."""
+    """The splices that keep the wanted parts of a display and change them."""
     if not any(map(wanted, leaves([one]))):
         yield Splice(one.block.start, one.block.end, "")
     elif one.children:
@@ -110,7 +110,7 @@ def _kept(
 
 
 def _group(job: RvizJob, at: int) -> str:
-    """The group of one robot: copies of the displays with its names; empty where it has none."""
+    """The group of one robot: copies of the displays with its names; empty if it has none."""
     document, robot = job.config.document, job.robots[at]
 
     def own(one: RvizItem) -> bool:
@@ -134,7 +134,7 @@ def _group(job: RvizJob, at: int) -> str:
 
 
 def _renamed(one: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
-    """Windows have titles of their own; a list of the displays beside it is not true any more."""
+    """Each window needs its own title; a list of other displays no longer holds."""
     name = value(one.node, "Name")
     if one.flag == DOCK and isinstance(name, yaml.ScalarNode):
         yield replaced(name, titled(one, robot))
@@ -199,7 +199,7 @@ def tools(job: RvizJob) -> Iterator[Splice]:
 
 
 def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
-    """The splices that make a tool publish for the robot, where the file leaves the topic out too."""
+    """The splices that make a tool publish for the robot, even if the file leaves the topic out."""
     yield from item_splices(tool, robot, None)
     default = rviz_data()["tools"].get(tool.cls, "")
     if value(tool.node, "Topic") is not None or not default:
@@ -217,7 +217,7 @@ def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator
 
 
 def panels(job: RvizJob) -> Iterator[Splice]:
-    """Panels without those that serve one process, and without what they say of moved displays."""
+    """Panels, without those for one process and without references to moved displays."""
     document = job.config.document
     for panel in job.config.panels:
         if for_one_process(panel):
@@ -239,7 +239,7 @@ def _docks(job: RvizJob) -> list[RvizItem]:
 
 
 def _gone(job: RvizJob) -> re.Pattern[str]:
-    """How paths start that lead to displays which stand in groups now: a name and its count."""
+    """How paths to displays start that are in groups now: a name and its number."""
     shown = job.config.displays
     kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
     names = sorted({one.name for one in shown} - kept)
@@ -249,7 +249,7 @@ def _gone(job: RvizJob) -> re.Pattern[str]:
 def _collapsed(
     document: YamlText, expanded: yaml.Node | None, gone: re.Pattern[str]
 ) -> Iterator[Splice]:
-    """Paths of the tree that start at a display which is in a group now are left out."""
+    """Remove tree paths that start at a display that is in a group now."""
     if not isinstance(expanded, yaml.SequenceNode) or not is_block(expanded):
         return
     found = list(zip(expanded.value, blocks(document, expanded), strict=True))
@@ -261,7 +261,7 @@ def _collapsed(
 
 
 def windows(job: RvizJob) -> Iterator[Splice]:
-    """Where windows stand: those of the copies; what Qt has put in hex cannot be edited."""
+    """The places of windows, for the copies too; Qt's hex state cannot be edited and is removed."""
     document = job.config.document
     docks = _docks(job)
     titles = {one.name: one for one in docks}
@@ -277,13 +277,13 @@ def windows(job: RvizJob) -> Iterator[Splice]:
 
 
 def remark(document: YamlText, one: RvizItem) -> str:
-    """The comment that stands for what is left out."""
+    """The comment in place of what is left out."""
     title = f" {one.name!r}" if one.name else ""
     why = "it serves the robot of its rviz2 process"
     return f"{' ' * one.block.column}# left out: {one.cls}{title}: {why}{newline(document)}"
 
 
 def inserted(document: YamlText, at: int, text: str) -> Splice:
-    """Lines put at the start of a line, or behind a last line that has no end."""
+    """Lines inserted at the start of a line, or after a last line without a line end."""
     unended = at == len(document.text) and not document.text.endswith("\n")
     return Splice(at, at, (newline(document) if unended and text else "") + text)

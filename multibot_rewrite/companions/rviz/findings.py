@@ -1,4 +1,4 @@
-"""What a person should know about an RViz config that was made for robots."""
+"""Findings about an RViz config that was rewritten for robots."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
 Robots = Sequence[RvizRobot]
-# Never names of links: what displays and windows are called.
+# Titles of displays and windows: never names of links.
 _TITLES = ("Name", "Class")
 
 
@@ -70,13 +70,13 @@ def _windows(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fin
         return
     first = f"/{robots[0].topics.robot}/tf" if layout.namespaced else "the robot's tf topic"
     if together:
-        message = "one window shows all robots only while each robot's tf is relayed to /tf"
+        message = "one window shows all robots only if each robot's tf is relayed to /tf"
         hint = f"ros2 run topic_tools relay {first} /tf, and the same for tf_static"
     else:
         message = (
-            f"one rviz2 hears one tf topic, and {layout.name} has one a robot: a config for each"
+            f"one rviz2 reads one tf topic, but in layout {layout.name} each robot has its own"
         )
-        hint = f"start each with -r /tf:={first} as its command says"
+        hint = f"each robot gets its own config; start rviz2 with -r /tf:={first}, see commands.md"
     yield _finding(config, config.manager, "MF203", message, hint)
 
 
@@ -87,14 +87,12 @@ def _fixed_frame(
     if not isinstance(node, yaml.ScalarNode):
         return
     if node.value.startswith("/"):
-        message = f"Fixed Frame {node.value!r} starts with a slash, which tf2 look-ups reject"
-        yield _finding(config, node, "MF211", message, "drop the slash")
+        message = f"Fixed Frame {node.value!r} starts with a slash, which tf2 rejects"
+        yield _finding(config, node, "MF211", message, "remove the slash")
     if together and any(frame_of(node, robot) != node.value for robot in robots):
-        told = f"{world!r} stands there now" if world else "there is no frame that all share"
-        message = f"Fixed Frame {node.value!r} is each robot's own; {told}"
-        hint = (
-            "send a transform from it to each robot, see poses" if world else "name a world frame"
-        )
+        now = f"it is {world!r} now" if world else "no frame is shared by all robots"
+        message = f"Fixed Frame {node.value!r} differs from robot to robot; {now}"
+        hint = "publish a transform from it to each robot, see pose:" if world else "set world:"
         yield _finding(config, node, "MF201", message, hint)
 
 
@@ -104,11 +102,11 @@ def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Fi
         if for_one_process(one) and not (whole and one.flag == PROCESS):
             title = f"{one.cls} {one.name!r}" if one.name else one.cls
             message = (
-                f"{title} is left out: it serves the robot that its rviz2 process is set up for"
+                f"{title} is left out: it works only for the robot whose namespace rviz2 runs in"
             )
-            hint = "for one robot start a second rviz2 with the old file in its namespace"
+            hint = "for that robot start a second rviz2 in its namespace with the original file"
             if one.flag == ABSOLUTE:
-                hint = "its names are absolute: remap each for an rviz2 of one robot"
+                hint = "its topics are absolute: remap them in an rviz2 for one robot"
             yield _finding(config, one.node, "MF202", message, hint)
 
 
@@ -117,13 +115,13 @@ def _view(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Findin
     if not together or not isinstance(node, yaml.ScalarNode) or len(robots) < 2:
         return
     if any(frame_of(node, robot) != node.value for robot in robots):
-        message = f"the view follows {node.value!r}: now that of {robots[0].name!r}"
-        yield _finding(config, node, "MF213", message, "each robot has a saved view of its own")
+        message = f"the view follows {node.value!r}; it now follows robot {robots[0].name!r}"
+        yield _finding(config, node, "MF213", message, "each robot has a saved view")
 
 
 def _unknown(config: RvizConfig, one: RvizItem) -> Finding:
-    message = f"display class {one.cls!r} is not known: of its values only Topic is renamed"
-    return _finding(config, one.node, "MF204", message, "look at its other topics and frames")
+    message = f"display class {one.cls!r} is not known; only its Topic is renamed"
+    return _finding(config, one.node, "MF204", message, "check its other topics and frames")
 
 
 def _display(
@@ -134,19 +132,23 @@ def _display(
         given = str(place.node.value)
         node, name = place.node, f"{place.path.rstrip('.*')} {given!r}"
         if place.word == TF_PREFIX and frames and given and given != robots[0].tf_prefix:
-            message = f"{name} is emptied: the links of a rewritten description have their prefix"
-            hint = "RViz would put it before them a second time"
+            message = (
+                f"{name} is emptied: the links of a rewritten description have the prefix already"
+            )
+            hint = "nothing to do; RViz would add the prefix a second time"
             yield _finding(config, node, "MF207", message, hint)
         if place.word == "regex" and frames and given:
-            message = f"{name} is a pattern of frames and stays as it is"
-            yield _finding(config, node, "MF208", message, "write it for the robots' frames")
+            message = f"{name} is a pattern for frames and stays unchanged"
+            yield _finding(config, node, "MF208", message, "make it match the robots' frames")
         if place.word == "file" and given and text_of(one.node, "Description Source") == "File":
-            message = f"{name} is one description, shown for every robot"
-            hint = "set Description Source to Topic" if frames else "mind that all robots have it"
+            message = f"{name} is one description file, shown for every robot"
+            hint = (
+                "set Description Source to Topic" if frames else "fine if all robots look the same"
+            )
             yield _finding(config, node, "MF208", message, hint)
         if place.word == GRAPH_NAMESPACE and given and naming.topics != NAMESPACE:
-            message = f"{name} holds topics, and this layout spells each topic for itself"
-            yield _finding(config, node, "MF208", message, "a layout with namespaces moves it")
+            message = f"{name} is a namespace of topics, but this layout renames each topic instead"
+            yield _finding(config, node, "MF208", message, "use a layout with namespaces")
     yield from _properties(config, one, robots, together)
 
 
@@ -155,17 +157,15 @@ def _properties(
 ) -> Iterator[Finding]:
     for key, there in pairs(one.node):
         if key.value in rviz_data()["legacy"]:
-            message = (
-                f"{key.value!r} of {one.name!r} is a property of ROS 1, which rviz2 reads over"
-            )
+            message = f"{key.value!r} of {one.name!r} is a ROS 1 property, which rviz2 ignores"
             yield _finding(config, key, "MF209", message, "set its Topic in rviz2")
         if key.value == "Visibility" and one.flag == DOCK and together and pairs(there):
-            message = f"what {one.name!r} shows of other displays is reset: they are in groups now"
-            yield _finding(config, key, "MF212", message, "choose again in its Visibility")
+            message = f"Visibility of {one.name!r} is reset: the displays are in groups now"
+            yield _finding(config, key, "MF212", message, "choose the displays again in rviz2")
 
 
 def _volatile(config: RvizConfig) -> Iterator[Finding]:
-    """Said once: nearly every saved config has it."""
+    """Reported once: nearly every saved config has it."""
     found = [
         one
         for one in leaves(config.displays)
@@ -173,8 +173,8 @@ def _volatile(config: RvizConfig) -> Iterator[Finding]:
     ]
     if found:
         names = ", ".join(repr(one.name) for one in found)
-        message = f"{names} may miss a description published before rviz2 starts: it is Volatile"
-        hint = "Durability Policy: Transient Local below Description Topic"
+        message = f"{names} misses a description published before rviz2 starts: it is Volatile"
+        hint = "set Durability Policy: Transient Local below Description Topic"
         yield _finding(config, found[0].node, "MF214", message, hint)
 
 
@@ -185,9 +185,9 @@ def _names(config: RvizConfig, one: RvizItem, robots: Robots) -> Iterator[Findin
     for node in _scalars(one.node):
         if id(node) not in claimed and _is_mention(node, robots):
             message = (
-                f"{node.value!r} is a link or joint, and nothing known says what it means here"
+                f"{node.value!r} is the name of a link or joint, but its use here is not known"
             )
-            yield _finding(config, node, "MF205", message, "rename it by hand if it is meant")
+            yield _finding(config, node, "MF205", message, "if it is a name, rename it by hand")
 
 
 def _is_mention(node: yaml.ScalarNode, robots: Robots) -> bool:
@@ -197,7 +197,7 @@ def _is_mention(node: yaml.ScalarNode, robots: Robots) -> bool:
 
 
 def _scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
-    """The values of a display and its maps; what it and its groups are called is not of it."""
+    """The values of a display and its maps, without titles."""
     for key, there in pairs(node):
         if key.value in (*_TITLES, "Displays"):
             continue
@@ -207,15 +207,19 @@ def _scalars(node: yaml.Node) -> Iterator[yaml.ScalarNode]:
 
 
 def _name(config: RvizConfig, place: ValuePlace, robots: Robots) -> Iterator[Finding]:
-    """A placeholder that stays, a robot that is in it already, or a name that no description has."""
+    """A placeholder that stays, a name that has a robot's name already, or an undeclared name."""
     given = str(place.node.value)
     there = next((it for it in robots if _has(given, place, it)), None)
     if there is not None:
-        message = f"{given!r} has the name of {there.name!r} already, and gets each robot's as well"
-        yield _finding(config, place.node, "MF215", message, "give the config of one robot alone")
+        message = f"{given!r} already holds the name of robot {there.name!r}"
+        hint = "use a config for a single robot without namespace and prefix"
+        yield _finding(config, place.node, "MF215", message, hint)
     if "<" in without_placeholder(given, "") and given != "<Fixed Frame>":
-        message = f"{given!r} is a placeholder that stays: who starts rviz2 has to fill it"
-        yield _finding(config, place.node, "MF210", message, "write the name of one robot")
+        message = (
+            f"the placeholder in {given!r} stays; the launch file that starts rviz2 must replace it"
+        )
+        hint = "write the name as for a single robot"
+        yield _finding(config, place.node, "MF210", message, hint)
     elif place.word in (FRAME, LINK, JOINT) and robots[0].names.naming.layout.frames:
         yield from _missing(config, place, given, robots)
 
@@ -235,12 +239,12 @@ def _missing(
         return
     if any(is_declared(robot.names, place.word, bare) for robot in robots):
         return
-    # A frame of a driver need not be in the description: only one that looks mistyped is told.
+    # A driver's frame need not be in the description: only a likely typo is reported.
     near = _nearest(bare, robots, place.word)
     if place.word == FRAME and not near:
         return
     message = f"the description has no {place.word} {bare!r}{near}"
-    yield _finding(config, place.node, "MF206", message, "mend the name, or delete the entry")
+    yield _finding(config, place.node, "MF206", message, "correct the name or delete the entry")
 
 
 def _nearest(name: str, robots: Robots, word: str) -> str:

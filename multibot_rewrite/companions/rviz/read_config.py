@@ -1,4 +1,4 @@
-"""An RViz config as what it shows: displays, tools and panels, and where each says a name."""
+"""An RViz config as records: displays, tools and panels, and where each holds a name."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class ValuePlace(NamedTuple):
-    """A scalar (a value or a key) that says something of the kind ``word``."""
+    """A scalar (a value or a key) of the kind ``word``, such as a topic or a frame."""
 
     node: yaml.ScalarNode
     word: str
@@ -30,9 +30,9 @@ class ValuePlace(NamedTuple):
 
 
 class RvizItem(NamedTuple):
-    """A display, tool or panel: its lines, class and name, the places in it, and what is below it.
+    """A display, tool or panel: its lines, class, name, values of interest, and the displays below.
 
-    ``flag`` is what the data says of its class; ``known`` tells that the data has it.
+    ``flag`` and ``known`` are what ``rviz.yaml`` has about its class.
     """
 
     block: Block
@@ -64,11 +64,11 @@ def rviz_data() -> Mapping[str, Any]:
 
 
 def read_config(document: YamlText) -> RvizConfig:
-    """The config in a YAML text; InputError where it is none of RViz 2, with place and remedy."""
+    """The config in a YAML text; InputError if it is not a config of RViz 2."""
     manager = value(document.root, MANAGER)
     if not isinstance(manager, yaml.MappingNode):
         raise InputError(
-            f"{document.file}: no RViz config: it has no {MANAGER!r}; save it in rviz2"
+            f"{document.file}: not an RViz config: it has no {MANAGER!r}; save it with rviz2"
         )
     _refuse(document)
     displays = value(manager, "Displays")
@@ -87,11 +87,11 @@ def _refuse(document: YamlText) -> None:
         if cls.startswith(ROS1):
             place = f"{document.file}:{line_of(node)}"
             raise InputError(
-                f"{place}: a config of ROS 1 ({cls}), which rviz2 cannot load; make it anew in rviz2"
+                f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
             )
     for line, anchor in anchors(document):
         place = f"{document.file}:{line}"
-        raise InputError(f"{place}: the anchor or alias {anchor}; write the value out")
+        raise InputError(f"{place}: anchor or alias {anchor} is not supported; write the value out")
 
 
 def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
@@ -106,7 +106,9 @@ def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[Rv
         return
     if not is_block(node):
         place = f"{document.file}:{line_of(node)}"
-        raise InputError(f"{place}: {what} in brackets, which cannot be copied; save it in rviz2")
+        raise InputError(
+            f"{place}: {what} are in brackets, which cannot be copied; save the file with rviz2"
+        )
     data = rviz_data()
     for block, item in zip(blocks(document, node), node.value, strict=True):
         cls = text_of(item, "Class")
@@ -141,12 +143,12 @@ def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarN
 
 
 def value(node: yaml.Node | None, key: str) -> yaml.Node | None:
-    """The value of a key of a map, the last where it is there twice; None where there is none."""
+    """The value of a key of a map, the last one if the key is repeated; None if it is missing."""
     return next((there for name, there in reversed(pairs(node)) if name.value == key), None)
 
 
 def text_of(node: yaml.Node | None, key: str) -> str:
-    """The same of a scalar, as text; empty where there is none."""
+    """The value of a key as text; empty if it is missing or not a scalar."""
     there = value(node, key)
     return str(there.value) if isinstance(there, yaml.ScalarNode) else ""
 

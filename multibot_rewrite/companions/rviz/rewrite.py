@@ -1,4 +1,4 @@
-"""An RViz config for one robot -> one for all robots, or one for each where a window sees one tf."""
+"""An RViz config for one robot -> one for all robots, or one for each robot with its own tf topic."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ from multibot_rewrite.remap.table import target_of
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]
 
 
-# Robots whose result is parsed again.
+# The number of results that are parsed again as a check.
 PROVED = 4
 
 
 class RvizText(NamedTuple):
-    """A config. ``robot`` is empty where it shows all robots; ``namespace`` and ``remaps`` are what
-    rviz2 has to be started with; ``relays`` are topics that must be forwarded (from, to) first."""
+    """A config. ``robot`` is empty if it shows all robots. rviz2 must be started with ``namespace``
+    and ``remaps``; ``relays`` are topics that must be forwarded first (from, to)."""
 
     robot: str
     text: str
@@ -56,15 +56,15 @@ class RvizText(NamedTuple):
 def rewrite_rviz(
     document: YamlText, robots: Sequence[RvizRobot], *, world: str = "", relayed: bool = False
 ) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
-    """The configs of a fleet, and what a person should know about them.
+    """The configs of a fleet, and the findings about them.
 
-    One window hears one tf topic: a layout with a tf topic for each robot gives a config for each,
-    unless its frames differ and the topics are ``relayed`` to ``/tf``. ``world`` is the frame that
-    all robots are in (default: ``world_frame``). Raises InputError for a file that is no config of
-    RViz 2 or a colour that is none, UsageError where there is no robot.
+    One window reads one tf topic: a layout with a tf topic for each robot gives a config for each,
+    unless the frames differ and the topics are ``relayed`` to ``/tf``. ``world`` is the frame that
+    all robots are in (default: ``world_frame``). Raises InputError for a file that is not a config
+    of RViz 2 and for an unknown colour, UsageError if there is no robot.
     """
     if not robots:
-        raise UsageError("no robot to show; name one")
+        raise UsageError("there is no robot to show; name at least one")
     config = read_config(document)
     naming = robots[0].names.naming
     together = not naming.layout.tf_per_robot or (relayed and naming.layout.frames)
@@ -77,20 +77,20 @@ def rewrite_rviz(
         return tuple(map(lambda *it: _for_one(config, *it), robots[:upto], colours))
 
     made = make(len(robots))
-    # All others differ from these in words alone.
+    # All others differ from these in names only.
     for text in made[:PROVED] if len(robots) <= PROVED else make(PROVED):
         _prove(text.text, document.file)
     return made, tuple(config_findings(config, robots, world, together))
 
 
 def world_frame(naming: Naming) -> str:
-    """The frame that robots of this policy share: the map, else the world, else any."""
+    """The frame that all robots share: map, else world, else any other shared frame."""
     shared = sorted(naming.shared_frames)
     return next((frame for frame in ("map", "world", *shared) if frame in shared), "")
 
 
 def start_command(made: RvizText, file: str) -> list[str]:
-    """The words that start rviz2 with a config written to ``file``."""
+    """The command that starts rviz2 with a config written to ``file``."""
     words = [f"__ns:={made.namespace}"] if made.namespace else []
     words += [f"{source}:={target}" for source, target in made.remaps]
     given = [text for word in words for text in ("-r", word)]
@@ -98,7 +98,7 @@ def start_command(made: RvizText, file: str) -> list[str]:
 
 
 def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
-    """The colour asked for; one robot among others gets one of its own anyway."""
+    """The robot's colour; one of several robots without a colour gets one of the palette."""
     if robot.colour:
         return read_colour(robot.colour, robot.name)
     return palette(at) if count > 1 else None
@@ -108,11 +108,11 @@ def _prove(text: str, file: str) -> None:
     try:
         yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise ProofError(f"{file}: what was made of it is no YAML: {error}") from None
+        raise ProofError(f"{file}: the rewritten config is not valid YAML: {error}") from None
 
 
 def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
-    """Where the robot's tf goes, in full."""
+    """The remappings to the robot's tf topics, with absolute targets."""
     name, naming = robot.topics.robot, robot.topics.naming
     found = []
     for topic in TF_TOPICS:
@@ -139,7 +139,7 @@ def _for_all(
 
 
 def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
-    """The config of a window that sees one robot; it runs in the robot's namespace if there is one."""
+    """The config of a window for one robot; it runs in the robot's namespace if there is one."""
     document = config.document
     namespaced = robot.names.naming.layout.namespaced
     gone = (ABSOLUTE,) if namespaced else (ABSOLUTE, PROCESS)
@@ -171,7 +171,7 @@ def _frame_splice(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
 
 
 def _fixed_frame(config: RvizConfig, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
-    """One frame serves all robots only if none of them has it for itself."""
+    """The world frame, if some robot has its own version of the Fixed Frame."""
     node = fixed_frame(config)
     if not isinstance(node, yaml.ScalarNode) or not world:
         return []
@@ -194,7 +194,7 @@ def _targets(config: RvizConfig) -> Iterator[yaml.Node]:
 
 
 def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
-    """The present view follows the first robot; each robot has a saved one that follows it."""
+    """The current view follows the first robot; each robot has a saved view that follows it."""
     document = config.document
     current, saved = _views_of(config)
     copies = ""

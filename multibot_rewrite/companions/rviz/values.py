@@ -1,4 +1,4 @@
-"""What each place of an RViz config says for a robot."""
+"""The value of each name in an RViz config for a robot."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ _NULL = "tag:yaml.org,2002:null"
 
 
 class RvizRobot(NamedTuple):
-    """A robot to be shown. ``names`` spells its frames, ``topics`` its ROS names, for the robot itself.
+    """A robot to be shown. ``names`` is the rename map of its frames, ``topics`` of its ROS names.
 
     ``name`` is the title of its group. ``colour`` is a name, ``#rrggbb`` or three numbers, empty for
-    one of the palette. ``known`` is ``graph_names.known_topics`` of it. ``tf_prefix`` is for a
-    description whose links are bare while its frames are not (robot_state_publisher's
-    ``frame_prefix``); a rewritten one has its names in the links, so it stays empty.
+    one of the palette. ``known`` is its ``fleet_topics``. ``tf_prefix`` is for a description with
+    bare links and prefixed frames (robot_state_publisher's ``frame_prefix``); it stays empty for a
+    rewritten description, whose links have the prefix themselves.
     """
 
     name: str
@@ -38,13 +38,13 @@ class RvizRobot(NamedTuple):
 
 
 def is_name(place: ValuePlace) -> bool:
-    """A place of a name that may be the robot's; nothing, null and blocks of text are none."""
+    """Does this place hold a name? Null values and blocks of text do not."""
     node = place.node
     return place.word in NAMED and node.tag != _NULL and node.style not in ("|", ">")
 
 
 def robot_value(place: ValuePlace, robot: RvizRobot) -> str:
-    """The value of a place as the robot has it."""
+    """The value of a place for the robot."""
     value = str(place.node.value)
     if place.word == TF_PREFIX:
         return robot.tf_prefix if robot.names.naming.layout.frames else value
@@ -57,9 +57,9 @@ def robot_value(place: ValuePlace, robot: RvizRobot) -> str:
 
 
 def without_placeholder(value: str, lead: str) -> str:
-    """A name without what a launch file would have replaced by the robot's namespace.
+    """A name without the placeholder that a launch file replaces by the robot's namespace.
 
-    It stays where that is all of it, or where another placeholder is left.
+    It stays if nothing else is in it, or if another placeholder is left.
     """
     for word in rviz_data()["placeholders"]:
         bare = value.lstrip("/").removeprefix(word).lstrip("/")
@@ -69,7 +69,7 @@ def without_placeholder(value: str, lead: str) -> str:
 
 
 def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[ValuePlace, str]]:
-    """The places of a display or tool that say something else for the robot, and what."""
+    """The places of a display or tool whose value differs for the robot, and the new value."""
     for place in filter(is_name, one.places):
         new = robot_value(place, robot)
         if new != place.node.value:
@@ -77,13 +77,13 @@ def changed_values(one: RvizItem, robot: RvizRobot) -> Iterator[tuple[ValuePlace
 
 
 def item_splices(one: RvizItem, robot: RvizRobot, colour: Colour | None) -> list[Splice]:
-    """The splices that make a display or tool the robot's."""
+    """The splices that make a display or tool show the robot."""
     made = [replaced(place.node, new) for place, new in changed_values(one, robot)]
     return made + ([*_painted(one, colour)] if colour else [])
 
 
 def _painted(one: RvizItem, colour: Colour) -> Iterator[Splice]:
-    """A colour that shows whose data it is, where the display has one colour for all of it."""
+    """The robot's colour, if the display has one colour for all its data."""
     flat = text_of(one.node, "Color Transformer") == "FlatColor"
     for place in one.places:
         if place.word == COLOUR or (place.word == FLAT_COLOUR and flat):
@@ -97,6 +97,6 @@ def painted(node: yaml.ScalarNode, colour: Colour) -> Splice:
 
 
 def frame_of(node: yaml.Node | None, robot: RvizRobot) -> str:
-    """The frame that a scalar names, as the robot has it; empty for any other node."""
+    """The robot's version of the frame in a scalar; empty for any other node."""
     given = str(node.value) if isinstance(node, yaml.ScalarNode) else ""
     return spell(robot.names, FRAME, without_placeholder(given, ""))
