@@ -137,7 +137,7 @@ def _refuse(document: YamlText) -> None:
         )
     for line, anchor in anchors(document):
         raise InputError(
-            f"{file}:{line}: anchor or alias {anchor} is not supported; write the value out"
+            f"{file}:{line}: no anchors or aliases ({anchor}) here; write the value out"
         )
 
 

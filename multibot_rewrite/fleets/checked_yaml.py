@@ -1,4 +1,4 @@
-"""YAML that has to fit a JSON Schema: plain data and its lines, or one line that says what is wrong."""
+"""YAML checked against a JSON Schema: plain data with its lines, or one line with the error."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from multibot_rewrite.sources.read import read_file
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 Path = tuple[Any, ...]
-# JSON Schema's words.
+# JSON Schema's types in plain words.
 TYPES = {
     "array": "a list",
     "object": "keys with values",
@@ -33,15 +33,17 @@ class CheckedYaml(NamedTuple):
 
 
 def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
-    """Read a file; InputError with its line, the key and what is allowed. ``hint`` is what to write
-    into one that is empty."""
+    """Read a file; InputError with its line, the key and what is allowed. ``hint`` says what to write
+    into an empty file."""
     document = read_yaml(read_file(path), path)
     if document.root is None:
-        raise InputError(f"{path}: nothing is in it; {hint}")
+        raise InputError(f"{path}: the file is empty; {hint}")
     for line, anchor in anchors(document):
-        raise InputError(f"{path}:{line}: the anchor or alias {anchor}; write the value out")
+        raise InputError(
+            f"{path}:{line}: no anchors or aliases ({anchor}) here; write the value out"
+        )
     if not isinstance(document.root, yaml.MappingNode):
-        raise InputError(f"{path}:1: it is no keys with values; {hint}")
+        raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
     try:
         lines = dict(_lines(document.root, path, ()))
         data = yaml.load(document.text, Loader=_LOADER)
@@ -50,13 +52,13 @@ def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml
         problem = " ".join(str(error.problem).split())
         raise InputError(f"{path}:{line}: {problem}; write plain keys and values") from None
     except RecursionError:
-        raise InputError(f"{path}: lists and maps go too deep; write it flat") from None
+        raise InputError(f"{path}: lists and maps are nested too deeply; flatten them") from None
     _validate(data, schema, path, lines)
     return CheckedYaml(data, lines)
 
 
 def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]:
-    """The line of every value and key; a key that is there twice is an error."""
+    """The line of every value and key; a repeated key is an error."""
     yield path, line_of(node)
     if isinstance(node, yaml.SequenceNode):
         for at, item in enumerate(node.value):
@@ -65,8 +67,8 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
     for key, value in pairs(node):
         if key.value in seen:
             place = f"{file}:{line_of(key)}"
-            first = f"first at line {seen[key.value]}; leave one out"
-            raise InputError(f"{place}: the key {key.value!r} is there twice, {first}")
+            first = f"first in line {seen[key.value]}; remove one of them"
+            raise InputError(f"{place}: the key {key.value!r} is repeated, {first}")
         seen[key.value] = line_of(key)
         for below, line in _lines(value, file, (*path, key.value)):
             yield below, line_of(key) if below == (*path, key.value) else line
@@ -91,21 +93,21 @@ def _unknown(error: Any) -> Any:
 
 
 def _in_words(error: Any) -> str:
-    """A validation error in words, with what is allowed."""
+    """A validation error in plain words, with what is allowed."""
     given, wanted = error.instance, error.validator_value
     if error.validator == "additionalProperties":
         known = error.schema["properties"]
         return f"unknown key {_shown(_unknown(error))}; {nearest(_unknown(error), known)}"
     if error.validator == "required":
         missing = next(key for key in wanted if key not in given)
-        return f"the key {missing!r} is missing; write it"
+        return f"the key {missing!r} is missing; add it"
     if given is None:
-        return "there is no value; write one, or leave the key out"
+        return "the value is missing; write one, or remove the key"
     if error.validator == "enum":
         return f"{_shown(given)} is not known; {nearest(given, wanted)}"
     if error.validator == "minItems" and not given:
-        return "the list is empty; write at least one"
-    return f"{_shown(given)} does not fit; {_wanted(error)}"
+        return "the list is empty; write at least one item"
+    return f"{_shown(given)} is not valid; {_wanted(error)}"
 
 
 def _wanted(error: Any) -> str:
@@ -122,8 +124,8 @@ def _wanted(error: Any) -> str:
         "minLength": "write some text",
         "minItems": f"write {wanted} items",
         "maxItems": f"write {wanted} items",
-        "minimum": f"the least is {wanted}",
-        "maximum": f"the most is {wanted}",
+        "minimum": f"the minimum is {wanted}",
+        "maximum": f"the maximum is {wanted}",
     }
     return rules.get(error.validator, "correct it")
 

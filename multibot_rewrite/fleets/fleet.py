@@ -1,4 +1,4 @@
-"""A description, its robots and the stacks they run -> their remap table and what to expect."""
+"""A description, its robots and their stacks -> the remap table and the expected graph."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ NOTHING: Mapping[str, str] = {}
 
 
 class Member(NamedTuple):
-    """A robot of a fleet: its name in the ROS graph, what stands for it in frames, and what its
-    rewritten description holds; ``places`` are where in the source (``file:line``) its plugins are.
+    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
+    holds; ``places`` are the places of its plugins in the source (``file:line``).
     """
 
     robot: str
@@ -36,10 +36,10 @@ class Member(NamedTuple):
 
 
 class Fleet(NamedTuple):
-    """A fleet's table, what each robot's rewritten description holds, and the transforms that each
-    robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
-    (``file:line``) a plugin's node comes from. ``words`` are what stands for a robot in its frames,
-    where that is not its name."""
+    """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
+    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
+    description (``file:line``) of each plugin's node. ``tags`` are the robots whose prefix or postfix
+    differs from their namespace, with it."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -47,7 +47,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
-    words: dict[str, str]
+    tags: dict[str, str]
 
 
 def make_fleet(
@@ -62,7 +62,7 @@ def make_fleet(
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file of nodes and stacks beside the known ones; ``policy`` is that of
+    ``nodes`` is a file with more nodes and stacks; ``policy`` is that of
     ``make_naming``. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes)
@@ -73,15 +73,15 @@ def make_fleet(
 
 
 def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
-    """What is known of the nodes of these stacks, each once; UsageError for an unknown one."""
+    """The nodes of these stacks, each once; UsageError for an unknown stack."""
     library = user_stack(nodes) if nodes else built_in()
     return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
 
 
 def member(source: Rewrite, data: bytes, tag: str, tree: Tree) -> Member:
-    """The robot of a rewrite; ``data`` is its description as it is in the end."""
+    """The robot of a rewrite; ``data`` is its final description."""
     document = source.template.inventory.document
-    # Lines of the source: those of a rewritten text are moved by what was inserted.
+    # Lines of the source: inserted text moves those of the result.
     places = tuple(plugin_places(source.template.inventory))
     return Member(source.robot, tag, collect(read_document(data, document.file), tree), places)
 
@@ -117,7 +117,7 @@ def _sources(members: Sequence[Member], plugins: Plugins) -> dict[str, str]:
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
-    """Robots of different kinds as one fleet, whose names may not meet either."""
+    """Robots of different descriptions as one fleet; their names may not collide either."""
     first, *others = fleets
     for other in others:
         first = Fleet(
@@ -127,13 +127,13 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.sources, **other.sources},
-            {**first.words, **other.words},
+            {**first.tags, **other.tags},
         )
     return first
 
 
 def expected(fleet: Fleet) -> Expectation:
-    """What the graph of the fleet is to look like."""
+    """The graph that the fleet should have."""
     sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -142,4 +142,4 @@ def expected(fleet: Fleet) -> Expectation:
         for robot, found in fleet.inventories.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.words)
+    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.tags)

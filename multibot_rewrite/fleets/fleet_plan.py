@@ -1,4 +1,4 @@
-"""A fleet file -> everything that is decided about its robots; what is written follows from it."""
+"""A fleet file -> its rewritten robots and their remap table; all output follows from these."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, rewrite_rob
 
 
 class FleetPlan(NamedTuple):
-    """A fleet file, its robots with their descriptions, their tables and what to expect of them."""
+    """A fleet file, its rewritten robots, and the fleet of all of them."""
 
     file: FleetFile
     robots: tuple[RewrittenRobot, ...]
@@ -22,7 +22,7 @@ class FleetPlan(NamedTuple):
 def plan_fleet(file: FleetFile, also: Sequence[str] = ()) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
-    ``also`` are nodes that every robot runs, too. Raises as ``rewrite_all``, and UsageError for an
+    ``also`` are more nodes that every robot runs. Raises as ``rewrite_all``, and UsageError for an
     unknown stack.
     """
     with uncollected():

@@ -1,4 +1,4 @@
-"""Files as a build writes them -> the values in them, and where in the source a line comes from."""
+"""Files that a build writes -> the values in them, and the source line of each line."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
-# Text for people, and for shells.
+# Text for people and for shells.
 _LINES = (".md", ".py", ".sh")
 
 
@@ -25,7 +25,7 @@ class OutputText(NamedTuple):
 
 
 class OutputValue(NamedTuple):
-    """One value of a file; ``key`` is the key or attribute it belongs to, itself for a key."""
+    """One value of a file; ``key`` is its key or attribute; a key is its own key."""
 
     text: str
     key: str
@@ -68,7 +68,7 @@ def _of_yaml(node: yaml.Node, key: str) -> Iterator[OutputValue]:
 
 
 def line_in_source(file: OutputText, line: int) -> tuple[str, int]:
-    """The source of a file, and the line of it that a line of the file was made from."""
+    """The source of a file, and its line that a line of the file was made from."""
     from difflib import SequenceMatcher
 
     source = file.sources[0]

@@ -1,4 +1,4 @@
-"""A rewritten parameter file -> what one node gets from it, typed as rcl types it.
+"""A rewritten parameter file -> the parameters of one node, with the types that rcl gives them.
 
 Sources: rcl_yaml_param_parser ``parse.c`` (``get_value``); rclcpp and rclpy for which sections match.
 """
@@ -17,7 +17,7 @@ from multibot_rewrite.model import InputError
 
 Scalar = bool | int | float | str
 Value = Scalar | list[Scalar]
-# rcl compares these words, with this use of capitals and no other.
+# rcl compares these words, in these capitalisations only.
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
 _FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
 _DOTTED = re.compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
@@ -35,8 +35,8 @@ _SMALLEST = 2.2250738585072014e-308
 def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
     """The parameters of the node with this full name, by their dotted names.
 
-    Wildcard sections count as rcl has it: in the order of their first appearance, a later one wins.
-    Raises InputError for a value that rcl refuses.
+    Wildcard sections count as in rcl: in the order of their first appearance, a later one wins.
+    Raises InputError for a value that rcl rejects.
     """
     sections: dict[str, dict[str, Value]] = {}
     for found in raw_sections(document):
@@ -46,7 +46,7 @@ def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
 
 
 def check_values(document: YamlText) -> None:
-    """Read every value of a parameter file; InputError for one that rcl refuses."""
+    """Read every value of a parameter file; InputError for one that rcl rejects."""
     for found in raw_sections(document):
         for _ in _flat(document, found.body, ""):
             pass
@@ -73,11 +73,11 @@ def _value(document: YamlText, node: yaml.Node) -> Value:
     assert isinstance(node, yaml.SequenceNode)
     place = f"{document.file}:{line_of(node)}"
     if not all(isinstance(item, yaml.ScalarNode) for item in node.value):
-        raise InputError(f"{place}: a list holds a list or mapping; rcl takes lists of values only")
+        raise InputError(f"{place}: a list holds a list or a map; rcl takes single values only")
     items = [_scalar(document, item) for item in node.value]
     if len({type(item) for item in items}) > 1:
         raise InputError(
-            f"{place}: a list of more than one type; write all as floats, or quote all"
+            f"{place}: the list mixes types, which rcl rejects; write all as floats, or quote all"
         )
     return items
 
@@ -87,12 +87,14 @@ def _scalar(document: YamlText, node: yaml.ScalarNode) -> Scalar:
     if tagged or node.style in ("'", '"'):
         return str(node.value)
     if not node.value:
-        raise InputError(f'{document.file}:{line_of(node)}: no value; write "" for an empty string')
+        raise InputError(
+            f'{document.file}:{line_of(node)}: the value is missing; write "" for an empty string'
+        )
     return typed(node.value)
 
 
 def typed(text: str) -> Scalar:
-    """What rcl makes of an unquoted scalar."""
+    """The value that rcl reads from an unquoted scalar."""
     if text in _TRUE or text in _FALSE:
         return text in _TRUE
     whole = _INTEGER.fullmatch(text)
@@ -116,7 +118,7 @@ def _float(text: str) -> float | str:
         number = float(text)
     else:
         return text
-    # strtod reports what a double cannot hold, and rcl then takes the text.
+    # strtod reports what does not fit into a double; rcl then takes the text.
     lost = math.isinf(number) or 0 < abs(number) < _SMALLEST
     lost = lost or (number == 0 and any(it in "123456789" for it in text.lower().partition("e")[0]))
     return text if lost else number

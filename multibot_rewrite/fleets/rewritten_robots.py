@@ -1,4 +1,4 @@
-"""The robots of a fleet file -> their descriptions, rewritten: robots of one source share a parse."""
+"""The robots of a fleet file with their rewritten descriptions; one parse for each source."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.steps.collect import NOTHING
 
-# Kinds that are names in the ROS graph; the others are the description's own.
+# Kinds that are ROS names and get the namespace; the others get the tag.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
 
 
 class RewrittenRobot(NamedTuple):
-    """A robot with its rewritten description and SRDF (empty where it has none).
+    """A robot with its rewritten description and SRDF (empty if it has none).
 
-    ``names`` is the rename map of what it declares, ``topics`` that of its ROS names; ``semantics``
-    is what its SRDF declares, not rewritten. ``findings`` are warnings about the source.
+    ``names`` is the rename map of frames and joints, ``topics`` that of ROS names; ``semantics`` is
+    what its SRDF declares, not rewritten. ``findings`` are warnings about the source.
     """
 
     spec: RobotSpec
@@ -51,12 +51,12 @@ def rewrite_robots(
     found = {
         it.spec.name: it
         for group in groups.values()
-        for it in _described(group, dict(policy), tuple(vocabulary))
+        for it in _rewritten(group, dict(policy), tuple(vocabulary))
     }
     return [found[robot.name] for robot in robots]
 
 
-def _described(
+def _rewritten(
     group: Sequence[RobotSpec], policy: dict[str, Any], vocabulary: tuple[str, ...]
 ) -> Iterator[RewrittenRobot]:
     first, naming, tree = group[0], make_naming(**policy), builtin_tree(vocabulary)
@@ -68,12 +68,12 @@ def _described(
         beside = {**more, "urdf": first.description}
         semantics = list(rewrite_all(first.srdf, robots, **beside, **policy))
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
-        data = _spelled(text, robot, naming)
+        data = _final(text, robot, naming)
         declared = text.template.inventory.declared
         yield RewrittenRobot(
             robot,
             data,
-            _spelled(semantic, robot, naming) if semantic else b"",
+            _final(semantic, robot, naming) if semantic else b"",
             RenameMap(declared, naming, robot.tag),
             RenameMap(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
@@ -82,9 +82,8 @@ def _described(
         )
 
 
-def _spelled(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
-    """The text with the robot's two names where each belongs: two rewrites, each proved, where the
-    namespace and what is spelled into frames are not one word."""
+def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
+    """The description of a robot; if its namespace and tag differ, two rewrites, each proved."""
     if robot.tag == robot.namespace:
         return text.data
     template = text.template
@@ -101,6 +100,6 @@ def _kinds(naming: Naming, graph: bool) -> Naming:
 def _half(
     source: bytes, file: str, robot: str, naming: Naming, template: pipeline.Template
 ) -> bytes:
-    # What the second half finds is rewritten already, for another word.
+    # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.outside)
     return next(pipeline.render(prepared, [robot], again=True))

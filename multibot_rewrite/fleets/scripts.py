@@ -1,4 +1,4 @@
-"""A fleet file as a launch script uses it: plain values for each robot, and no file written.
+"""A fleet file for launch scripts: plain values for each robot, without writing files.
 
 from multibot_rewrite import load_fleet
 
@@ -41,7 +41,7 @@ Rules = list[tuple[str, str]]
 
 
 class NodeNames(NamedTuple):
-    """What the nodes of a robot are called and remapped to, by the names their stacks give them.
+    """Names and remappings of a robot's nodes, by their names in the stacks.
 
     ``hosted`` maps a node to those that always run in its process, as costmaps do.
     """
@@ -53,7 +53,7 @@ class NodeNames(NamedTuple):
     def for_node(self, node: str) -> Rules:
         """The node's remappings, as ``launch_ros.actions.Node`` takes them.
 
-        Rules for one node of those it hosts come first: rcl takes the first that matches.
+        Rules for nodes that it hosts come first: rcl applies the first rule that matches.
         """
         own = self._found(node)
         rules = [
@@ -78,27 +78,27 @@ class NodeNames(NamedTuple):
     def _found(self, node: str) -> NodeTable:
         if node in self.nodes:
             return self.nodes[node]
-        where = f"robot {self.robot!r}" if self.robot else "what serves all robots"
-        hint = "its stack goes under stack: of the fleet file"
+        where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
+        hint = "add its stack to stack: in the fleet file"
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 
 class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
-    ``namespace`` starts at the root; ``tag`` is what stands in its frames and joints; ``pose`` is
-    None where the fleet file has none.
+    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
+    None if the fleet file has none.
     """
 
-    def __init__(self, fleet: LoadedFleet, described: RewrittenRobot) -> None:
-        self._fleet, self._described = fleet, described
-        spec = described.spec
+    def __init__(self, fleet: LoadedFleet, robot: RewrittenRobot) -> None:
+        self._fleet, self._robot = fleet, robot
+        spec = robot.spec
         self._graph = spec.namespace
         self.name: str = spec.name
         self.model: str = spec.model
         self.tag: str = spec.tag
         self.pose: Pose | None = spec.pose
-        namespaced = described.topics.naming.topics == NAMESPACE
+        namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 
     def __repr__(self) -> str:
@@ -107,12 +107,12 @@ class LoadedRobot:
     @property
     def description(self) -> str:
         """Its rewritten description, for ``robot_description``."""
-        return self._described.description.decode()
+        return self._robot.description.decode()
 
     @property
     def srdf(self) -> str:
-        """Its rewritten SRDF, for ``robot_description_semantic``; empty where it has none."""
-        return self._described.srdf.decode()
+        """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none."""
+        return self._robot.srdf.decode()
 
     @cached_property
     def table(self) -> NodeNames:
@@ -123,7 +123,7 @@ class LoadedRobot:
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
 
-        ``files`` are parameter files of the fleet; where it starts is added for its localisation.
+        ``files`` are parameter files of the fleet; amcl gets its start pose as well.
         """
         given = [self.params(file, node) for file in files]
         return {
@@ -134,10 +134,10 @@ class LoadedRobot:
         }
 
     def params(self, file: str, node: str) -> dict[str, Value]:
-        """What a parameter file of the fleet says for a node, once rewritten, by dotted names.
+        """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
 
-        ``node`` is its name in the stack, or in the file. A node of a stack that the file does not
-        mention gets nothing; any other is a UsageError.
+        ``node`` is its name in the stack or in the file. A node of a stack without a section gets an
+        empty dict; UsageError for an unknown node.
         """
         document = self._read(file)
         known = node in self.table.nodes
@@ -149,30 +149,30 @@ class LoadedRobot:
         return node_parameters(document, full)
 
     def text(self, file: str) -> str:
-        """A file of the fleet as this robot has it: ``params.yaml``, ``bridge.yaml``, RViz's."""
+        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``."""
         name = os.path.basename(file)
         own, shared = f"{self.name}/{name}", name
         return self._fleet.text(own if own in self._fleet.files else shared)
 
     def frame(self, name: str) -> str:
-        """A frame or link of the description, as this robot has it."""
-        return spell(self._described.names, "frame", name)
+        """This robot's name of a frame or link of the description."""
+        return spell(self._robot.names, "frame", name)
 
     def joint(self, name: str) -> str:
-        """A joint of the description, as this robot has it."""
-        return spell(self._described.names, "joint", name)
+        """This robot's name of a joint of the description."""
+        return spell(self._robot.names, "joint", name)
 
     def topic(self, name: str) -> str:
-        """The full name of a topic that one robot alone has under ``name``."""
+        """This robot's absolute name of a topic that a single robot has as ``name``."""
         plan = self._fleet.plan
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
-        full = robot_topic(self._described.topics, name, known)
+        full = robot_topic(self._robot.topics, name, known)
         return full if full.startswith("/") else f"/{full}"
 
     @property
     def tf_remappings(self) -> Rules:
-        """The rules that a node of no stack needs to hear this robot's tf."""
-        names = self._described.topics
+        """The remappings with which a node outside the stacks reads this robot's tf."""
+        names = self._robot.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
         }
@@ -196,22 +196,22 @@ class LoadedRobot:
     @property
     def teleop_arguments(self) -> list[str]:
         """``arguments`` of ``teleop_twist_keyboard``."""
-        return teleop.arguments(teleop.teleop(self._fleet.plan, self._described))
+        return teleop.arguments(teleop.teleop(self._fleet.plan, self._robot))
 
     @property
     def transform_arguments(self) -> list[str]:
-        """``arguments`` of the ``static_transform_publisher`` of its pose; none if none is needed."""
+        """``arguments`` of the ``static_transform_publisher`` of its pose; empty if none is needed."""
         made = self._fleet.placed.transforms
         return next((start_poses.arguments(it) for it in made if it.robot == self._graph), [])
 
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Parameters that tell ``node`` where the robot starts; empty where it does not take them."""
+        """Parameters with the start pose for ``node``; empty if it does not use them."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})
 
     def _placed(self, node: str) -> str:
-        namespace, name = placed(self._graph, node, self._described.topics.naming)
+        namespace, name = placed(self._graph, node, self._robot.topics.naming)
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
@@ -221,7 +221,7 @@ class LoadedRobot:
 class LoadedFleet:
     """A fleet file, ready for a launch script; ``robots`` are in its order.
 
-    ``findings`` are what a person should know about the descriptions and the table.
+    ``findings`` are warnings about the descriptions and the remap table.
     """
 
     def __init__(self, plan: FleetPlan) -> None:
@@ -248,17 +248,17 @@ class LoadedFleet:
 
     @cached_property
     def planned(self) -> Fleet:
-        """The fleet with the nodes that hold its robots where they start."""
+        """The fleet with the nodes that publish the robots' start poses."""
         return with_start_pose_nodes(self.plan)
 
     @cached_property
     def placed(self) -> start_poses.StartPoses:
-        """Where its robots stand."""
+        """The start poses of its robots."""
         return start_poses.start_poses(self.plan)
 
     @cached_property
     def made(self) -> Outputs:
-        """Everything that ``multibot build`` would write, made when it is asked for.
+        """Everything that ``multibot build`` would write, made on first use.
 
         Raises InputError for a companion that cannot be read, RewriteRefused for one that cannot be
         rewritten.
@@ -269,18 +269,18 @@ class LoadedFleet:
 
     @cached_property
     def files(self) -> Mapping[str, OutputFile]:
-        """The same by path: ``robot1/params.yaml``."""
+        """The same files by path, such as ``robot1/params.yaml``."""
         return {it.path: it for it in self.made.files}
 
     def text(self, path: str) -> str:
-        """One of these files; UsageError for one that is not there."""
+        """The text of one of these files; UsageError for an unknown path."""
         if path not in self.files:
             _no_file(self, path)
         return self.files[path].data.decode()
 
     def parameters(self, path: str) -> YamlText:
-        """One of these files as a parameter file; InputError, with the line of the source, for values
-        that rcl refuses."""
+        """One of these files as a parameter file; InputError, with the line in the source, for values
+        that rcl rejects."""
         if path not in self._parameters:
             text = self.text(path)
             for source in self.files[path].sources:
@@ -292,8 +292,8 @@ class LoadedFleet:
 def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
 
-    Raises InputError and UsageError for what cannot be read or used, RewriteRefused where two
-    robots would meet.
+    Raises InputError and UsageError for what cannot be read or used, RewriteRefused if names of two
+    robots would collide.
     """
     fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
     _refuse(fleet.findings)
@@ -313,9 +313,9 @@ def _names(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:
 
 
 def _findings(plan: FleetPlan) -> tuple[Finding, ...]:
-    told = (it for robot in plan.robots for it in robot.findings)
+    found = (it for robot in plan.robots for it in robot.findings)
     problems = (_as_finding(plan.file.file, it) for it in plan.fleet.table.problems)
-    return tuple(dict.fromkeys((*told, *problems)))
+    return tuple(dict.fromkeys((*found, *problems)))
 
 
 def _as_finding(file: str, it: Problem) -> Finding:
@@ -330,5 +330,5 @@ def _refuse(findings: Iterable[Finding]) -> None:
 
 
 def _no_file(fleet: LoadedFleet, path: str) -> NoReturn:
-    hint = "list it under companions of the fleet file"
+    hint = "list it under companions: in the fleet file"
     raise UsageError(f"{fleet.file}: {unknown('file', path, fleet.files)}; {hint}")

@@ -1,4 +1,4 @@
-"""Where the robots of a fleet stand: a static transform each, or an initial pose where one is sent.
+"""The start poses of a fleet: a static transform for each robot, or an initial pose for amcl.
 
 Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_initial_pose``).
 """
@@ -24,12 +24,12 @@ from multibot_rewrite.steps.collect import Inventory
 NODE = "start_pose"
 AMCL = "amcl"
 ORIGIN = Pose()
-# Elements of gz-sim's drive and odometry systems that name the frame their odometry starts at.
+# Elements of gz-sim's drive and odometry systems that hold the odometry frame.
 ODOMETRY = ("frame_id", "odom_frame")
 
 
 class StaticTransform(NamedTuple):
-    """What one ``static_transform_publisher`` of a robot sends, and how it is named and started."""
+    """What a robot's ``static_transform_publisher`` publishes, and how it is named and started."""
 
     robot: str
     parent: str
@@ -41,7 +41,7 @@ class StaticTransform(NamedTuple):
 
 
 class InitialPose(NamedTuple):
-    """What a localisation has to be told instead: parameters of ``node``, its name in the stack."""
+    """The start pose as parameters of the localisation ``node`` (its name in the stack)."""
 
     robot: str
     node: str
@@ -49,7 +49,7 @@ class InitialPose(NamedTuple):
 
 
 class StartPoses(NamedTuple):
-    """The places of a fleet's robots, and why some have none."""
+    """The start poses of a fleet's robots, and findings about robots without one."""
 
     transforms: tuple[StaticTransform, ...]
     initial: tuple[InitialPose, ...]
@@ -57,7 +57,7 @@ class StartPoses(NamedTuple):
 
 
 def start_poses(plan: FleetPlan) -> StartPoses:
-    """A transform from the world for each robot that has a pose and that nothing else places."""
+    """A transform from the world for each robot with a pose that no other node localises."""
     found: list[object] = []
     for robot in plan.robots:
         if robot.spec.pose is not None:
@@ -78,8 +78,8 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     naming, name = plan.fleet.naming, robot.spec.namespace
     world = world_of(plan.file, naming)
     if not world:
-        hint = "share one: shared_frames, or world"
-        yield _finding(robot, "MF704", "it has a pose, and no frame is shared to put it in", hint)
+        hint = "set world: or shared_frames:"
+        yield _finding(robot, "MF704", "it has a pose, but no frame is shared by all robots", hint)
         return
     sent = _sent(plan, robot)
     locators = [node for node, edges in sent.items() if any(_locates(it, naming) for it in edges)]
@@ -87,14 +87,16 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         yield InitialPose(name, AMCL, initial_pose(pose))
         return
     if locators:
-        what = f"{' and '.join(locators)} sends where it is, so its pose makes no transform"
+        nodes = " and ".join(locators)
+        what = f"its pose is not published, because {nodes} already publishes where it is"
         yield _finding(robot, "MF701", what, "a second parent would make the frame jump")
         return
     roots = _roots(sent, naming)
     if len(roots) != 1:
-        what = f"it has {len(roots)} frames without a parent: {', '.join(roots) or 'none'}"
-        hint = "the world is its description's parent already" if not roots else "join its frames"
-        yield _finding(robot, "MF702", f"{what}; its pose makes no transform", hint)
+        frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
+        hint = "connect them" if roots else "its description has the world as parent already"
+        what = f"its pose is not published, because it has {frames} instead of one"
+        yield _finding(robot, "MF702", what, hint)
         return
     local = AMCL in sent
     if local:
@@ -105,7 +107,7 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
 def static_transform(
     robot: str, parent: str, child: str, pose: Pose, naming: Naming
 ) -> StaticTransform:
-    """The transform of a robot, under names that no other robot has."""
+    """The transform of a robot, published by a node with the robot's own name."""
     namespace, node = placed(robot, NODE, naming)
     target = target_of("/tf_static", TOPIC, robot, naming)
     remaps = (("/tf_static", target),) if target else ()
@@ -113,7 +115,7 @@ def static_transform(
 
 
 def command(it: StaticTransform) -> str:
-    """The line that sends a transform."""
+    """The command that publishes a transform."""
     return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *arguments(it)])
 
 
@@ -127,13 +129,13 @@ def arguments(it: StaticTransform) -> list[str]:
 
 
 def initial_pose(pose: Pose) -> dict[str, object]:
-    """The parameters that tell amcl where it starts; they count only with ``set_initial_pose``."""
+    """The parameters for amcl's start pose; they count only with ``set_initial_pose``."""
     values = {f"initial_pose.{key}": getattr(pose, key) for key in ("x", "y", "z", "yaw")}
     return {"set_initial_pose": True, **values}
 
 
 def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
-    """What each node of a robot sends; the description's tree under an empty name."""
+    """The transforms of each node of a robot; the description's tree has an empty name."""
     name, inventory = robot.spec.namespace, robot.member.inventory
     sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
     tree = list(description_edges(inventory))
@@ -148,24 +150,24 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
 
 
 def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
-    """The frames that gz-sim's systems start their odometry at, and a bridge brings to tf."""
+    """The odometry frames of gz-sim's systems, which a bridge brings to tf."""
     for host in inventory.hosts:
         name = host.node.rewriter.names[0] if host.node.rewriter else ""
         topics = bridge_data()["plugins"].get(name, ())
         if any(row[2] == TF_TYPE for row in topics):
-            told = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)
-            yield next(filter(None, told), f"{model}/odom")
+            given = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)
+            yield next(filter(None, given), f"{model}/odom")
             return
 
 
 def _locates(edge: Edge, naming: Naming) -> bool:
-    """It places a robot's frame in a frame of all."""
+    """Does it place a robot's frame in a shared frame?"""
     shared = naming.shared_frames
     return not edge.static and edge.parent in shared and edge.child not in shared
 
 
 def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
-    """The robot's own frames that nothing is the parent of."""
+    """The robot's own frames without a parent."""
     edges = [edge for own in sent.values() for edge in own]
     children = {edge.child for edge in edges if edge.parent != edge.child}
     parents = dict.fromkeys(edge.parent for edge in edges)

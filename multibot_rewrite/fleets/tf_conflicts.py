@@ -1,6 +1,6 @@
-"""Frames that two nodes send: listeners see them jump between two places.
+"""Frames that two nodes publish: listeners see them jump between two places.
 
-What nodes send is read from the parameter files that were written, else from their defaults.
+What nodes publish is read from the written parameter files, else from their defaults.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
 from multibot_rewrite.remap.records import NodeFacts
 
 DESCRIPTION = "the description"
-# Parameters that keep a node from sending anything.
+# Parameters that stop a node from publishing transforms.
 SWITCHES = ("publish_tf", "tf_broadcast", "enable_odom_tf", "publish_odom_tf", "broadcast_tf")
-# robot_localization: the frame that what it filters is in, one of the other two.
+# robot_localization: world_frame is one of the other two.
 WORLD, MAP, ODOM = "world_frame", "map_frame", "odom_frame"
 
 
 class SentTransform(NamedTuple):
-    """A transform, and the node that sends it: its name in the stack, its full name."""
+    """A transform, and the node that publishes it: its name in the stack and its full name."""
 
     edge: Edge
     by: str
@@ -41,12 +41,12 @@ Parsed = Sequence[tuple[OutputText, YamlText]]
 
 
 def tf_conflicts(plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText]) -> Iterator[Finding]:
-    """What two nodes of a robot send, and what two robots send on one topic."""
+    """Frames that two nodes of a robot publish, or two robots on one topic."""
     for group in group_robots(plan):
         robot = group.robots[0]
         parsed = list(_parsed(it for it in files if it.path.startswith(f"{robot.spec.name}/")))
-        yield from _twice(robot, list(_sent(fleet, group, parsed)), parsed)
-    yield from _between(plan, fleet)
+        yield from _of_two_nodes(robot, list(_sent(fleet, group, parsed)), parsed)
+    yield from _of_two_robots(plan, fleet)
 
 
 def _parsed(files: Iterable[OutputText]) -> Iterator[tuple[OutputText, YamlText]]:
@@ -55,21 +55,22 @@ def _parsed(files: Iterable[OutputText]) -> Iterator[tuple[OutputText, YamlText]
             yield file, read_yaml(file.text.encode(), file.path)
 
 
-def _twice(
+def _of_two_nodes(
     robot: RewrittenRobot, sent: Sequence[SentTransform], files: Parsed
 ) -> Iterator[Finding]:
     first: dict[str, SentTransform] = {}
-    told: set[str] = set()
+    reported: set[str] = set()
     for it in sent:
         child = it.edge.child
         other = first.setdefault(child, it)
-        if other.by == it.by or child in told:
+        if other.by == it.by or child in reported:
             continue
-        told.add(child)
+        reported.add(child)
         apart = other.edge.parent != it.edge.parent
         below = f" below {other.edge.parent} and {it.edge.parent}" if apart else ""
-        message = f"frame {child} of {robot.spec.name} is sent{below} by {other.by} and by {it.by}"
-        hint = "a frame has one parent and one sender: leave one out, or switch its transform off"
+        both = f"{other.by} and {it.by}"
+        message = f"frame {child} of {robot.spec.name} is published{below} by both {both}"
+        hint = "only one node may publish a frame: remove one, or switch its transform off"
         yield Finding("MF607", WARNING, message, hint, *_place(robot, it, files), 1)
 
 
@@ -103,7 +104,7 @@ def _sent(fleet: Fleet, group: RobotGroup, files: Parsed) -> Iterator[SentTransf
 
 
 def _as_given(node: NodeFacts, given: Mapping[str, Any], edges: Iterable[Edge]) -> list[Edge]:
-    """What a node sends with these parameters."""
+    """What a node publishes with these parameters."""
     if any(given.get(it) is False for it in SWITCHES):
         return []
     defaults = list(edges)
@@ -122,29 +123,28 @@ def _given(files: Parsed, full: str) -> dict[str, Any]:
     """The parameters of a node."""
     found: dict[str, Any] = {}
     for _, document in files:
-        # What rcl does not read, and what is said of it, is another step's.
+        # Another step reports values that rcl rejects.
         with suppress(InputError):
             found.update(node_parameters(document, full))
     return found
 
 
-def _between(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
-    """Frames of all robots that more than one robot sends, where all hear one topic."""
+def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
+    """Shared frames that more than one robot publishes on one topic."""
     naming = fleet.naming
     first: dict[tuple[str, str], str] = {}
-    told: set[str] = set()
+    reported: set[str] = set()
     specs = {it.spec.namespace: it.spec for it in plan.robots}
-    # A description may begin with the world, and what moves the robot is then taken to move it.
+    # If a description starts with the world, the drive looks as if it moved the world.
     links = {link for it in plan.robots for link in it.member.inventory.declared["link"]}
     for (robot, node), edges in fleet.edges.items():
         for edge in edges:
             other = first.setdefault((tf_topic(robot, naming), edge.child), robot)
-            if other == robot or edge.child in told or edge.child in links:
+            if other == robot or edge.child in reported or edge.child in links:
                 continue
-            told.add(edge.child)
-            message = (
-                f"frame {edge.child} is sent by robots {other} and {robot} ({node}) on one topic"
-            )
-            hint = "take it out of shared_frames, or choose a layout with a tf topic per robot"
+            reported.add(edge.child)
+            robots = f"{other} and {robot} ({node})"
+            message = f"frame {edge.child} is published by two robots on one topic: {robots}"
+            hint = "remove it from shared_frames, or choose a layout with a tf topic per robot"
             spec = specs[robot]
             yield Finding("MF607", ERROR, message, hint, spec.file, spec.line, 1)

@@ -1,4 +1,4 @@
-"""The fleet with the nodes that hold its robots where they start: they are planned like any other."""
+"""The fleet with the nodes that publish start poses: they are planned like any other node."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from multibot_rewrite.remap.records import (
 from multibot_rewrite.remap.table import joined, names_of, node_table
 
 STATIC = "/tf_static"
-HOLDER = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
+POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
 
 
 def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
-    """The planned fleet, and a publisher of a static transform for each robot that needs one."""
+    """The planned fleet with a static transform publisher for each robot that needs one."""
     fleet = plan.fleet
     held = [it for one in split_per_robot(plan) for it in start_poses(one).transforms]
     if not held:
         return fleet
-    tables = [node_table(it.robot, HOLDER, fleet.naming) for it in held]
-    names = tuple(names_of([(HOLDER, table) for table in tables]))
+    tables = [node_table(it.robot, POSE_NODE, fleet.naming) for it in held]
+    names = tuple(names_of([(POSE_NODE, table) for table in tables]))
     edges = {(it.robot, NODE): [Edge(it.parent, it.child, True)] for it in held}
     more = Table(fleet.table.layout, tuple(tables), names, ())
     return fleet._replace(
@@ -41,8 +41,7 @@ def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
 
 
 def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
-    """Each robot as a fleet of its own: for steps that look through everything there is of a robot,
-    which would else look through all the others as well."""
+    """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
     fleet = plan.fleet
     nodes: dict[str, list[NodeTable]] = defaultdict(list)
     names: dict[str, list[ResolvedName]] = defaultdict(list)

@@ -1,4 +1,4 @@
-"""What a ros_gz_bridge has to carry for each robot of a fleet, read off its rewritten description."""
+"""The topics that ros_gz_bridge must bridge for each robot, read from rewritten descriptions."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TF_TYPE = "tf2_msgs/msg/TFMessage"
 
 
 class BridgedTopic(NamedTuple):
-    """One topic of the bridge; ``robot`` is empty where one carries it for all."""
+    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots."""
 
     robot: str
     ros: str
@@ -28,7 +28,7 @@ class BridgedTopic(NamedTuple):
 
 
 class UnbridgedTopic(NamedTuple):
-    """A topic whose gz name hangs on the world or the spawner, so that no bridge can be written."""
+    """A topic that cannot be bridged: its gz name depends on the world or the spawner."""
 
     robot: str
     line: int
@@ -48,16 +48,19 @@ def bridge_data() -> Mapping[str, Any]:
 def bridged_topics(
     inventories: Mapping[str, Inventory], naming: Naming
 ) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
-    """The bridge of a fleet, and what it cannot carry; ``inventories`` are of rewritten text."""
-    carried = [
+    """The bridged topics of a fleet, and those that cannot be bridged.
+
+    ``inventories`` are those of the rewritten descriptions.
+    """
+    bridged = [
         BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
         for name, ros_type, gz_type, way in bridge_data()["shared"]
     ]
     left: list[UnbridgedTopic] = []
     for robot, inventory in inventories.items():
         for item in _robot_topics(inventory, robot, naming):
-            (carried if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
-    return list(dict.fromkeys(carried)), left
+            (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
+    return list(dict.fromkeys(bridged)), left
 
 
 def _robot_topics(
@@ -65,7 +68,7 @@ def _robot_topics(
 ) -> Iterator[BridgedTopic | UnbridgedTopic]:
     for sensor in inventory.document.root.iter("sensor"):
         yield from _sensor(sensor, robot, naming)
-    # Bare frames leave the model's name to the spawner: the robot's own, or two models collide.
+    # With bare frames the spawner must give the model the robot's name, or two models collide.
     model = inventory.document.root.get("name", "") if naming.layout.frames else robot
     for host in inventory.hosts:
         name = host.node.rewriter.names[0] if host.node.rewriter else ""
@@ -80,7 +83,7 @@ def _sensor(
     kind = sensor.get("type", "")
     topics = bridge_data()["sensors"].get(kind, ())
     if not topics or sensor.find("plugin[@filename]") is not None:
-        return  # a Gazebo Classic sensor, whose plugin talks ROS itself, or none of ours
+        return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
     base = sensor.findtext("topic", "").strip()
     if not base:
         yield UnbridgedTopic(robot, _line(sensor), f"sensor {sensor.get('name')}")
@@ -95,7 +98,7 @@ def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[Brid
     if "camera" in sensor.get("type", ""):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
         name = sensor.findtext("camera/camera_info_topic", "").strip() or beside
-        if sensor.get("type") == "rgbd_camera":  # whose code asks for nothing else
+        if sensor.get("type") == "rgbd_camera":  # its code uses no other name
             name = f"{base}/camera_info"
         types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
         yield BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
@@ -114,7 +117,7 @@ def _plugin(
         ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
         if not given and ros_type != TF_TYPE:
             ros = _robot_name(default.rpartition("/")[2], robot, naming)
-        # The one /tf of all is carried once, or each transform comes as often as there are robots.
+        # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
 
@@ -124,7 +127,7 @@ def _line(element: etree._Element) -> int:
 
 
 def _ros_name(name: str) -> str:
-    """A gz topic has no namespace: what the description says is the name in full."""
+    """A gz topic has no namespace: the name in the description is the full name."""
     return f"/{name.lstrip('/')}"
 
 
@@ -134,17 +137,17 @@ def _tf_name(robot: str, naming: Naming) -> str:
 
 
 def _robot_name(name: str, robot: str, naming: Naming) -> str:
-    """A word as a robot's own topic."""
+    """A name as the robot's own topic."""
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
     there = affix(naming, "topic", f"/{name}")
     return there.spell(f"/{name}", robot) if there else f"/{name}"
 
 
-def as_yaml(carried: Iterable[BridgedTopic]) -> str:
+def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
     """The configuration file of ``ros_gz_bridge parameter_bridge``."""
     rows = []
-    for item in carried:
+    for item in bridged:
         rows += [
             f'- ros_topic_name: "{item.ros}"\n',
             f'  gz_topic_name: "{_ros_name(item.gz)}"\n',

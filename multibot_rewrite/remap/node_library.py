@@ -1,4 +1,4 @@
-"""What files of nodes and stacks say, read with file and line into records."""
+"""Files of nodes and stacks -> records; errors name file and line."""
 
 from __future__ import annotations
 
@@ -40,14 +40,14 @@ ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
 STACK_KEYS = ("about", "include", "nodes")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps")
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
-# What is made at run time stands for some token.
+# Part of a name that is only known at run time.
 _MADE = re.compile(r"<[^<>/]+>")
 _GIVES = {"msg": "a topic", "srv": "a service", "action": "an action"}
 Known = TypeVar("Known")
 
 
 class Stack(NamedTuple):
-    """Nodes that are started together; ``include`` names the stacks it has as well."""
+    """Nodes that are started together; ``include`` are stacks that it contains."""
 
     about: str
     include: tuple[str, ...]
@@ -55,7 +55,7 @@ class Stack(NamedTuple):
 
 
 class NodeLibrary(NamedTuple):
-    """What files of nodes and stacks say: parts (endpoints many nodes have), nodes, stacks."""
+    """Known parts (endpoints that many nodes have), nodes and stacks."""
 
     parts: Mapping[str, tuple[Endpoint, ...]]
     nodes: Mapping[str, NodeFacts]
@@ -63,9 +63,9 @@ class NodeLibrary(NamedTuple):
 
 
 def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a stack, those of the stacks it includes first, each once.
+    """The nodes of a stack, each once; nodes of included stacks come first.
 
-    The name of a node stands for a stack of it alone. Raises UsageError for other names.
+    The name of a node is a stack of that node alone. Raises UsageError for other names.
     """
     if name not in library.stacks and name in library.nodes:
         return (library.nodes[name],)
@@ -75,8 +75,8 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     for node in _gathered(library, name, ()):
         if found.setdefault(node.name, node) != node:
             raise UsageError(
-                f"stack {name!r} has two different nodes {node.name!r}; "
-                "give one of them another name with 'as'"
+                f"stack {name!r} has two different nodes called {node.name!r}; "
+                "rename one of them with 'as'"
             )
     return tuple(found.values())
 
@@ -90,7 +90,7 @@ def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterat
 
 
 def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
-    """``library`` and what a YAML text adds to it or says anew."""
+    """``library`` with what a YAML text adds or changes."""
     top = table(read_yaml_with_lines(text, file), "the file", NodeLibrary._fields)
     new = {key: table(item, key) for key, item in top.items()}
     parts = dict(library.parts)
@@ -107,7 +107,7 @@ def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
 
 
 def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
-    """Includes and names can only be judged once all stacks are there."""
+    """Includes and names can be checked only when all stacks are known."""
     try:
         stack_of(library, name)
     except UsageError as error:
@@ -141,7 +141,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
 def _sends(
     keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
 ) -> Iterator[tuple[str, str]]:
-    """The transforms a node sends, as the parameters that hold their frames."""
+    """The transforms that a node publishes, as the parameters that hold their frames."""
     known = {frame.parameter: frame.parameter for frame in frames}
     for parent, item in table_of(keys, "sends").items():
         if parent not in known:
@@ -189,7 +189,7 @@ def _kind(role: str, type_: str) -> str:
 
 
 def _checked(item: YamlItem, endpoint: Endpoint) -> Endpoint:
-    """The endpoint, if its name and types are such; a name not known yet is out of reach."""
+    """The endpoint, if its name and types are valid; no rule reaches a name made at run time."""
     for name in filter(None, (endpoint.name, endpoint.remapped)):
         text = _MADE.sub("x", name)
         fault = check_topic_name(text) or check_full_name(expand(text, "/", "node"))
@@ -206,7 +206,7 @@ def _checked(item: YamlItem, endpoint: Endpoint) -> Endpoint:
 def _check_type(item: YamlItem, endpoint: Endpoint, type_: str) -> None:
     found = _TYPE.fullmatch(type_)
     if not found:
-        wrong(item, f"{type_!r} is no type; write it like std_msgs/msg/String")
+        wrong(item, f"{type_!r} is not a ROS type; write it like std_msgs/msg/String")
     # The parts of an action have types like nav2_msgs/action/Spin_FeedbackMessage.
     if endpoint.kind == TOPIC and "/action/" in type_ and "_" in type_.rpartition("/")[2]:
         return
@@ -232,12 +232,12 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
 
 
 def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
-    """A node as a stack has it."""
+    """A node with the changes that a stack makes to it."""
     if isinstance(item.value, str):
         return _known(item, "node", library.nodes)
     keys = table(item, "an entry", ENTRY_KEYS)
     if "node" not in keys:
-        wrong(item, "the entry names no node; write {node: ...}")
+        wrong(item, "the entry has no node; write {node: ...}")
     node = _known(keys["node"], "node", library.nodes)
     endpoints = (*node.endpoints, *_taken_over(keys, library.parts))
     name = word_of(keys, "as", node.name)
@@ -251,7 +251,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
 
 
 def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tuple[Endpoint, ...]:
-    """The endpoints under the names that parameters give them."""
+    """The endpoints with the names that parameters set."""
     for given, item in table_of(keys, "names").items():
         if not any(_has(endpoint, given) for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
@@ -265,7 +265,7 @@ def _named(endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]) -> tup
 def _renamed(
     item: YamlItem, endpoint: Endpoint, given: str, values: Iterable[str]
 ) -> Iterator[Endpoint]:
-    """One endpoint for each value where it has the name, itself where it has not."""
+    """One endpoint for each value if it has the name, else itself."""
     if not _has(endpoint, given):
         yield endpoint
         return
@@ -275,14 +275,14 @@ def _renamed(
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:
-    """Whether it is called so, or what is made at run time is in its name."""
+    """Is this its name, or a run-time part of its name?"""
     return given in endpoint.name if given.startswith("<") else given == endpoint.name
 
 
 def _remapped(
     endpoints: tuple[Endpoint, ...], keys: Mapping[str, YamlItem]
 ) -> tuple[Endpoint, ...]:
-    """The endpoints with what the usual launch file's own rules make of them."""
+    """The endpoints with the remap rules of the usual launch file."""
     for given, item in table_of(keys, "remaps").items():
         if all(endpoint.name != given for endpoint in endpoints):
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))

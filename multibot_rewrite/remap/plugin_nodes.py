@@ -1,4 +1,4 @@
-"""The nodes that a rewritten description starts by itself: its plugins, with the rules it holds."""
+"""The ROS nodes in a rewritten description: its plugins, with their remap rules."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ ROS_NODE = "ros/remapping"
 
 
 def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
-    """Each ROS 2 plugin of ``robot``'s rewritten description: what it asks for, what it is told."""
+    """Each ROS 2 plugin of ``robot``'s rewritten description: its endpoints, its names and rules."""
     for host, rewriter in _ros_nodes(inventory):
         name = _node_name(host.element, rewriter)
         rules = tuple(_rules(host, robot, name))
-        # The vocabulary does not list what a plugin publishes below its own name; the file does.
+        # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
         private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
         frames = tuple(_frames(inventory, host))
-        off = _sends_none(host, rewriter)
+        off = _odometry_is_off(host, rewriter)
         facts = NodeFacts(
             name,
             rewriter.names[0],
@@ -45,12 +45,12 @@ def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, 
             frames=frames,
             sends=tuple(_sends(rewriter, frames, inventory.declared["link"], off)),
         )
-        namespace = "/" + _told(host.element, "namespace").strip("/")
+        namespace = "/" + _ros_text(host.element, "namespace").strip("/")
         yield facts, NodeTable(robot, name, namespace, name, rules)
 
 
 def plugin_places(inventory: Inventory) -> list[str]:
-    """Where the plugins stand that ``plugin_nodes`` tells of, in its order, as ``file:line``.
+    """The places (``file:line``) of the plugins of ``plugin_nodes``, in its order.
 
     A rewrite keeps the order of elements, so those of the source are those of its results.
     """
@@ -76,7 +76,7 @@ def _node_name(plugin: etree._Element, rewriter: Rewriter) -> str:
 
 
 def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
-    """Hard-wired names of the plugin's code, and those that its parameters set."""
+    """Names in the plugin's code, and names that its parameters set."""
     rewriter = host.node.rewriter
     assert rewriter is not None
     wired = (
@@ -94,15 +94,15 @@ def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
 
 
 def _frames(inventory: Inventory, host: Host) -> Iterator[FrameParameter]:
-    """The frames that its parameters name, as the description spells them, or their defaults."""
-    told = {
+    """The frames in its parameters, as in the description, or their defaults."""
+    given = {
         claim.site.path: claim.value
         for claim in inventory.claims
         if _is_frame(claim.site) and host.element in claim.element.iterancestors()
     }
     assert host.node.rewriter is not None
     for site in filter(_is_frame, host.node.rewriter.sites):
-        value = told.get(site.path, site.default)
+        value = given.get(site.path, site.default)
         if value:
             yield FrameParameter(site.path, value)
 
@@ -111,8 +111,8 @@ def _is_frame(site: Site) -> bool:
     return site.form == "whole" and site.kinds[:1] == ("frame",)
 
 
-def _sends_none(host: Host, rewriter: Rewriter) -> bool:
-    """Odometry is off: of the switches of tf the first is its, others are for the wheels."""
+def _odometry_is_off(host: Host, rewriter: Rewriter) -> bool:
+    """Is odometry off? The first switch of tf is for odometry, others are for wheels."""
     found = [it for it in switches(host.element, rewriter) if it.topic == "/tf"]
     return bool(found) and not found[0].on
 
@@ -120,7 +120,7 @@ def _sends_none(host: Host, rewriter: Rewriter) -> bool:
 def _sends(
     rewriter: Rewriter, frames: tuple[FrameParameter, ...], links: Container[str], off: bool
 ) -> Iterator[tuple[str, str]]:
-    """What a plugin that publishes tf sends: from a frame of its own to a link, as odometry is."""
+    """The transform of a plugin that publishes tf: from its odometry frame to a link."""
     own = [frame.parameter for frame in frames if frame.default not in links]
     base = [frame.parameter for frame in frames if frame.default in links]
     if "/tf" in rewriter.publishes and own and base and not off:
@@ -141,5 +141,5 @@ def _rules(host: Host, robot: str, node: str) -> Iterator[NodeRule]:
                 yield NodeRule(robot, node, rule.source, rule.target, "", why)
 
 
-def _told(element: etree._Element, tag: str) -> str:
+def _ros_text(element: etree._Element, tag: str) -> str:
     return (element.findtext(f"ros/{tag}") or element.findtext(tag) or "").strip()

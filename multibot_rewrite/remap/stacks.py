@@ -1,6 +1,6 @@
-"""Known nodes and stacks of nodes, from ``nodes.yaml`` and ``stacks.yaml`` and files like them.
+"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``stacks.yaml`` and files of users.
 
-``python -m multibot_rewrite.remap.stacks`` prints the reference page of them.
+``python -m multibot_rewrite.remap.stacks`` prints their reference page.
 """
 
 from __future__ import annotations
@@ -17,21 +17,21 @@ BUILT_IN = ("nodes.yaml", "stacks.yaml")
 
 
 def load_nodes() -> dict[str, NodeFacts]:
-    """Name -> facts of every built-in node."""
+    """Every built-in node by name."""
     return dict(built_in().nodes)
 
 
 @lru_cache
 def load_stack(name: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a built-in stack, or a built-in node; UsageError if there is none."""
+    """The nodes of a built-in stack, or a built-in node; UsageError for an unknown name."""
     return stack_of(built_in(), name)
 
 
 def user_stack(path: str) -> NodeLibrary:
-    """The built-in nodes and stacks and those of a file; ``stack_of`` takes a stack out of it.
+    """The built-in nodes and stacks and those of a file; ``stack_of`` selects a stack.
 
-    What the file says anew of a built-in node counts in the file's own stacks. Raises UsageError,
-    with file and line, for whatever is wrong in it.
+    A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError
+    with file and line for errors in the file.
     """
     try:
         with open(path, encoding="utf-8-sig") as file:
@@ -45,7 +45,7 @@ def user_stack(path: str) -> NodeLibrary:
 
 @lru_cache
 def built_in() -> NodeLibrary:
-    """What this package knows."""
+    """The nodes and stacks that this package knows."""
     library = NodeLibrary({}, {}, {})
     for name in BUILT_IN:
         text = files("multibot_rewrite.remap").joinpath(name).read_text(encoding="utf-8")

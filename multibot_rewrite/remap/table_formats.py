@@ -1,4 +1,4 @@
-"""A remap table in the forms people use: one function a form, each from the table to text."""
+"""A remap table as text: one function for each output format."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ EVERY_ROBOT = "all robots"
 
 
 def ros_args(table: Table) -> str:
-    """One line a node: what follows ``ros2 run PACKAGE EXECUTABLE``."""
+    """One line for each node: the arguments of ``ros2 run PACKAGE EXECUTABLE``."""
     return "".join(_ros_args(node) for node in table.nodes)
 
 
@@ -23,7 +23,7 @@ def _ros_args(node: NodeTable) -> str:
 
 
 def arguments(node: NodeTable) -> list[str]:
-    """What follows the node's executable on a command line; empty where nothing has to."""
+    """The arguments after the node's executable; empty if none are needed."""
     words = [f"{rule.source}:={rule.target}" for rule in node.rules]
     placed = [f"__ns:={node.namespace}"] if node.namespace != "/" else []
     named = [f"__node:={node.name}"] if node.name != node.node.rpartition("/")[2] else []
@@ -33,7 +33,9 @@ def arguments(node: NodeTable) -> list[str]:
 
 def launch(table: Table) -> str:
     """Python for a launch file: robot -> node -> the arguments of ``launch_ros.actions.Node``."""
-    rows = ["# node arguments, by robot and node: Node(**NODES[robot][node], package=..., ...)\n"]
+    rows = [
+        "# Arguments of nodes, by robot and node: Node(**NODES[robot][node], package=..., ...)\n"
+    ]
     rows.append("NODES = {\n")
     for robot, nodes in _by_robot(table):
         rows.append(f"    {robot!r}: {{\n")
@@ -51,7 +53,7 @@ def launch(table: Table) -> str:
 
 
 def as_data(table: Table) -> dict[str, object]:
-    """The table as plain data; the shape of the YAML and JSON forms."""
+    """The table as plain data, as in the YAML and JSON formats."""
     return {
         "layout": table.layout,
         "robots": {
@@ -93,7 +95,7 @@ def as_yaml(table: Table) -> str:
 
 
 def gazebo(table: Table) -> str:
-    """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one a node."""
+    """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
     blocks = []
     for node in table.nodes:
         rows = [f"  <namespace>{escape(node.namespace)}</namespace>"] * (node.namespace != "/")
@@ -108,7 +110,7 @@ def gazebo(table: Table) -> str:
 
 
 def markdown(table: Table) -> str:
-    """One table a robot, for a page that people read."""
+    """One Markdown table for each robot."""
     parts = [f"# Remap table, layout {table.layout}\n"]
     for robot, nodes in _by_robot(table):
         parts.append(f"\n## {robot}\n\n| node | runs as | rule |\n|---|---|---|\n")
@@ -120,7 +122,7 @@ def markdown(table: Table) -> str:
 
 
 def _by_robot(table: Table) -> Iterator[tuple[str, list[NodeTable]]]:
-    """Nodes by robot, those for all robots under a name no robot can have."""
+    """Nodes by robot; nodes for all robots are under a name that no robot can have."""
     for robot in dict.fromkeys(node.robot for node in table.nodes):
         yield robot or EVERY_ROBOT, [node for node in table.nodes if node.robot == robot]
 

@@ -1,4 +1,4 @@
-"""YAML with the place of every value: what errors in a data file need to name file and line."""
+"""YAML with the file and line of every value, for errors in data files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class YamlItem(NamedTuple):
 
 def read_yaml_with_lines(text: str, file: str) -> YamlItem:
     """The one document of a YAML text; raises UsageError naming ``file`` and the line."""
-    import yaml  # tens of milliseconds that only stacks need
+    import yaml  # slow to import; only stacks need it
 
     # The C parser is ten times quicker; PyYAML is built without it on some platforms.
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -34,12 +34,12 @@ def read_yaml_with_lines(text: str, file: str) -> YamlItem:
         return YamlItem(f"{file}:1", None) if node is None else _item(node, file, frozenset())
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        # A document that ends too early is at fault on the line after its last.
+        # If a document ends too early, the error is after its last line.
         place = f"{file}:{min(mark.line, text.count(_LINE)) + 1}" if mark else file
         reason = getattr(error, "problem", None) or str(error).partition("\n")[0]
-        raise UsageError(f"{place}: broken YAML, correct it: {reason}") from None
+        raise UsageError(f"{place}: not valid YAML: {reason}") from None
     except RecursionError:
-        raise UsageError(f"{file}: broken YAML, nested too deep") from None
+        raise UsageError(f"{file}: the YAML is nested too deeply") from None
 
 
 def _item(node: yaml.Node, file: str, above: frozenset[int]) -> YamlItem:
@@ -47,7 +47,9 @@ def _item(node: yaml.Node, file: str, above: frozenset[int]) -> YamlItem:
 
     where = f"{file}:{node.start_mark.line + 1}"
     if id(node) in above:
-        raise UsageError(f"{where}: the alias stands inside what it repeats, write it out")
+        raise UsageError(
+            f"{where}: the alias is inside the value that it repeats; write the value out"
+        )
     above |= {id(node)}
     if isinstance(node, yaml.MappingNode):
         return YamlItem(where, _mapping(node, file, above))
@@ -67,20 +69,20 @@ def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[s
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"
         if not isinstance(key.value, str):
-            raise UsageError(f"{where}: a key is a mapping or a list, write a name")
+            raise UsageError(f"{where}: a key is a mapping or a list; use a name as key")
         if key.value in found:
-            raise UsageError(f"{where}: {key.value!r} stands here twice, leave one out")
-        # A block value starts a line below its key; the key is what a reader looks for.
+            raise UsageError(f"{where}: the key {key.value!r} is repeated; remove one of them")
+        # A block value starts a line below its key; a reader looks for the key.
         found[key.value] = _item(value, file, above)._replace(where=where)
     return found
 
 
 def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str, YamlItem]:
-    """The keys of a mapping, an absent value being an empty one; other keys are an error."""
+    """The keys of a mapping, or an empty one without a value; keys not ``allowed`` are an error."""
     if item.value is None:
         return {}
     if not isinstance(item.value, Mapping):
-        wrong(item, f"{what} is {_shape(item)}, write keys and values")
+        wrong(item, f"{what} is {_shape(item)}; write keys and values")
     for key, value in item.value.items():
         if allowed and key not in allowed:
             wrong(value, unknown("key", key, allowed))
@@ -88,19 +90,19 @@ def table(item: YamlItem, what: str, allowed: Sequence[str] = ()) -> Mapping[str
 
 
 def word(item: YamlItem, what: str) -> str:
-    """A text, possibly empty."""
+    """A text; it may be empty."""
     if not isinstance(item.value, str):
-        wrong(item, f"{what} is {_shape(item)}, write a text, in quotes where need be")
+        wrong(item, f"{what} is {_shape(item)}; write a text, in quotes if needed")
     return item.value
 
 
 def table_of(keys: Mapping[str, YamlItem], key: str) -> Mapping[str, YamlItem]:
-    """The mapping of a key, empty where it is absent."""
+    """The mapping of a key, empty if it is missing."""
     return table(keys[key], key) if key in keys else {}
 
 
 def entries_of(keys: Mapping[str, YamlItem], key: str) -> tuple[YamlItem, ...]:
-    """The list of a key, empty where it is absent; a single word is a list of one."""
+    """The list of a key, empty if it is missing; a single word is a list of one."""
     return entries(keys[key], key) if key in keys else ()
 
 
@@ -109,27 +111,27 @@ def entries(item: YamlItem, what: str) -> tuple[YamlItem, ...]:
     if isinstance(item.value, str):
         return (item,)
     if not isinstance(item.value, tuple):
-        wrong(item, f"{what} is {_shape(item)}, write a list")
+        wrong(item, f"{what} is {_shape(item)}; write a list")
     return item.value
 
 
 def words_of(keys: Mapping[str, YamlItem], key: str) -> tuple[str, ...]:
-    """The words listed by a key, none where it is absent."""
+    """The words listed by a key, empty if it is missing."""
     return tuple(word(entry, key) for entry in entries_of(keys, key))
 
 
 def word_of(keys: Mapping[str, YamlItem], key: str, otherwise: str = "") -> str:
-    """The text of a key, ``otherwise`` where it is absent."""
+    """The text of a key, ``otherwise`` if it is missing."""
     return word(keys[key], key) if key in keys else otherwise
 
 
 def flag_of(keys: Mapping[str, YamlItem], key: str, otherwise: bool = False) -> bool:
-    """True or false as a key says, ``otherwise`` where it is absent."""
+    """True or false as a key says, ``otherwise`` if it is missing."""
     if key not in keys:
         return otherwise
     value = keys[key].value
     if not isinstance(value, bool):
-        wrong(keys[key], f"{key} is {_shape(keys[key])}, write true or false")
+        wrong(keys[key], f"{key} is {_shape(keys[key])}; write true or false")
     return value
 
 

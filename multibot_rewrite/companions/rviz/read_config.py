@@ -91,7 +91,7 @@ def _refuse(document: YamlText) -> None:
             )
     for line, anchor in anchors(document):
         place = f"{document.file}:{line}"
-        raise InputError(f"{place}: anchor or alias {anchor} is not supported; write the value out")
+        raise InputError(f"{place}: no anchors or aliases ({anchor}) here; write the value out")
 
 
 def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
