@@ -86,6 +86,15 @@ def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
             yield token.start_mark.line + 1, f"{mark}{token.value}"
 
 
+def refuse_anchors(document: YamlText) -> None:
+    """Raise InputError at the first anchor or alias."""
+    for line, anchor in anchors(document):
+        place = f"{document.file}:{line}"
+        raise InputError(
+            f"{place}: anchors and aliases are not allowed: {anchor}; write the value out"
+        )
+
+
 def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
     """Keys and values of a mapping, repeated keys included; nothing for any other node."""
     if not isinstance(node, yaml.MappingNode):

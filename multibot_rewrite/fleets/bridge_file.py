@@ -21,13 +21,13 @@ from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_b
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
-    anchors,
     finding_at,
     is_text,
     items,
     line_of,
     pairs,
     quoted,
+    refuse_anchors,
     replaced,
 )
 from multibot_rewrite.model import WARNING, Finding, InputError
@@ -135,10 +135,7 @@ def _refuse(document: YamlText) -> None:
         raise InputError(
             f"{file}:{line_of(root)}: the list is in brackets; start each entry with a dash"
         )
-    for line, anchor in anchors(document):
-        raise InputError(
-            f"{file}:{line}: no anchors or aliases ({anchor}) here; write the value out"
-        )
+    refuse_anchors(document)
 
 
 def _fault(node: yaml.Node) -> str:

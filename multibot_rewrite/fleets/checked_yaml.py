@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.yaml_text import anchors, line_of, pairs, read_yaml
+from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
@@ -38,10 +38,7 @@ def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml
     document = read_yaml(read_file(path), path)
     if document.root is None:
         raise InputError(f"{path}: the file is empty; {hint}")
-    for line, anchor in anchors(document):
-        raise InputError(
-            f"{path}:{line}: no anchors or aliases ({anchor}) here; write the value out"
-        )
+    refuse_anchors(document)
     if not isinstance(document.root, yaml.MappingNode):
         raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
     try:

@@ -206,10 +206,10 @@ def test_bytes_around_stay() -> None:
     [
         (b"", "t.xml:1: the file is empty; a behavior tree starts with <root>"),
         (b"<root><a></root>", "t.xml:1:"),
-        (b"<robot/>", "t.xml:1: no behavior tree: it starts with <robot>"),
+        (b"<robot/>", "t.xml:1: not a behavior tree: the root is <robot>"),
         (b"<!DOCTYPE root><root/>", "DOCTYPE and entities are not accepted"),
         ("<root a='ä'/>".encode("latin-1"), "UTF-8"),
-        (b"<root a='multibotNamespaceSlot'/>", "this tool's own"),
+        (b"<root a='multibotNamespaceSlot'/>", "reserved for this tool"),
     ],
 )
 def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:

@@ -125,7 +125,7 @@ def test_a_person_is_told_what_each_must_become() -> None:
     ],
 )
 def test_what_does_not_end_is_one_line(text: str, line: int) -> None:
-    with pytest.raises(InputError, match=rf"^a\.lua:{line}: no Lua: .*close it$"):
+    with pytest.raises(InputError, match=rf"^a\.lua:{line}: not valid Lua: .*close it$"):
         rewrite_lua(text, "a.lua", context())
 
 

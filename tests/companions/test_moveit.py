@@ -91,15 +91,21 @@ def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("- a\n", "a.yaml:1: no file of MoveIt's: it is not a map"),
-        ("a\n", "a.yaml:1: no file of MoveIt's: it is not a map"),
-        ("/**:\n  ros__parameters:\n    a: 1\n", "a.yaml:2: it has ros__parameters"),
-        ("speed: fast\nheight: 1\n", "no file of MoveIt's that is known: it starts with speed"),
+        ("- a\n", "a.yaml:1: not a MoveIt file: it is not a map"),
+        ("a\n", "a.yaml:1: not a MoveIt file: it is not a map"),
+        (
+            "/**:\n  ros__parameters:\n    a: 1\n",
+            "a.yaml:2: ros__parameters makes it a parameter file; list it under params",
+        ),
+        ("speed: fast\nheight: 1\n", "not a known kind of MoveIt file: it starts with speed"),
         ("{}\n", "it starts with nothing"),
-        ("arm: {kinematics_solver: multibotTagSlot}\n", "this tool's own"),
+        ("arm: {kinematics_solver: multibotTagSlot}\n", "reserved for this tool"),
         ("joint_limits: {? |\n  j1\n : 1}\n", "not YAML"),
         ("controller_list:\n  - joints: [*a]\n", "not YAML"),
-        ("hardware_interface:\n  joints:\n    - >-\n      j1\n", "a.yaml:3: a name is a block"),
+        (
+            "hardware_interface:\n  joints:\n    - >-\n      j1\n",
+            "a.yaml:3: a name is written as a block",
+        ),
     ],
 )
 def test_what_is_no_file_of_moveit_is_one_line(text: str, said: str) -> None:

@@ -478,11 +478,11 @@ def test_a_node_without_any_section_is_told() -> None:
         ("other", "what: elbow", "MF123", "is a joint of the robot"),
         ("other", "elbow: 1.0", "MF123", "is a joint of the robot"),
         ("other", "what: [1st, base_link]", "MF123", "is a link of the robot"),
-        ("other", "x_topic: /x", "MF114", "guessed from x_topic"),
+        ("other", "x_topic: /x", "MF114", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MF122", "not rewritten"),
-        ("robot_state_publisher", "frame_prefix: a/", "MF115", "once more"),
-        ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "every robot's"),
-        ("amcl", "scan_topic: $(var s)", "MF110", "a launch file has to fill it"),
+        ("robot_state_publisher", "frame_prefix: a/", "MF115", "a second time"),
+        ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "the same for all robots"),
+        ("amcl", "scan_topic: $(var s)", "MF110", "a launch file must replace it"),
         ("amcl", "scan_topic:", "MF109", "rcl refuses"),
         ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
     ],
@@ -513,7 +513,7 @@ def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
     document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
     found = rewrite_params(document, context, facts=nodes).findings
     assert [it.message for it in found if it.code == "MF120"] == [
-        "scan_topic: scan leads to /<robot>/scan by the robot's rules"
+        "scan_topic: remap rules turn scan into /<robot>/scan"
     ]
 
 
@@ -548,23 +548,23 @@ def test_an_ordinary_file_has_nothing_told() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "nothing is in it"),
-        ("a: 1\n", "ROS 1's or read by a node itself"),
-        ("- {topic_name: x}\n", "goes under bridge"),
-        ("Panels: []\n", "an RViz configuration"),
+        ("", "it is empty"),
+        ("a: 1\n", "for ROS 1 or a node reads it directly"),
+        ("- {topic_name: x}\n", "list it under bridge"),
+        ("Panels: []\n", "an RViz config; list it under rviz"),
         ("image: m.pgm\nresolution: 0.1\n", "a map"),
-        ("joint_limits: {a: {}}\n", "go under moveit"),
-        ("arm: {kinematics_solver: x}\n", "go under moveit"),
-        ("word\n", "one word"),
-        ("ros__parameters: {a: 1}\n", "below no node's name"),
-        ("a: {ros__parameters: 1}\n", "holds no mapping"),
+        ("joint_limits: {a: {}}\n", "list it under moveit"),
+        ("arm: {kinematics_solver: x}\n", "list it under moveit"),
+        ("word\n", "a single value"),
+        ("ros__parameters: {a: 1}\n", "has no node name above it"),
+        ("a: {ros__parameters: 1}\n", "must hold names and values"),
         ("a: &x {ros__parameters: {b: 1}}\n", "anchors"),
         ("a:\n  ros__parameters:\n    b: &x 1\n    c: *x\n", "anchors"),
         ("a:\n\tros__parameters: {}\n", "a tab"),
         ("a: {ros__parameters: {[1]: 2}}\n", "a key is a mapping or a list"),
         ("[1]: {ros__parameters: {a: 2}}\n", "a key is a mapping or a list"),
         ("a: {ros__parameters: {b: 1}}\n---\nc: 1\n", "more than one document"),
-        (f"a: {{ros__parameters: {{b: {NAMESPACE_SLOT}}}}}\n", "this tool's own"),
+        (f"a: {{ros__parameters: {{b: {NAMESPACE_SLOT}}}}}\n", "reserved for this tool"),
     ],
 )
 def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> None:
@@ -627,7 +627,7 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
         ("nodes: {a: {params: {b: {kind: frame, distros: jazy}}}}", "did you mean 'jazzy'"),
         ("nodes: {a: {params: {b..c: frame}}}", "empty segment"),
         ("guesses: {frme: [x]}", "did you mean 'frame'"),
-        ("nodes: [", "broken YAML"),
+        ("nodes: [", "not valid YAML"),
     ],
 )
 def test_a_mistake_in_a_users_file_is_told_with_its_line(
@@ -707,7 +707,7 @@ def test_the_page_has_the_table_and_every_code() -> None:
     assert text.endswith(page(built_in_nodes()))
     source = "".join(
         (ROOT / "multibot_rewrite" / "companions" / "params" / name).read_text()
-        for name in ("sections.py", "values.py", "inserted.py")
+        for name in ("sections.py", "values.py", "shared_defaults.py")
     )
     assert set(re.findall(r"MF1\d\d", text)) == set(re.findall(r'"(MF1\d\d)"', source))
 

@@ -21,7 +21,7 @@ from multibot_rewrite.model import InputError
 LAYOUTS = ("L1", "L2", "L3", "L4")
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 LEAST, SAMPLE = 300, 6
-ROS1_REFUSED = "a config of ROS 1, which rviz2 cannot load"
+ROS1_REFUSED = "this is a ROS 1 config, which rviz2 cannot load"
 # Names that no file has yet.
 ROBOTS = ("zorba1", "zorba2")
 ROS1 = re.compile(r"^\s*(?:- )?Class: rviz/", re.MULTILINE)

@@ -248,7 +248,7 @@ def test_findings_are_sorted_and_said_once(
     told = [it for it in lines if "MF701" in it]
     assert len(told) == 1
     assert "robot 'robot1'" in told[0]
-    assert "so for 1 more robot" in told[0]
+    assert "the same for 1 more robot" in told[0]
     assert "multibotNamespaceSlot" not in "".join(lines)
     assert "multibotTagSlot" not in "".join(lines)
 
@@ -337,7 +337,7 @@ def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Pa
     ],
 )
 def test_what_is_no_manifest_is_refused(text: str) -> None:
-    with pytest.raises(InputError, match="m: this is no manifest of multibot build; delete it"):
+    with pytest.raises(InputError, match="m: not a manifest of multibot build; delete it"):
         read_manifest(text.encode(), "m")
 
 

@@ -135,7 +135,7 @@ def test_many_lines_of_one_fault_are_one_finding(tmp_path: Path) -> None:
         else it for it in written(make_outputs(plan))
     ]  # fmt: skip
     (found,) = looked(plan, files)
-    assert "2 lines more are like it" in found.message
+    assert "the same in 2 more lines" in found.message
 
 
 def test_what_a_companion_told_is_not_told_again(tmp_path: Path) -> None:
@@ -195,7 +195,7 @@ def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
     plan = planned(tmp_path, text, params__yaml=params)
     found = [it for it in make_outputs(plan).findings if it.code == "MF607"]
     assert len(found) == 1
-    assert "frame r1/odom of r1 is sent by amcl and by slam_toolbox" in found[0].message
+    assert "frame r1/odom of r1 is published by both amcl and slam_toolbox" in found[0].message
     assert (Path(found[0].file).name, found[0].line) == ("params.yaml", 2)
 
 
@@ -222,7 +222,10 @@ def test_what_a_parameter_file_says_is_sent(more: str, said: list[str], tmp_path
 def test_two_robots_that_send_a_shared_frame_on_one_topic(tmp_path: Path) -> None:
     text = f"stack: nav2\nshared_frames: [map, odom]\n{PARENTS}"
     found = [it for it in make_outputs(planned(tmp_path, text)).findings if it.code == "MF607"]
-    assert ["frame odom is sent by robots r1 and r2" in it.message for it in found] == [True]
+    assert [
+        "frame odom is published by two robots on one topic: r1 and r2" in it.message
+        for it in found
+    ] == [True]
     assert found[0].level == "error"
     apart = text.replace("layout: L2", "layout: L3")
     assert not [it for it in make_outputs(planned(tmp_path, apart)).findings if it.code == "MF607"]

@@ -219,7 +219,7 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two))))
     told = [it for it in make_outputs(plan).findings if it.code == "MF601"]
     assert [it.level for it in told] == ["error"]
-    assert "link 'arm_left_b' is of two robots: 'one', 'two'" in told[0].message
+    assert "two robots have the same link 'arm_left_b': 'one' and 'two'" in told[0].message
     assert (Path(told[0].file).name, told[0].line) == ("fleet.yaml", 5)
 
 
@@ -227,7 +227,9 @@ def test_companions_of_one_name_would_be_one_file(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
     text = SMALL.replace("[params.yaml]", "[params.yaml, more/params.yaml]")
-    with pytest.raises(MultibotError, match=r"robot1/params\.yaml: two results would go to this"):
+    with pytest.raises(
+        MultibotError, match=r"robot1/params\.yaml: two files would be written here"
+    ):
         made(tmp_path, text)
 
 

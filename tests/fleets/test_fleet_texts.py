@@ -165,7 +165,7 @@ def test_an_entry_that_does_not_load_is_left_out() -> None:
     ("text", "why"),
     [
         ("", "is empty"),
-        ("a: b\n", "no list"),
+        ("a: b\n", "not a list of topics"),
         ("[{topic_name: a}]\n", "in brackets"),
         (f"- &a\n  topic_name: b\n{TYPES}", "anchor"),
     ],

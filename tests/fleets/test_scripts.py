@@ -180,7 +180,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
     ("ask", "parts"),
     [
         (lambda it: it.table.for_node("amlc"), ("robot 'robot1'", "'amlc'", "did you mean 'amcl'")),
-        (lambda it: it.node("amlc"), ("did you mean 'amcl'", "stack: of the fleet file")),
+        (lambda it: it.node("amlc"), ("did you mean 'amcl'", "stack: in the fleet file")),
         (lambda it: it.params("params.yaml", "amlc"), ("params.yaml", "did you mean 'amcl'")),
         (lambda it: it.params("params.yaml", "my_nod"), ("did you mean 'my_node'",)),
         (lambda it: it.params("parms.yaml", "amcl"), ("did you mean 'robot1/params.yaml'",)),
@@ -203,10 +203,10 @@ def test_what_is_not_there_is_told_with_the_nearest(
     [
         (
             "amcl:\n  ros__parameters:\n    a: [1, 2.0]\n",
-            "params.yaml:3: a list of more than one type",
+            "params.yaml:3: the list mixes types",
         ),
         ("amcl:\n  ros__parameters:\n    a: [[1], [2]]\n", "params.yaml:3: a list holds a list"),
-        ("amcl:\n  ros__parameters:\n    a:\n", "params.yaml:3: no value"),
+        ("amcl:\n  ros__parameters:\n    a:\n", "params.yaml:3: the value is missing"),
     ],
 )
 def test_what_rcl_refuses_is_refused_with_its_line(params: str, part: str, tmp_path: Path) -> None:

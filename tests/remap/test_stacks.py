@@ -232,29 +232,33 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        pytest.param("nodes: [", "mine.yaml:1: broken YAML, correct it: ", id="broken"),
-        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2: broken YAML", id="two-documents"),
-        pytest.param("- a", "mine.yaml:1: the file is a list, write keys and values", id="list"),
+        pytest.param("nodes: [", "mine.yaml:1: not valid YAML: ", id="broken"),
+        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2: not valid YAML", id="two-documents"),
+        pytest.param("- a", "mine.yaml:1: the file is a list; write keys and values", id="list"),
         pytest.param(
             "\nnode: {}", "mine.yaml:2: key 'node' is not known; did you mean 'nodes'", id="key"
         ),
-        pytest.param("nodes:\n  a: {}\n  a: {}", "mine.yaml:3: 'a' stands here twice", id="twice"),
+        pytest.param(
+            "nodes:\n  a: {}\n  a: {}", "mine.yaml:3: the key 'a' is repeated", id="twice"
+        ),
         pytest.param(
             "nodes:\n  ? [a]\n  : b", "mine.yaml:2: a key is a mapping or a list", id="odd-key"
         ),
-        pytest.param("nodes: &a {b: *a}", "mine.yaml:1: the alias stands inside", id="endless"),
         pytest.param(
-            "nodes: {a: text}", "node 'a' is the text 'text', write keys", id="no-mapping"
+            "nodes: &a {b: *a}", "mine.yaml:1: the alias is inside the value", id="endless"
+        ),
+        pytest.param(
+            "nodes: {a: text}", "node 'a' is the text 'text'; write keys", id="no-mapping"
         ),
         pytest.param("nodes: {1a: {}}", "mine.yaml:1: node name '1a': ", id="node-name"),
         pytest.param(
             "nodes: {a: {shared: 'yes'}}",
-            "shared is the text 'yes', write true or false",
+            "shared is the text 'yes'; write true or false",
             id="flag",
         ),
-        pytest.param("nodes: {a: {note: {}}}", "note is a mapping, write a text", id="text"),
+        pytest.param("nodes: {a: {note: {}}}", "note is a mapping; write a text", id="text"),
         pytest.param(
-            "nodes: {a: {fixed: true}}", "fixed is true or false, write a list", id="no-list"
+            "nodes: {a: {fixed: true}}", "fixed is true or false; write a list", id="no-list"
         ),
         pytest.param(
             "nodes: {a: {with: [tf_lis]}}",
@@ -268,7 +272,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
             id="endpoint-key",
         ),
         pytest.param(
-            "nodes: {a: {calls: {b: Empty}}}", "'Empty' is no type; write it like", id="type"
+            "nodes: {a: {calls: {b: Empty}}}", "'Empty' is not a ROS type; write it like", id="type"
         ),
         pytest.param(
             "nodes: {a: {calls: {b: std_msgs/msg/Empty}}}",
@@ -285,7 +289,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
             "node 'amlc' is not known; did you mean 'amcl'?",
             id="node",
         ),
-        pytest.param("stacks: {a: {nodes: [{as: b}]}}", "the entry names no node", id="no-node"),
+        pytest.param("stacks: {a: {nodes: [{as: b}]}}", "the entry has no node", id="no-node"),
         pytest.param("stacks: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': ", id="as"),
         pytest.param(
             "stacks: {a: {nodes: [{node: amcl, names: {scam: x}}]}}",
@@ -314,7 +318,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ),
         pytest.param(
             "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
-            "stack 'a' has two different nodes 'amcl'",
+            "stack 'a' has two different nodes called 'amcl'",
             id="two-nodes",
         ),
     ],

@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from multibot_rewrite.fleets.artefacts import make_artefacts
+from multibot_rewrite.fleets.plan import plan_fleet
 
 from multibot_rewrite import RewriteRefused, rewrite_all
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
-from multibot_rewrite.fleets.artefacts import make_artefacts
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.settings import Settings
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
-from multibot_rewrite.companions.yaml_text import YamlText, anchors, line_of, pairs
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
 from multibot_rewrite.model import InputError
 
 MANAGER = "Visualization Manager"
@@ -89,9 +89,7 @@ def _refuse(document: YamlText) -> None:
             raise InputError(
                 f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
             )
-    for line, anchor in anchors(document):
-        place = f"{document.file}:{line}"
-        raise InputError(f"{place}: no anchors or aliases ({anchor}) here; write the value out")
+    refuse_anchors(document)
 
 
 def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
