@@ -95,7 +95,7 @@ def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
         ("a\n", "a.yaml:1: not a MoveIt file: it is not a map"),
         (
             "/**:\n  ros__parameters:\n    a: 1\n",
-            "a.yaml:2: ros__parameters makes it a parameter file; list it under params",
+            "a.yaml:2: ros__parameters makes it a parameter file",
         ),
         ("speed: fast\nheight: 1\n", "not a known kind of MoveIt file: it starts with speed"),
         ("{}\n", "it starts with nothing"),
@@ -104,7 +104,7 @@ def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
         ("controller_list:\n  - joints: [*a]\n", "not YAML"),
         (
             "hardware_interface:\n  joints:\n    - >-\n      j1\n",
-            "a.yaml:3: a name is written as a block",
+            "3: a name is written as a block",
         ),
     ],
 )

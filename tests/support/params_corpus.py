@@ -75,7 +75,7 @@ def reason(message: str, file: str) -> str:
     """An error without its place and the names in it."""
     text = message.removeprefix(file)
     text = re.sub(r"^[:\d]*: ", "", text)
-    return re.sub(r"[&*]\w+: ", "", text)
+    return re.sub(r" \([&*]\w+\)", "", text)
 
 
 def declared(document: YamlText) -> dict[str, dict[str, None]]:
