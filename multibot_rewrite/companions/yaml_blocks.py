@@ -20,7 +20,7 @@ class Block(NamedTuple):
 
 
 def is_block(node: yaml.Node | None) -> bool:
-    """A list or map written on lines of its own, not in brackets or braces."""
+    """Is it a list or map in block style, without brackets or braces?"""
     return isinstance(node, yaml.CollectionNode) and not node.flow_style
 
 
@@ -96,7 +96,7 @@ def _moved(line: str, by: int) -> str:
 
 
 def as_item(text: str, column: int, target: int) -> str:
-    """The lines of a map at ``column`` as an item of a list whose dashes stand at ``target``."""
+    """The lines of a map at ``column`` as an item of a list with its dashes at ``target``."""
     lines = lines_of(moved(text, target + 2 - column))
     at = next(at for at, line in enumerate(lines) if line.strip() and line.lstrip()[0] != "#")
     lines[at] = f"{' ' * target}- {lines[at][target + 2 :]}"

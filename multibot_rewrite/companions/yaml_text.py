@@ -14,7 +14,7 @@ import yaml
 from multibot_rewrite.model import Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
-# Reads back as the same text wherever it stands, and as no number, date, boolean or null.
+# Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")
 _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 _ANCHOR = re.compile(r"(?:^|[\s\[{,:-])[&*][^\s,\[\]{}]")

@@ -103,7 +103,7 @@ def _descriptions(plan: FleetPlan) -> FilesAndFindings:
 
 
 def _without_folder(data: bytes, source: str) -> bytes:
-    """xacro's banner names the file as it was asked for: the same from every working directory."""
+    """xacro's banner without the folder of the file: the same from every working directory."""
     if not source.endswith(".xacro"):
         return data
     banner = f"{_BANNER}{{:<30}} | -->".format

@@ -22,7 +22,7 @@ from multibot_rewrite.model import Finding
 
 
 class RvizOutput(NamedTuple):
-    """What became of one RViz config, whose path is ``source``."""
+    """The results of one RViz config, whose path is ``source``."""
 
     source: str
     windows: tuple[RvizText, ...]

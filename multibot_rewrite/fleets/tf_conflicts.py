@@ -97,9 +97,9 @@ def _sent(fleet: Fleet, group: RobotGroup, files: Parsed) -> Iterator[SentTransf
     for (owner, node), edges in fleet.edges.items():
         if owner == name:
             known = facts.get(node)
-            said = _as_given(known, _given(files, full[node]), edges) if known else edges
+            sent = _as_given(known, _given(files, full[node]), edges) if known else edges
             yield from (
-                SentTransform(it, node, full.get(node, "")) for it in said if it not in tree
+                SentTransform(it, node, full.get(node, "")) for it in sent if it not in tree
             )
 
 

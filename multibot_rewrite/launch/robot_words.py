@@ -1,4 +1,4 @@
-"""What ``$(multibot WORD NAME)`` can say about a robot: one function a word."""
+"""The words of ``$(multibot WORD NAME)``: one function for each value of a robot."""
 
 from __future__ import annotations
 

@@ -187,7 +187,7 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
 
 
 def _family(name: str) -> tuple[str, str]:
-    """The name that is spelled, and what others look for below it: an action's parts and an image's
+    """The name that is renamed, and the rest below it: an action's parts and an image's
     transports are found from the one name alone."""
     base, action, part = name.partition("/_action/")
     if action:

@@ -236,7 +236,7 @@ def test_findings(body: str, found: list[str]) -> None:
     assert [code for code, _ in codes(tree(body), context())] == found
 
 
-def test_an_unknown_frame_is_told_with_the_nearest() -> None:
+def test_an_unknown_frame_is_reported_with_the_nearest() -> None:
     text = tree('<A robot_base_frame="base_lnk"/>')
     (found,) = run(text, context("L1"))[1]
     assert found.hint == "did you mean 'base_link'?"

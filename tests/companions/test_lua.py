@@ -77,7 +77,7 @@ def test_plain_assignments(layout: str) -> None:
         "nil",
     ],
 )
-def test_what_is_no_plain_string_is_only_told(value: str) -> None:
+def test_what_is_not_a_plain_string_is_only_reported(value: str) -> None:
     text = f"options = {{\n  published_frame = {value},\n}}\n"
     assert text_of(text) == text
     assert ("MF451", 2) in codes(text)
@@ -106,7 +106,7 @@ def test_what_includes_of_cartographer_hold_needs_no_word() -> None:
     assert codes("".join(f'include "{name}"\n' for name in sorted(OWN_FILES))) == []
 
 
-def test_a_person_is_told_what_each_must_become() -> None:
+def test_new_frames_are_listed_for_editing_by_hand() -> None:
     found = frames_to_edit(OPTIONS, "a.lua", context())
     assert [(it.code, it.line) for it in found] == [("MF455", line) for line in (5, 6, 7, 11)]
     assert "tracking_frame = 'imu_link'" in found[0].message and "ROBOT/imu_link" in found[0].hint

@@ -331,7 +331,7 @@ def test_groups_follow_the_policy_in_keys_and_values(groups: str, new: str) -> N
     assert text_of(text, it) == text.replace("group: arm", f"group: {new}")
 
 
-def test_groups_that_no_srdf_tells_of_are_told() -> None:
+def test_groups_without_an_srdf_are_reported() -> None:
     text = "arm: {kinematics_solver: a/B}\n"
     new, found = run(text, context("L2", srdf=False, groups="rename"))
     assert new == text and [it.code for it in found] == ["MF305"]
@@ -345,7 +345,7 @@ def test_virtual_joints_of_an_srdf_are_joints() -> None:
     assert codes(text, context(srdf=False)) == [("MF301", 1)]
 
 
-def test_a_name_that_the_description_lacks_is_told_once_with_the_nearest() -> None:
+def test_a_name_that_the_description_lacks_is_reported_once_with_the_nearest() -> None:
     text = "controller_list:\n  - name: a\n    joints: [j1, jj1]\n  - {name: b, joints: [jj1]}\n"
     (found,) = run(text, context("L1"))[1]
     assert (found.code, found.line, found.column) == ("MF301", 3, 18)
@@ -385,7 +385,7 @@ def test_mentions_matter_only_where_names_change() -> None:
     assert codes("arm:\n  kinematics_solver: a/B\n  favourite: j1\n", context("L1")) == []
 
 
-def test_an_alias_that_needs_two_spellings_is_refused() -> None:
+def test_an_alias_that_needs_two_new_names_is_refused() -> None:
     text = "octomap_frame: &x tool0\ncontroller_list:\n  - {name: a, joints: [*x]}\n"
     declared = context()
     both = {**declared.names.declared, "joint": {"tool0": None}}
@@ -424,7 +424,7 @@ def test_the_manager_that_moveit_asks_is_the_robots() -> None:
         assert codes(text, context("L4")) == [("MF308", line)]
 
 
-def test_another_manager_asks_nobody() -> None:
+def test_another_controller_manager_needs_no_namespace() -> None:
     text = "moveit_controller_manager: moveit_simple_controller_manager/Simple\n"
     assert text_of(text, context()) == text and codes(text, context("L4")) == []
 

@@ -154,7 +154,7 @@ def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> N
         ("<robot_namespace>", "MF110"),
     ],
 )
-def test_a_section_with_a_doubtful_name_is_told(name: str, code: str) -> None:
+def test_a_section_with_a_doubtful_name_is_reported(name: str, code: str) -> None:
     assert code in codes(made(section(name, "x: 1"))[1])
 
 
@@ -181,7 +181,7 @@ def test_a_wildcard_behind_an_exact_section_wins() -> None:
     assert "MF107" not in codes(made(exact + section("/**/other", "alpha1: 0.2"))[1])
 
 
-def test_a_section_that_stands_twice_is_rewritten_twice() -> None:
+def test_a_repeated_section_is_rewritten_twice() -> None:
     text, findings = made(section("amcl", "scan_topic: /a") + section("amcl", "map_topic: /m"))
     assert text.count("/robot1/amcl:") == 2
     assert "scan_topic: /robot1/a" in text
@@ -190,7 +190,7 @@ def test_a_section_that_stands_twice_is_rewritten_twice() -> None:
     assert text.count("odom_frame_id") == 1
 
 
-def test_a_key_that_stands_twice_is_rewritten_twice() -> None:
+def test_a_repeated_key_is_rewritten_twice() -> None:
     text, findings = made(section("amcl", "scan_topic: /a", "scan_topic: /b"))
     assert "scan_topic: /robot1/a" in text
     assert "scan_topic: /robot1/b" in text
@@ -241,7 +241,7 @@ def test_a_key_that_stands_twice_is_rewritten_twice() -> None:
         (L2, "move_group", "ros_control_namespace: /", "ros_control_namespace: /robot1"),
     ],
 )  # fmt: skip
-def test_a_name_is_spelled_by_its_kind(
+def test_a_name_is_renamed_by_its_kind(
     policy: tuple[str, str], node: str, old: str, new: str
 ) -> None:
     assert value(node, old, policy) == new
@@ -261,7 +261,7 @@ def test_a_name_is_spelled_by_its_kind(
         (("constraints: {elbow: {goal: 0.1}}",), ["constraints: {r1_elbow: {goal: 0.1}}"]),
     ],
 )
-def test_keys_that_are_joints_are_spelled_nested_and_dotted(
+def test_keys_that_are_joints_are_renamed_nested_and_dotted(
     lines: tuple[str, ...], new: list[str]
 ) -> None:
     text, findings = made(section("joint_trajectory_controller", *lines))
@@ -283,7 +283,7 @@ def test_chained_controllers_keep_their_names_in_a_namespace(
     assert value("joint_trajectory_controller", line, policy) == f"command_joints: {new}"
 
 
-def test_a_controllers_type_tells_what_it_is() -> None:
+def test_a_controller_is_identified_by_its_type() -> None:
     manager = section(
         "controller_manager", "wheels:", "  type: diff_drive_controller/DiffDriveController"
     )
@@ -292,7 +292,7 @@ def test_a_controllers_type_tells_what_it_is() -> None:
     assert "tf_frame_prefix_enable: false" in text
 
 
-def test_what_a_section_sets_tells_what_it_is() -> None:
+def test_a_section_is_identified_by_its_parameters() -> None:
     lines = ("left_wheel_names: [left_wheel]", "right_wheel_names: [right_wheel]")
     assert "tf_frame_prefix_enable: false" in made(section("rover_base", *lines))[0]
 
@@ -352,7 +352,9 @@ def test_the_binary_filter_does_not_join_its_names_on_kilted_either() -> None:
     ("policy", "distro", "told"),
     [(L2, "jazzy", True), (L2, "kilted", False), (L4, "kilted", True)],
 )
-def test_a_source_without_a_topic_is_told(policy: tuple[str, str], distro: str, told: bool) -> None:
+def test_a_source_without_a_topic_is_reported(
+    policy: tuple[str, str], distro: str, told: bool
+) -> None:
     layer = "layer: {observation_sources: scan tof, scan: {topic: /scan}, tof: {clearing: true}}"
     source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {layer}\n"
     found = [it for it in made(source, policy, distro)[1] if it.code == "MF127"]
@@ -387,7 +389,7 @@ def test_a_shared_topic_is_written_from_the_root() -> None:
     assert "map_topic: /map\n" in fill_template(companion.template, "robot1", "r1")
 
 
-def test_what_is_no_topic_stays_and_is_told() -> None:
+def test_an_invalid_topic_stays_and_is_reported() -> None:
     text, findings = made(section("amcl", "scan_topic: 1st/scan"))
     assert "scan_topic: 1st/scan" in text
     assert "MF113" in codes(findings)
@@ -450,7 +452,7 @@ def test_lines_are_inserted_as_the_file_is_written() -> None:
     assert "{robot_base_frame: r1/base_link}" in made(empty)[0]
 
 
-def test_a_node_without_any_section_is_told() -> None:
+def test_a_node_without_any_section_is_reported() -> None:
     document = read_yaml(section("amcl", "x: 1").encode(), "p.yaml")
     found = nodes_without_section([document], setting(L2))
     assert {it.code for it in found} == {"MF125"}
@@ -487,7 +489,7 @@ def test_a_node_without_any_section_is_told() -> None:
         ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
     ],
 )
-def test_what_a_person_should_know_is_told(node: str, line: str, code: str, words: str) -> None:
+def test_mistakes_in_names_are_reported(node: str, line: str, code: str, words: str) -> None:
     _, findings = made(section(node, line))
     found = [str(it) for it in findings if it.code == code]
     assert found
@@ -505,7 +507,7 @@ def test_one_key_cannot_be_two() -> None:
     assert ("MF101", "error") in [(it.code, it.level) for it in found]
 
 
-def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
+def test_a_topic_with_a_wrong_target_by_a_rule_is_reported() -> None:
     """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
     text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
     nodes = stack_of(extend(built_in(), text, "n"), "s")
@@ -525,7 +527,7 @@ def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
         ("smoother_server:\n  ros__parameters:\n    ? x\n    : 1\n", "MF124"),
     ],
 )
-def test_what_cannot_be_made_sure_of_is_told(source: str, code: str) -> None:
+def test_what_cannot_be_inserted_or_decided_is_reported(source: str, code: str) -> None:
     found = codes(made(source)[1])
     assert code in found if code else not found
 
@@ -537,7 +539,7 @@ def test_a_prefix_cannot_be_a_postfix() -> None:
     assert "MF117" in codes(findings)
 
 
-def test_an_ordinary_file_has_nothing_told() -> None:
+def test_an_ordinary_file_has_no_findings() -> None:
     source = section("amcl", "base_frame_id: base_link", "odom_frame_id: odom", "scan_topic: scan")
     assert made(source)[1] == ()
 
@@ -630,7 +632,7 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
         ("nodes: [", "not valid YAML"),
     ],
 )
-def test_a_mistake_in_a_users_file_is_told_with_its_line(
+def test_a_mistake_in_a_users_file_is_reported_with_its_line(
     tmp_path: object, text: str, words: str
 ) -> None:
     path = f"{tmp_path}/more.yaml"

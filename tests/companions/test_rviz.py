@@ -184,7 +184,7 @@ def test_a_description_with_bare_links_gets_a_tf_prefix() -> None:
     assert displays[-1]["TF Prefix"] == "robot1"
 
 
-def test_a_tf_prefix_of_the_file_is_emptied_and_told() -> None:
+def test_a_tf_prefix_of_the_file_is_emptied_and_reported() -> None:
     text = config("Class: rviz_default_plugins/RobotModel\nTF Prefix: tb3\nDescription Topic: /d")
     assert manager(text=text)["Displays"][0]["Displays"][0]["TF Prefix"] == ""
     assert "MF207" in codes(text)
@@ -368,7 +368,7 @@ def test_bare_frames_cannot_be_relayed() -> None:
     assert len(make(layout="L1", relayed=True)[0]) == len(ROBOTS)
 
 
-def test_the_postfix_layout_spells_topics_behind() -> None:
+def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
     assert manager(layout="L4")["Displays"][1]["Topic"]["Value"] == "/scan/robot1"
     assert manager(layout="L4")["Global Options"]["Fixed Frame"] == "odom/robot1"
 
@@ -502,7 +502,7 @@ def test_a_map_that_is_shared_stays_once() -> None:
     assert rewrite_rviz(read_yaml(text.encode(), "one.rviz"), shared)[0][0].text == text
 
 
-def test_volatile_descriptions_are_told_once() -> None:
+def test_volatile_descriptions_are_reported_once() -> None:
     model = (
         "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile"
     )

@@ -297,7 +297,7 @@ def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> No
         ("out", False, "out: it is a file; name a folder"),
     ],
 )
-def test_what_stands_in_the_way_is_told(
+def test_what_prevents_a_pose_or_namespace_is_reported(
     path: str, folder: bool, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fleet_folder(tmp_path)
@@ -568,7 +568,7 @@ def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_a_folder_that_cannot_be_written_is_told(
+def test_a_folder_that_cannot_be_written_is_reported(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = held(out)
@@ -584,7 +584,7 @@ def test_a_folder_that_cannot_be_written_is_told(
             path.chmod(0o755)
 
 
-def test_a_read_only_folder_is_told(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """On a file system that was mounted read-only, which stops root, too."""
     renamed(out.parent)
     mounts = [["mount", "--bind", str(out), str(out)], ["mount", "-o", "remount,ro,bind", str(out)]]

@@ -138,7 +138,7 @@ def test_many_lines_of_one_fault_are_one_finding(tmp_path: Path) -> None:
     assert "the same in 2 more lines" in found.message
 
 
-def test_what_a_companion_told_is_not_told_again(tmp_path: Path) -> None:
+def test_what_a_companion_reported_is_not_reported_again(tmp_path: Path) -> None:
     params = PARAMS.replace("scan_topic: scan", "scan_topic: /robot2/scan")
     made = make_outputs(planned(tmp_path, SMALL, params__yaml=params))
     assert [it.code for it in made.findings if it.level == "error"] == ["MF126"]

@@ -121,7 +121,7 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
         ("amcl:\n", False),
     ],
 )
-def test_a_fleet_file_is_told_from_a_plan(text: str, fleet: bool) -> None:
+def test_a_fleet_file_is_distinguished_from_a_plan(text: str, fleet: bool) -> None:
     assert is_fleet(text.encode()) is fleet
 
 

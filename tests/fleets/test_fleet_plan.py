@@ -196,7 +196,7 @@ def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, st
 # ---------------------------------------------------------------- what meets
 
 
-def test_two_stacks_whose_names_meet_are_told(tmp_path: Path) -> None:
+def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
     text = (
         "layout: L2\naffix: prefix\nshared_topics: [/clock, /scan]\n"
         "robots:\n  - {name: a, description: rover.urdf, stack: nav2}\n"

@@ -113,7 +113,7 @@ def test_an_entry_in_braces_is_split_too() -> None:
     }
 
 
-def test_points_stand_below_the_robots_topic() -> None:
+def test_points_are_below_the_robots_topic() -> None:
     text = (
         "- topic_name: lidar/points\n  ros_type_name: a\n  gz_type_name: gz.msgs.PointCloudPacked\n"
     )
@@ -152,7 +152,7 @@ def test_a_file_with_nothing_shared_or_nothing_own() -> None:
         (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MF507"),
     ],
 )
-def test_what_is_told_about_an_entry(entry: str, code: str) -> None:
+def test_mistakes_in_an_entry_are_reported(entry: str, code: str) -> None:
     assert [it.code for it in bridged(entry, "L2", "base").own.findings] == [code]
 
 
@@ -205,7 +205,7 @@ def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> N
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
-def test_two_gz_topics_on_one_ros_topic_are_told() -> None:
+def test_two_gz_topics_on_one_ros_topic_are_reported() -> None:
     text = "".join(f"- ros_topic_name: /s\n  gz_topic_name: /{it}\n{TYPES}" for it in "ab")
     assert [it.code for it in merge_bridges([("f", text)], [])[1]] == ["MF506"]
 
@@ -333,7 +333,7 @@ def test_no_second_parent_beside_a_localisation(
         }
 
 
-def test_a_map_of_each_robot_stands_in_the_world(fleet: Any) -> None:
+def test_the_map_frame_of_each_robot_is_below_the_world(fleet: Any) -> None:
     more = "shared_frames: [world]\n"
     slam = start_poses.start_poses(
         fleet("L2", "[robot_state, slam_toolbox]", DRIVE, more)
@@ -344,7 +344,7 @@ def test_a_map_of_each_robot_stands_in_the_world(fleet: Any) -> None:
     assert [it.node for it in amcl.initial] == ["amcl"]
 
 
-def test_a_description_that_stands_in_the_world_already(fleet: Any) -> None:
+def test_a_description_that_already_starts_with_the_world(fleet: Any) -> None:
     body = (
         '<link name="world"/><joint name="fix" type="fixed">'
         '<parent link="world"/><child link="base"/></joint>'

@@ -156,7 +156,7 @@ def test_a_node_as_launch_ros_takes_it(robot: LoadedRobot) -> None:
     assert robot.node("bt_navigator")["parameters"] == []
 
 
-def test_who_starts_nowhere_is_told_nothing(tmp_path: Path) -> None:
+def test_a_robot_without_a_pose_has_no_start_parameters(tmp_path: Path) -> None:
     loaded = fleet(tmp_path)
     assert loaded.robot("robot2").node("amcl")["parameters"] == []
     assert loaded.robot("robot2").start_parameters("amcl") == {}
@@ -189,7 +189,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
         (lambda it: it._fleet.table.name("amcl"), ("all robots",)),
     ],
 )
-def test_what_is_not_there_is_told_with_the_nearest(
+def test_an_unknown_name_is_reported_with_the_nearest(
     ask: Callable[[LoadedRobot], object], parts: Sequence[str], robot: LoadedRobot
 ) -> None:
     with pytest.raises(UsageError) as caught:

@@ -348,7 +348,7 @@ def test_warnings_are_logged_once(
         (lambda fleet: launch.params_file("parms.yaml", fleet=fleet), "did you mean"),
     ],
 )
-def test_what_is_wrong_is_told(
+def test_what_is_wrong_is_reported(
     make: Callable[[str], Any], part: str, fleet: str, context: Any
 ) -> None:
     with pytest.raises(UsageError) as caught:

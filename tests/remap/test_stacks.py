@@ -68,7 +68,7 @@ def test_shared_nodes_are_those_that_serve_all() -> None:
     assert [node.shared for node in load_stack("rviz_nav2")] == [False]
 
 
-def test_the_type_tells_the_kind() -> None:
+def test_the_type_decides_the_kind() -> None:
     node = load_nodes()["joint_trajectory_controller"]
     kinds = {e.name: e.kind for e in node.endpoints}
     assert kinds["~/joint_trajectory"] == TOPIC
@@ -154,7 +154,7 @@ def test_teleop_goes_through_the_mux() -> None:
     assert "/cmd_vel" in said - heard
 
 
-def test_frames_are_told_with_their_defaults() -> None:
+def test_frames_are_reported_with_their_defaults() -> None:
     frames = dict(load_nodes()["amcl"].frames)
     assert frames == {
         "base_frame_id": "base_footprint",
@@ -175,7 +175,7 @@ def test_the_example_of_the_page_is_read() -> None:
     assert endpoint(nodes["twist_mux"], "subscribes", "pad_vel").fixed == ""
 
 
-def test_unknown_stack_is_told_with_the_nearest() -> None:
+def test_unknown_stack_is_reported_with_the_nearest() -> None:
     with pytest.raises(UsageError, match=r"stack 'nav' is not known; did you mean 'nav2'\? known:"):
         load_stack("nav")
 
@@ -323,7 +323,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:
+def test_what_is_wrong_is_reported_with_its_place(text: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         extra(text)
     assert str(caught.value).startswith("mine.yaml:")
@@ -331,7 +331,7 @@ def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"none\.yaml: cannot be read: No such file"):
         user_stack(str(tmp_path / "none.yaml"))
     (tmp_path / "latin.yaml").write_bytes(b"about: \xe4")

@@ -24,7 +24,7 @@ class FileKind(NamedTuple):
     """A kind of file: keys that identify it, words in its file name, and the shape of its names."""
 
     name: str
-    tells: tuple[str, ...]
+    marks: tuple[str, ...]
     files: tuple[str, ...]
     names: Shapes
 
@@ -67,7 +67,7 @@ def kinds() -> tuple[FileKind, ...]:
     )
     data = yaml.load(text, Loader=_LOADER)
     return tuple(
-        FileKind(name, tuple(it["tells"]), tuple(it["files"]), {**data["common"], **it["names"]})
+        FileKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
         for name, it in data["kinds"].items()
     )
 

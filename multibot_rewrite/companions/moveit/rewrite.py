@@ -123,7 +123,7 @@ def _kind(document: YamlText) -> FileKind | None:
         raise InputError(f"{place}: not a MoveIt file: it is not a map of keys and values")
     _refuse_params(document, root, _DEPTH)
     paths = set(_paths(root))
-    known = (kind for kind in kinds() if not paths.isdisjoint(kind.tells))
+    known = (kind for kind in kinds() if not paths.isdisjoint(kind.marks))
     if kind := next(known, None) or _by_values(root) or _by_name(document.file):
         return kind
     words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
@@ -273,11 +273,11 @@ def _findings(document: YamlText, context: Context, sites: MoveitNames) -> Itera
 
 def _unreachable(document: YamlText, context: Context, sites: MoveitNames) -> Iterator[Finding]:
     """Without namespaces each robot's controller manager has a different name."""
-    asked = [
+    keys = [
         _asks_below_root(document),
         *(it.scalar for it in sites.names if it.word == "namespace"),
     ]
-    for key in asked if context.names.naming.topics != NAMESPACE else ():
+    for key in keys if context.names.naming.topics != NAMESPACE else ():
         if key is not None:
             message = "MoveIt looks for /controller_manager, but each robot's has a different name"
             hint = "use moveit_simple_controller_manager or a layout with namespaces"

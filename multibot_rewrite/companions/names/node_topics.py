@@ -89,7 +89,7 @@ def _below_node(context: Context, value: str) -> str:
 
 
 def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFacts | None:
-    """The node with those of its endpoints whose rules could match the name."""
+    """The node with only those endpoints whose rules could match the name."""
     if node is None or node.shared:
         return None
     bare = value.strip("/")

@@ -57,7 +57,7 @@ class Param(NamedTuple):
 
 class Branch(NamedTuple):
     """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
-    segment is, where any will do); ``params`` are those whose path ends here."""
+    segment is, if any word is allowed); ``params`` are those whose path ends here."""
 
     exact: dict[str, Branch]
     numbered: dict[str, Branch]
@@ -256,11 +256,11 @@ def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iter
     for path, params in found.items():
         kind = params[0].kind
         sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
-        said = guessing.fullmatch(path.rpartition(".")[2])
+        guessed = guessing.fullmatch(path.rpartition(".")[2])
         if (
             kind != "exclusive"
             and len({it.kind for it in params}) == 1
-            and (sure or (said and said.lastgroup == kind))
+            and (sure or (guessed and guessed.lastgroup == kind))
         ):
             yield params[0]._replace(default="", absolute="")
 

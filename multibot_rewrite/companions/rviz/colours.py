@@ -32,8 +32,8 @@ def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
 
     near = get_close_matches(given, known, 1, 0.5)
     hint = f"did you mean {near[0]!r}?" if near else "write #rrggbb or [r, g, b]"
-    whose = f"robot {robot!r}: " if robot else ""
-    raise InputError(f"{whose}colour {given!r} is not known; {hint}")
+    place = f"robot {robot!r}: " if robot else ""
+    raise InputError(f"{place}colour {given!r} is not known; {hint}")
 
 
 def palette(at: int) -> Colour:
