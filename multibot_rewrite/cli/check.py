@@ -103,5 +103,5 @@ def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     if last is None:
         say("ended before anything was seen", PROGRAM)
         return live.INCONCLUSIVE
-    pictures.deliver(options, plan, last.graph, last.found)
-    return _sum_up(plan, last.found, final(last))
+    pictures.deliver(options, plan, last.graph, last.findings)
+    return _sum_up(plan, last.findings, final(last))

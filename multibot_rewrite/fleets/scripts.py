@@ -9,17 +9,18 @@ for robot in load_fleet("fleet.yaml").robots:
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple, NoReturn
 
+from multibot_rewrite.arguments import checked
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.fleets import spawn, start_poses, teleop
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
+from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rcl_parameters import (
@@ -28,7 +29,7 @@ from multibot_rewrite.fleets.rcl_parameters import (
     exact_nodes,
     node_parameters,
 )
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot, Sources
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
@@ -50,10 +51,12 @@ class NodeNames(NamedTuple):
     nodes: Mapping[str, NodeTable]
     hosted: Mapping[str, tuple[str, ...]]
 
+    @checked
     def for_node(self, node: str) -> Rules:
         """The node's remappings, as ``launch_ros.actions.Node`` takes them.
 
-        Rules for nodes that it hosts come first: rcl applies the first rule that matches.
+        Rules for nodes that it hosts come first: rcl applies the first rule that matches. Raises
+        UsageError for a node that no stack of the fleet has.
         """
         own = self._found(node)
         rules = [
@@ -63,16 +66,19 @@ class NodeNames(NamedTuple):
         ]
         return [*rules, *((rule.source, rule.target) for rule in own.rules)]
 
+    @checked
     def name(self, node: str) -> str:
-        """The name the node runs under, without its namespace."""
+        """The name the node runs under, without its namespace; raises as ``for_node``."""
         return self._found(node).name
 
+    @checked
     def namespace(self, node: str) -> str:
-        """The namespace the node runs in, from the root."""
+        """The namespace the node runs in, from the root; raises as ``for_node``."""
         return self._found(node).namespace
 
+    @checked
     def full_name(self, node: str) -> str:
-        """The node's name with its namespace."""
+        """The node's name with its namespace; raises as ``for_node``."""
         return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
 
     def _found(self, node: str) -> NodeTable:
@@ -87,7 +93,7 @@ class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
     ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
-    None if the fleet file has none.
+    None if the fleet file has none. It can be copied and pickled, with its fleet.
     """
 
     def __init__(self, fleet: LoadedFleet, robot: RewrittenRobot) -> None:
@@ -104,26 +110,33 @@ class LoadedRobot:
     def __repr__(self) -> str:
         return f"LoadedRobot({self.name!r})"
 
+    def __reduce__(self) -> tuple[Callable[[LoadedFleet, str], LoadedRobot], tuple[object, ...]]:
+        return LoadedFleet.robot, (self._fleet, self.name)
+
     @property
     def description(self) -> str:
-        """Its rewritten description, for ``robot_description``."""
+        """Its rewritten description, for ``robot_description``; raises nothing."""
         return self._robot.description.decode()
 
     @property
     def srdf(self) -> str:
-        """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none."""
+        """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
+        nothing."""
         return self._robot.srdf.decode()
 
     @cached_property
     def table(self) -> NodeNames:
-        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``."""
+        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``. Raises
+        nothing."""
         fleet = self._fleet.planned
         return _names(fleet.table, fleet.facts, self._graph)
 
+    @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
 
         ``files`` are parameter files of the fleet; amcl gets its start pose as well.
+        Raises UsageError for a node that no stack has, and as ``params`` for a file.
         """
         given = [self.params(file, node) for file in files]
         return {
@@ -133,11 +146,13 @@ class LoadedRobot:
             "parameters": [it for it in (*given, self.start_parameters(node)) if it],
         }
 
+    @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
         """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
 
         ``node`` is its name in the stack or in the file. A node of a stack without a section gets an
-        empty dict; UsageError for an unknown node.
+        empty dict. Raises UsageError for an unknown node, and as ``text`` and
+        ``LoadedFleet.parameters`` for the file.
         """
         document = self._read(file)
         known = node in self.table.nodes
@@ -148,22 +163,30 @@ class LoadedRobot:
             raise UsageError(f"{file}: {unknown('node', node, own, self.table.nodes)}")
         return node_parameters(document, full)
 
+    @checked
     def text(self, file: str) -> str:
-        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``."""
+        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``.
+
+        Raises as ``LoadedFleet.text``.
+        """
         name = os.path.basename(file)
         own, shared = f"{self.name}/{name}", name
         return self._fleet.text(own if own in self._fleet.files else shared)
 
+    @checked
     def frame(self, name: str) -> str:
-        """This robot's name of a frame or link of the description."""
+        """This robot's name of a frame or link of the description; raises UsageError for a name
+        that is not a str."""
         return spell(self._robot.names, "frame", name)
 
+    @checked
     def joint(self, name: str) -> str:
-        """This robot's name of a joint of the description."""
+        """This robot's name of a joint of the description; raises as ``frame``."""
         return spell(self._robot.names, "joint", name)
 
+    @checked
     def topic(self, name: str) -> str:
-        """This robot's absolute name of a topic that a single robot has as ``name``."""
+        """This robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
         plan = self._fleet.plan
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
         full = robot_topic(self._robot.topics, name, known)
@@ -171,7 +194,7 @@ class LoadedRobot:
 
     @property
     def tf_remappings(self) -> Rules:
-        """The remappings with which a node outside the stacks reads this robot's tf."""
+        """The remappings with which a node outside the stacks reads this robot's tf; raises nothing."""
         names = self._robot.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
@@ -185,27 +208,30 @@ class LoadedRobot:
 
     @property
     def spawn_arguments(self) -> list[str]:
-        """``arguments`` of ``ros_gz_sim create``."""
+        """``arguments`` of ``ros_gz_sim create``; raises nothing."""
         return spawn.gz_arguments(self._spawn)
 
     @property
     def classic_arguments(self) -> list[str]:
-        """``arguments`` of ``gazebo_ros spawn_entity.py``."""
+        """``arguments`` of ``gazebo_ros spawn_entity.py``; raises nothing."""
         return spawn.classic_arguments(self._spawn)
 
     @property
     def teleop_arguments(self) -> list[str]:
-        """``arguments`` of ``teleop_twist_keyboard``."""
+        """``arguments`` of ``teleop_twist_keyboard``; raises nothing."""
         return teleop.arguments(teleop.teleop(self._fleet.plan, self._robot))
 
     @property
     def transform_arguments(self) -> list[str]:
-        """``arguments`` of the ``static_transform_publisher`` of its pose; empty if none is needed."""
+        """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
+        raises nothing."""
         made = self._fleet.placed.transforms
         return next((start_poses.arguments(it) for it in made if it.robot == self._graph), [])
 
+    @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Parameters with the start pose for ``node``; empty if it does not use them."""
+        """Parameters with the start pose for ``node``, empty if it does not use them; raises as
+        ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})
@@ -221,7 +247,8 @@ class LoadedRobot:
 class LoadedFleet:
     """A fleet file, ready for a launch script; ``robots`` are in its order.
 
-    ``findings`` are warnings about the descriptions and the remap table.
+    ``findings`` are warnings about the descriptions and the remap table. It can be copied
+    and pickled: the descriptions are included as they were read, other files are read again.
     """
 
     def __init__(self, plan: FleetPlan) -> None:
@@ -234,8 +261,12 @@ class LoadedFleet:
     def __repr__(self) -> str:
         return f"LoadedFleet({self.file!r})"
 
+    def __reduce__(self) -> tuple[Callable[..., LoadedFleet], tuple[object, ...]]:
+        return _planned, (self.plan.file, self.plan.jobs)
+
+    @checked
     def robot(self, name: str) -> LoadedRobot:
-        """The robot of this name; UsageError for another."""
+        """The robot of this name; raises UsageError for another."""
         found = {it.name: it for it in self.robots}
         if name not in found:
             raise UsageError(f"{self.file}: {unknown('robot', name, found)}")
@@ -243,17 +274,17 @@ class LoadedFleet:
 
     @cached_property
     def table(self) -> NodeNames:
-        """Names and remappings of the nodes that serve all robots."""
+        """Names and remappings of the nodes that serve all robots; raises nothing."""
         return _names(self.planned.table, self.planned.facts, "")
 
     @cached_property
     def planned(self) -> Fleet:
-        """The fleet with the nodes that publish the robots' start poses."""
+        """The fleet with the nodes that publish start poses; raises nothing."""
         return with_start_pose_nodes(self.plan)
 
     @cached_property
     def placed(self) -> start_poses.StartPoses:
-        """The start poses of its robots."""
+        """The start poses of its robots; raises nothing."""
         return start_poses.start_poses(self.plan)
 
     @cached_property
@@ -269,18 +300,20 @@ class LoadedFleet:
 
     @cached_property
     def files(self) -> Mapping[str, OutputFile]:
-        """The same files by path, such as ``robot1/params.yaml``."""
+        """The same files by path, such as ``robot1/params.yaml``; raises as ``made``."""
         return {it.path: it for it in self.made.files}
 
+    @checked
     def text(self, path: str) -> str:
-        """The text of one of these files; UsageError for an unknown path."""
+        """The text of one of these files; raises UsageError for an unknown path, else as ``made``."""
         if path not in self.files:
             _no_file(self, path)
         return self.files[path].data.decode()
 
+    @checked
     def parameters(self, path: str) -> YamlText:
-        """One of these files as a parameter file; InputError, with the line in the source, for values
-        that rcl rejects."""
+        """One of these files as a parameter file. Raises as ``text``, and InputError with the line of
+        the source for values that rcl rejects."""
         if path not in self._parameters:
             text = self.text(path)
             for source in self.files[path].sources:
@@ -289,15 +322,21 @@ class LoadedFleet:
         return self._parameters[path]
 
 
+@checked
 def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
 
-    Raises InputError and UsageError for what cannot be read or used, RewriteRefused if names of two
-    robots would collide.
+    Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
+    robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
     fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
     _refuse(fleet.findings)
     return fleet
+
+
+def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
+    """The fleet of a pickle: rewritten again from the descriptions that it includes."""
+    return LoadedFleet(plan_fleet(file, jobs=jobs))
 
 
 def _names(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:

@@ -25,7 +25,7 @@ from hypothesis import strategies as st
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.manifest import MANIFEST, NOTE, read_manifest
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.model import InputError
 
@@ -623,8 +623,8 @@ ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a
 
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
-    robot = WantedRobot(word, (f"/{other}",), tuple(frames), "/tf", spelled=other)
-    end = Wanted(f"/{other}", "topic", "publishes", f"/{word}", other, other)
+    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", spelled=other)
+    end = PlannedEndpoint(f"/{other}", "topic", "publishes", f"/{word}", other, other)
     plan = Expectation("both", (robot,), (), (), tuple(frames), (end,), (), ((f"/{other}", word),))
     text = to_yaml(plan)
     with contextlib.suppress(InputError):

@@ -22,8 +22,8 @@ from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     QUIET,
     TIMEOUT,
-    Frame,
     GraphEndpoint,
+    GraphFrame,
     Snapshot,
     from_json,
     to_json,
@@ -167,11 +167,11 @@ def test_frames_are_told_with_topic_and_publishers(seen: Snapshot, has_tf: bool)
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
     states = ("/robot1/state", "/robot2/state")
     assert set(seen.frames) == {
-        Frame("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
-        Frame("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
-        Frame("lidar", "base_link", "/tf_static", True, states),
-        Frame("robot1/imu", "base_link", "/tf_static", True, states),
-        Frame("robot2/imu", "base_link", "/tf_static", True, states),
+        GraphFrame("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
+        GraphFrame("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
+        GraphFrame("lidar", "base_link", "/tf_static", True, states),
+        GraphFrame("robot1/imu", "base_link", "/tf_static", True, states),
+        GraphFrame("robot2/imu", "base_link", "/tf_static", True, states),
     }
 
 
