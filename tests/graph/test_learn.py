@@ -27,8 +27,8 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.known import Library, stack_of
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -48,7 +48,7 @@ from multibot_rewrite.rosnames import bind, expand, resolve_bound
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")
 # The parts without the nodes: nobody described these.
-UNKNOWN = Library(built_in().parts, {}, {})
+UNKNOWN = NodeLibrary(built_in().parts, {}, {})
 TEXT, IMAGE, TRIGGER = "std_msgs/msg/String", "sensor_msgs/msg/Image", "std_srvs/srv/Trigger"
 FETCH = "acme_msgs/action/Fetch"
 EVERY_NODE = tuple(end for end in built_in().parts["every_node"] if end.name != "/clock")
@@ -107,7 +107,7 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 
 
 def learned(
-    seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN
+    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
 ) -> tuple[LearnedNode, ...]:
     """What is learned, proved to survive the file."""
     found = learn(seen, choose_nodes(seen, names, base), base, library)
@@ -115,7 +115,9 @@ def learned(
     return found
 
 
-def one(seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN) -> LearnedNode:
+def one(
+    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
+) -> LearnedNode:
     (found,) = learned(seen, *names, base=base, library=library)
     return found
 
@@ -173,7 +175,9 @@ def led(nodes: Iterable[NodeFacts], table: Table) -> set[Led]:
     return found
 
 
-def assert_served(nodes: Sequence[NodeFacts], base: str, library: Library, naming: Naming) -> None:
+def assert_served(
+    nodes: Sequence[NodeFacts], base: str, library: NodeLibrary, naming: Naming
+) -> None:
     """Learned from one robot without rules, the table is that of the facts, and its rules serve."""
     seen = graph(*nodes, base=base)
     names = [node.name for node in seen.nodes]

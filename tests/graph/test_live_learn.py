@@ -14,11 +14,11 @@ import pytest
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.forms import arguments
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.stacks import user_stack
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table_formats import arguments
 
 pytestmark = pytest.mark.live
 
