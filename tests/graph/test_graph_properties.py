@@ -165,7 +165,7 @@ def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -
 
 @settings(max_examples=100, deadline=None)
 @given(fleets(), st.data())
-def test_a_frame_that_hangs_elsewhere_is_found(fleet: Fleet, data: st.DataObject) -> None:
+def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject) -> None:
     if not fleet.graph.frames:
         return
     edge = data.draw(st.sampled_from(fleet.graph.frames))
@@ -252,7 +252,7 @@ def anything(draw: st.DrawFn) -> Fleet:
 
 @settings(max_examples=300, deadline=None)
 @given(anything())
-def test_whatever_there_is_each_finding_is_told_once(fleet: Fleet) -> None:
+def test_each_finding_is_reported_once_for_any_graph(fleet: Fleet) -> None:
     found = check(fleet.plan, fleet.graph)
     assert len(set(found)) == len(found)
     assert found == check(fleet.plan, fleet.graph)

@@ -363,7 +363,7 @@ def test_what_the_robot_has_above_a_nodes_namespace_is_absolute() -> None:
     assert spelled(one(seen, base="/old")) == [(SUBSCRIBES, "/older/scan"), (SUBSCRIBES, "/scan")]
 
 
-def test_two_names_that_are_spelled_alike_become_one() -> None:
+def test_two_names_with_the_same_name_in_code_become_one() -> None:
     seen = graph(node(name="eye/camera"), base="/old")
     who = "/old/eye/camera"
     seen = with_end(
@@ -410,7 +410,7 @@ def test_server_and_client_of_one_action_are_two() -> None:
     assert spelled(one(graph(own))) == [(SERVES, "/fetch"), (CALLS, "/fetch")]
 
 
-def test_an_action_and_a_service_of_one_name_are_said_once() -> None:
+def test_an_action_and_a_service_of_one_name_become_one() -> None:
     own = node(
         Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(SERVICE, SERVES, "fetch", TRIGGER)
     )
@@ -502,7 +502,7 @@ def test_a_helper_in_the_process_of_one_node_is_that_nodes() -> None:
     assert found.remarks == ()
 
 
-def test_a_helper_of_several_nodes_is_given_to_each_and_it_is_said() -> None:
+def test_a_helper_of_several_nodes_is_added_to_each_with_a_remark() -> None:
     seen = graph(node(name="one"), node(name="two"), LISTENER, process="p")
     for found in (*learned(seen), one(seen, "/one")):
         assert found.parts == ("tf_helper",)
@@ -691,7 +691,7 @@ def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixt
     assert err == "multibot: 1 node learned as stack learned\n"
 
 
-def test_an_incomplete_view_is_written_and_told(
+def test_an_incomplete_view_is_written_and_reported(
     shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     seen = graph(node(publishes("odom")))
@@ -717,7 +717,9 @@ def test_nodes_of_one_robot_without_its_namespace_get_a_hint(
         assert (hint in capsys.readouterr().err) is hinted
 
 
-def test_helpers_of_nobody_are_told(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_helpers_without_a_node_are_reported(
+    shot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     shot.write_bytes(to_json(graph(node(), LISTENER)))
     assert main(["learn", "--snapshot", str(shot)]) == 0
     assert "they are left out: /transform_listener_impl_55d0c0ffee" in capsys.readouterr().err

@@ -92,7 +92,7 @@ def table(file: Path, layout: str) -> Table:
     return found
 
 
-def test_names_are_spelled_as_they_were_seen(files: dict[str, Path]) -> None:
+def test_names_are_written_as_they_were_seen(files: dict[str, Path]) -> None:
     root, below = files["root"].read_text(), files["below"].read_text()
     for text in (root, below):
         for line in ("/heartbeat: std_msgs/msg/Empty", "~/state: std_msgs/msg/String"):
