@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 SHARED_FRAMES = ("world", "map")
@@ -141,10 +142,8 @@ def find_layout(word: str) -> Layout:
 def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
     if word in allowed:
         return
-    from difflib import get_close_matches  # only an error message needs it
-
-    near = get_close_matches(word, allowed, 1, 0.4)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    near = did_you_mean(word, allowed)
+    hint = f"; {near}" if near else ""
     raise UsageError(f"{what} {word!r} is not known, use one of {', '.join(allowed)}{hint}")
 
 

@@ -10,12 +10,12 @@ from multibot_rewrite.checks.references import (
     doubtful,
     duplicates,
     loose_ends,
-    nearest,
     remarks,
 )
 from multibot_rewrite.checks.remarks import Remark, told
 from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import Rewriter
 from multibot_rewrite.steps.collect import Inventory

@@ -10,6 +10,11 @@ from lxml.etree import _Element
 from multibot_rewrite.checks.remarks import Remark, about
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
+from multibot_rewrite.nearest import did_you_mean
+
+# The lint imports these two from here.
+from multibot_rewrite.nearest import fold as fold  # noqa: PLC0414
+from multibot_rewrite.nearest import nearest as nearest  # noqa: PLC0414
 from multibot_rewrite.rewriters.forms import Declared, Part
 from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.steps.collect import Inventory
@@ -81,8 +86,7 @@ def remarks(loose: Iterable[Loose], declared: Declared) -> Iterator[Remark]:
         claim, part = it
         if part.text not in hints and len(hints) < HINTED:
             known = [known for kind in part.kinds for known in declared.get(kind, ())]
-            near = nearest(part.text, known[:COMPARED])
-            hints[part.text] = f"did you mean {near!r}?" if near else ""
+            hints[part.text] = did_you_mean(part.text, known[:COMPARED])
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
         message += _fault(part, declared)
         yield about(claim, _code(claim.site, part), message, hints.get(part.text, ""))
@@ -113,21 +117,6 @@ def where(claim: Claim) -> str:
         return f"{tag}@{claim.attribute}"
     name = claim.element.get("name") if tag == "param" else None
     return f'<{tag} name="{name}">' if name else f"<{tag}>"
-
-
-def nearest(name: str, known: Collection[str]) -> str:
-    """The known name most like ``name``, or an empty string."""
-    from difflib import get_close_matches  # only a message needs it
-
-    folded = fold(name)
-    same = next((it for it in known if fold(it) == folded), "")
-    return same or next(iter(get_close_matches(name, known, 1, 0.7)), "")
-
-
-def fold(name: str) -> str:
-    """A name without what is often written in another way: case, scope, slash, dashes, spaces."""
-    bare = name.rpartition("::")[2].strip().strip("/").casefold()
-    return bare.replace("-", "_").replace(" ", "_")
 
 
 def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:

@@ -126,7 +126,7 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
         if place[0] == line and mine:
             added = tuple(item.xml.replace(HOLE, robot) for item in mine)
             name = host.node.rewriter.name if host.node.rewriter else ""
-            reason = "the same for every robot otherwise"
+            reason = "added, or all robots would share the default"
             yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
 
 

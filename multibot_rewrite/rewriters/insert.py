@@ -10,6 +10,7 @@ from lxml import etree
 from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_default
+from multibot_rewrite.rewriters.switches import is_true
 from multibot_rewrite.rewriters.vocabulary import Rewriter, split_path, split_step
 from multibot_rewrite.rosnames import expand, split_remap
 
@@ -84,9 +85,9 @@ def _default(host: etree._Element, default: str, naming: Naming) -> str:
 
 
 def _holds(host: etree._Element, condition: str) -> bool:
-    child, _, text = condition.partition("=")
-    found = host.findtext(child, "").strip()
-    return found == text or (text == "true" and found == "1")
+    child, _, wanted = condition.partition("=")
+    text = host.findtext(child, "")
+    return is_true(text) if wanted == "true" else text.strip() == wanted
 
 
 def _present(host: etree._Element, path: str) -> bool:

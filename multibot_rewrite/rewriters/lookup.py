@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from multibot_rewrite.model import Site
+from multibot_rewrite.nearest import nearest_few
 from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rewriters.vocabulary import Rewriter, Vocabulary
-
-_LIKE = 0.6
 
 
 def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Rewriter]:
@@ -34,11 +33,9 @@ def spellings(name: str) -> set[str]:
 
 def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[str]:
     """Up to three known names most like ``name``, whatever the case of the letters."""
-    from difflib import get_close_matches  # only a message needs it
-
     known = {known.lower(): known for type_ in types for known in vocabulary.names(type_)}
     words = sorted(word.lower() for word in spellings(name))
-    near = [word for key in words for word in get_close_matches(key, known, 3, _LIKE)]
+    near = [word for key in words for word in nearest_few(key, known, 3)]
     parts = [word for word in known if any(key and key in word for key in words)]
     return [known[word] for word in list(dict.fromkeys(near + parts))[:3]]
 

@@ -9,7 +9,17 @@ if TYPE_CHECKING:
 
     from multibot_rewrite.rewriters.vocabulary import Rewriter
 
-ON, OFF = ("true", "1"), ("false", "0")
+
+# As sdformat reads booleans (Param.cc, ValueFromStringImpl): case and white space around do not
+# count, any other text leaves the default.
+def is_true(text: str) -> bool:
+    """Does this text of a parameter turn it on?"""
+    return text.strip().lower() in ("true", "1")
+
+
+def is_false(text: str) -> bool:
+    """Does this text of a parameter turn it off?"""
+    return text.strip().lower() in ("false", "0")
 
 
 class Switch(NamedTuple):
@@ -26,9 +36,8 @@ def switches(plugin: _Element, rewriter: Rewriter) -> tuple[Switch, ...]:
 
 
 def _switch(plugin: _Element, parameter: str, topic: str, usual: str = "off") -> Switch:
-    text = plugin.findtext(parameter, "").strip().lower()
-    on = text in ON or (usual == "on" and text not in OFF)
-    return Switch(parameter, topic, on)
+    text = plugin.findtext(parameter, "")
+    return Switch(parameter, topic, is_true(text) or (usual == "on" and not is_false(text)))
 
 
 def switched_off(plugin: _Element, rewriter: Rewriter) -> dict[str, str]:

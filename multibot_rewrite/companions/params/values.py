@@ -24,6 +24,7 @@ from multibot_rewrite.companions.params.uses import Use, Uses
 from multibot_rewrite.companions.respell import is_declared
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, replaced
 from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rosnames import check_topic_name
 
 # What must be among the description's names, by the kinds that are looked at.
@@ -190,21 +191,14 @@ def _undeclared(desk: Desk, use: Use) -> _Said | None:
             return None
         what = "frame" if use.param else "perhaps a frame,"
         message = f"{what} {value!r} is not in the description"
-        hint = _near(value, known) or "a node or driver must send it under the robot's name"
+        hint = did_you_mean(value, known) or "a node or driver must send it under the robot's name"
         return "MF112", WARNING, message, hint
     if "/" in value and use.kind == "joint" and value.rpartition("/")[2] in known:
         return None
     if use.param is None:
         return None
     message = f"{use.kind} {value!r} is not in the description"
-    return "MF111", WARNING, message, _near(value, known) or "it stays as it is"
-
-
-def _near(value: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches  # only a message needs it
-
-    near = get_close_matches(value, list(known), 1, 0.6)
-    return f"did you mean {near[0]!r}?" if near else ""
+    return "MF111", WARNING, message, did_you_mean(value, known) or "it stays as it is"
 
 
 def _no_topic(use: Use) -> _Said | None:

@@ -8,13 +8,13 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import LISTENER, Snapshot
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import nearest_few
 from multibot_rewrite.rosnames import check_full_name, check_namespace
 
 # A tf2 listener that was made without a node makes one of its own, called by its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
-# What people look with, no part of a robot. A leading underscore hides a node.
-TOOL = re.compile(r"_.*|launch_ros_\d+|rqt_.*|rviz.*|rosbag2_.*|foxglove_bridge")
 
 
 class Helpers(NamedTuple):
@@ -37,7 +37,7 @@ def choose(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple[str, 
             raise UsageError(f"{name}: there is no such node; {_near(name, times)}")
         if not name.startswith(f"{base}/"):
             raise UsageError(f"{name}: it is not below {base}, where --namespace says it is")
-    below = (name for name in times if name.startswith(f"{base}/") and not _is_tool(name))
+    below = (name for name in times if name.startswith(f"{base}/") and not is_tool(name))
     chosen = sorted(set(names) or below)
     if not chosen:
         where = f"below {base}" if base else "in this graph"
@@ -66,16 +66,9 @@ def check_seen_name(what: str, name: str) -> None:
         raise UsageError(f"{what} name {name!r} in the graph: {fault.reason}")
 
 
-def _is_tool(name: str) -> bool:
-    own = name.rpartition("/")[2]
-    return bool(TOOL.fullmatch(own) or HELPER.fullmatch(own))
-
-
 def _near(name: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches  # only a message needs it
-
-    there = sorted(node for node in known if not _is_tool(node))
-    near = get_close_matches(name, there, 3, 0.5) or there[:3]
+    there = sorted(node for node in known if not is_tool(node))
+    near = nearest_few(name, there, 3) or there[:3]
     return f"there is {', '.join(near)}" if near else "only tools are there, or none"
 
 

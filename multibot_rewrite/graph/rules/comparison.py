@@ -2,32 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Set
-from fnmatch import translate
-from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
 from multibot_rewrite.graph.rules.likeness import stand_ins
 from multibot_rewrite.graph.rules.owners import Owners, frame_owners, name_owners
 from multibot_rewrite.graph.rules.trees import TfTree, tf_trees
-from multibot_rewrite.graph.snapshot import LISTENER, GraphEndpoint, Snapshot
+from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 INCONCLUSIVE = "inconclusive"
-# Nodes that come and go beside any fleet; no plan names them. Without a slash: in any namespace.
-IGNORED = (
-    # The tools' own: hidden ones, ros2 CLI, launch, tf listeners, spawners, containers.
-    "_*", "launch_ros_*", f"{LISTENER}*", "spawner_*", "spawn_entity*", "*_container",
-    "static_transform_publisher_*", "*_rclcpp_node", "*_service_client",
-    # What people look with, drive with and record with.
-    "rqt_*", "rviz*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_*", "tf2_*", "view_frames",
-    "teleop_*", "*_teleop", "joy*",
-    # The world of all robots.
-    "gazebo*", "gz_*", "ign_*", "ros_gz_*", "*_bridge",
-)  # fmt: skip
 # An endpoint: node, kind, role, name.
 End = tuple[str, str, str, str]
 
@@ -91,7 +78,7 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
     seen = Counter(node.name for node in graph.nodes)
     foreseen = {*robot_of, *plan.shared_nodes}
     strangers = [node for node in seen if node not in foreseen]
-    unplanned = tuple(node for node in strangers if not ignored(node, plan.ignored_nodes))
+    unplanned = tuple(node for node in strangers if not is_tool(node, plan.ignored_nodes))
     missing = {node: robot for node, robot in robot_of.items() if node not in seen}
     owners = name_owners(plan)
     return View(
@@ -136,17 +123,3 @@ def _sorted_out(endpoints: Iterable[GraphEndpoint], planned: Mapping[End, Wanted
             more[node].append(endpoint)
         types[end] = type_
     return found
-
-
-def ignored(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Whether a node is one that no plan names; ``more`` are patterns beside the usual ones."""
-    full, last = _patterns(more)
-    return bool(last.fullmatch(node.rpartition("/")[2]) or full.fullmatch(node))
-
-
-@lru_cache(maxsize=8)
-def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
-    every = (*IGNORED, *more)
-    sides = ([p for p in every if "/" in p], [p for p in every if "/" not in p])
-    full, last = (re.compile("|".join(map(translate, side))) for side in sides)
-    return full, last

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from multibot_rewrite.graph.expectation import EVERYWHERE, WantedRobot
 from multibot_rewrite.graph.rules.causes import not_named, plugin, some
-from multibot_rewrite.graph.rules.comparison import GraphFinding, View, ignored
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import ERROR, WARNING
 
 
@@ -54,7 +55,7 @@ def same_names(view: View) -> Iterator[GraphFinding]:
     """Two nodes of one name: half of the tools see one of them only."""
     for node, times in view.seen.items():
         robot = view.robot_of.get(node, "")
-        if times == 1 or (not robot and ignored(node, view.plan.ignored_nodes)):
+        if times == 1 or (not robot and is_tool(node, view.plan.ignored_nodes)):
             continue
         meant = [missing for missing, there in view.stand_ins.items() if there == node]
         cause = "started twice, or two robots without a namespace; a dead one stays for 20 s"
