@@ -188,6 +188,12 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
     return _name_affix(naming.affix, separator, text)
 
 
+def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False) -> str:
+    """``text``, a name of ``kind``, as it is spelled for ``robot``; unchanged where it stays."""
+    there = affix(naming, kind, text, namespaced)
+    return there.spell(text, robot) if there else text
+
+
 def is_keyword(text: str) -> bool:
     """SDF reserves ``__model__`` and the like (sdformat Utils.cc isReservedName)."""
     return len(text) >= 4 and text.startswith("__") and text.endswith("__")

@@ -9,14 +9,15 @@ from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.mentions import find_mentions
 from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
-from multibot_rewrite.naming import Naming, affix, overlap
+from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import respelled_names, stripped_names
+from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 from multibot_rewrite.steps.plan import Plan, make_plan
+from multibot_rewrite.steps.renames import RenameMap, make_renames, respelled_names
 from multibot_rewrite.steps.strip import strip_edits
 from multibot_rewrite.steps.verify import verify
 
@@ -47,10 +48,10 @@ def prepare(
     inventory = collect(read_document(source, file), tree, outside)
     check_outside(inventory, outside)
     plan = make_plan(inventory, naming)
-    findings = [*audit.audit(inventory, naming, tree), *plan.findings]
+    findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
     _stop_on_errors(findings)
     values = slot_values(inventory.document.root)
-    findings += find_mentions(inventory, values, _renamed(inventory, naming), tree)
+    findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
     pieces = cut(source, plan.edits)
     return Template(inventory, plan, values, pieces, findings, naming, tree, outside)
 
@@ -75,17 +76,17 @@ def render(template: Template, robots: Sequence[str], again: bool = False) -> It
     The others differ from it in nothing but the robot's name in the same holes; that no two names
     meet is checked for all of them before the first is returned.
     """
-    inventory, naming = template.inventory, template.naming
-    found = checks.collisions(inventory, naming, robots)
-    found += checks.meeting(inventory, naming, overlap(naming, robots))
-    found += checks.already_rewritten(inventory, naming, robots, again)
+    inventory, plan, values, *_ = template
+    renames = plan.renames
+    found = checks.collisions(inventory, renames, robots)
+    found += checks.meeting(inventory, renames, overlap(template.naming, robots))
+    found += checks.already_rewritten(inventory, renames, robots, again)
     _stop_on_errors(found)
     for number, robot in enumerate(robots):
         output = fill(template.pieces, robot)
         if number == 0:
-            _, plan, values, *_ = template
-            outside = respelled_names(template.outside, naming, robot)
-            verify(inventory, plan, values, output, robot, naming, template.tree, outside)
+            outside = respelled_names(template.outside, renames, robot)
+            verify(inventory, plan, values, output, robot, template.naming, template.tree, outside)
         yield output
 
 
@@ -98,8 +99,9 @@ def strip(
     """
     inventory = collect(read_document(source, file), tree, outside)
     check_outside(inventory, outside)
-    found = checks.not_rewritten(inventory, naming, robot)
-    found += checks.other_urdf(inventory, naming, robot, outside)
+    renames = make_renames(inventory, naming)
+    found = checks.not_rewritten(inventory, renames, robot)
+    found += checks.other_urdf(inventory, renames, robot, outside)
     _stop_on_errors(found)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
     again = prepare(stripped, file, naming, tree, stripped_names(outside, naming, robot))
@@ -108,9 +110,9 @@ def strip(
     return stripped
 
 
-def _renamed(inventory: Inventory, naming: Naming) -> set[str]:
+def _mentionable(inventory: Inventory, renames: RenameMap) -> set[str]:
     names = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
-    return {name for kind, name in names if affix(naming, kind, name)}
+    return {name for kind, name in names if renames.changes(kind, name)}
 
 
 def _stop_on_errors(findings: Sequence[Finding]) -> None:

@@ -20,22 +20,23 @@ from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import Rewriter
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, finding
+from multibot_rewrite.steps.renames import RenameMap
 
 __all__ = ["audit", "is_unknown", "nearest", "unknown_hardware", "unknown_plugins"]
 
 
-def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
+def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
     """All findings that do not depend on the robot's name, in source order."""
     document = inventory.document
     found = [
         *leftover_xacro(inventory),
         *worlds(inventory),
         *told(document, duplicates(inventory), ERROR),
-        *told(document, undeclared(inventory, naming), WARNING),
+        *told(document, undeclared(inventory, renames.naming), WARNING),
         *told(document, ambiguous(inventory), WARNING),
         *told(document, unknown_plugins(inventory, tree), WARNING),
         *told(document, unknown_hardware(inventory, tree), WARNING),
-        *hazards(inventory, naming),
+        *hazards(inventory, renames),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 

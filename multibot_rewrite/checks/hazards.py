@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import partial
 
 from multibot_rewrite.checks.remarks import Remark, about, told
 from multibot_rewrite.model import WARNING, Finding
@@ -14,27 +15,21 @@ from multibot_rewrite.naming import (
     PREFIX,
     TF_TOPICS,
     Naming,
-    affix,
 )
-from multibot_rewrite.rewriters.spelling import spell
 from multibot_rewrite.rewriters.vocabulary import Rewriter
 from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.steps.collect import Host, Inventory
+from multibot_rewrite.steps.renames import RenameMap
 
 
-def hazards(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
+def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Finding]:
     """All of them, whatever the robots are called."""
-    for hazard in (
-        prefix_only,
-        leading_slashes,
-        moved_tf,
-        bare_lookups,
-        process_wide,
-        hardwired,
-        outside_frames,
-        reordered,
-    ):
-        yield from told(inventory.document, hazard(inventory, naming), WARNING)
+    of_naming = (prefix_only, leading_slashes, moved_tf, bare_lookups, process_wide)
+    of_names = (hardwired, outside_frames, reordered)
+    found = [hazard(inventory, renames.naming) for hazard in of_naming]
+    found += [hazard(inventory, renames) for hazard in of_names]
+    for remarks in found:
+        yield from told(inventory.document, remarks, WARNING)
 
 
 def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
@@ -109,12 +104,12 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             yield about(claim, "MB426", message, hint)
 
 
-def hardwired(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
     """Plugins whose code looks for a literal name: under another one they find nothing."""
     for rewriter, host in _known_hosts(inventory):
         for entry in rewriter.hardwired:
             kind, _, name = entry.partition(":")
-            if name in inventory.declared[kind] and affix(naming, kind, name) is not None:
+            if name in inventory.declared[kind] and renames.changes(kind, name):
                 message = (
                     f"{rewriter.names[0]} looks for a {kind} called {name!r}, which is renamed"
                 )
@@ -136,14 +131,14 @@ def _known_hosts(inventory: Inventory) -> Iterator[tuple[Rewriter, Host]]:
             yield host.node.rewriter, host
 
 
-def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
     """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
-    for claim in inventory.claims:
+    for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue
-        for kind, there in spell(claim, inventory.declared, naming):
-            if kind == "frame":
-                new = there.spell(claim.value, "ROBOT")
+        for name in spelling:
+            if name.kind == "frame":
+                new = name.affix.spell(claim.value, "ROBOT")
                 message = (
                     f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
                 )
@@ -151,10 +146,10 @@ def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
                 yield about(claim, "MB427", message, hint)
 
 
-def reordered(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
     """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
     of pinocchio's configuration vector."""
-    if naming.affix != POSTFIX or "joint" not in naming.separators:
+    if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
         return
     siblings: dict[str, list[str]] = defaultdict(list)
     declared = inventory.declared["joint"]
@@ -165,7 +160,7 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     for link, names in siblings.items():
         old = sorted(names)
         # The order may hang on the robot's name: a first and a last one show it.
-        orders = [sorted(names, key=lambda name: _ordered(naming, name, r)) for r in "\0~"]
+        orders = [sorted(names, key=partial(renames.spelled, robot, "joint")) for robot in "\0~"]
         new = next((order for order in orders if order != old), None)
         if new is not None:
             yield about(
@@ -174,8 +169,3 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
                 f"the joints below link {link!r} change their order: {', '.join(new)}",
                 "urdfdom sorts them by name, a prefix would not: --affix prefix",
             )
-
-
-def _ordered(naming: Naming, name: str, robot: str) -> str:
-    there = affix(naming, "joint", name)
-    return there.spell(name, robot) if there else name

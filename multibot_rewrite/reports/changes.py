@@ -13,10 +13,10 @@ def list_changes(template: Template, robot: str) -> list[Change]:
     inventory, plan = template.inventory, template.plan
     source = inventory.document.source
     changes = []
-    for claim, spelling in zip(inventory.claims, plan.spellings, strict=True):
+    for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True):
         if spelling:
             new = respelled(claim.value, spelling, robot)
-            changes.append(_change(source, claim, spelling[0][0], new))
+            changes.append(_change(source, claim, spelling[0].kind, new))
     for claim, text in plan.collisions:
         changes.append(_change(source, claim, "collision", text.replace(HOLE, robot)))
     starts = dict(zip(inventory.document.root.iter("*"), inventory.document.starts, strict=True))

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import kept, mentioned
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
-from multibot_rewrite.rewriters.spelling import HOLE, kind_of, names_in, respelled
+from multibot_rewrite.rewriters.spelling import HOLE, Name, respelled
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import locate, value_slot
@@ -46,19 +46,22 @@ def _claimed(
     inventory: Inventory, plan: Plan, naming: Naming, robot: str, line: int
 ) -> Iterator[Explanation]:
     recomputed = {claim.start: new.replace(HOLE, robot) for claim, new in plan.collisions}
-    for claim, spelling in zip(inventory.claims, plan.spellings, strict=True):
+    values = zip(inventory.claims, inventory.names, plan.renames.values, strict=True)
+    for claim, names, spelling in values:
         place = _place(inventory, claim.start, claim.attribute, claim.value)
         if place[0] != line:
             continue
         new = respelled(claim.value, spelling, robot)
         if claim.site.form == "collision":
             new = recomputed.get(claim.start, claim.value)
-        reason = "; ".join(_reasons(inventory, claim, naming)) or "it holds no name"
+        reason = "; ".join(_reasons(inventory, claim, names, naming)) or "it holds no name"
         path = tag_path(claim.element, claim.attribute)
         yield Explanation(*place, path, claim.value, claim.site, reason, new)
 
 
-def _reasons(inventory: Inventory, claim: Claim, naming: Naming) -> Iterator[str]:
+def _reasons(
+    inventory: Inventory, claim: Claim, names: Iterable[Name], naming: Naming
+) -> Iterator[str]:
     """What each name in the value is, and why it stays where it does."""
     declared = inventory.declared
     if claim.site.form == "collision":
@@ -66,12 +69,12 @@ def _reasons(inventory: Inventory, claim: Claim, naming: Naming) -> Iterator[str
     if claim.site.form == "prefix" and naming.affix != PREFIX:
         yield "it stands in front of names that code makes: a postfix cannot reach them"
         return
-    for part in names_in(claim, declared):
-        kind = kind_of(part, claim.site.role, declared)
-        where = declared.get(kind, {}).get(part.text)
+    for name in names:
+        kind = name.kind
+        where = declared.get(kind, {}).get(name.text)
         known = f", declared at {_line_of(inventory, where)}" if where not in (None, claim) else ""
-        stays = _stays(naming, kind, part.text, claim.site.namespaced)
-        yield f"{kind or ' or '.join(part.kinds)} {part.text!r}{known}{stays and ': '}{stays}"
+        stays = _stays(naming, kind, name.text, claim.site.namespaced)
+        yield f"{kind or ' or '.join(name.kinds)} {name.text!r}{known}{stays and ': '}{stays}"
 
 
 def _line_of(inventory: Inventory, claim: Claim | None) -> str:

@@ -13,7 +13,7 @@ from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.pipeline import MENTIONED
 from multibot_rewrite.reports.paths import plugin_name, tag_path
-from multibot_rewrite.rewriters.spelling import kind_of, names_in
+from multibot_rewrite.rewriters.spelling import Name
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Host, Inventory
 from multibot_rewrite.steps.document import Document, locate, slot_values
@@ -83,7 +83,8 @@ class Explained(NamedTuple):
 
 def survey(inventory: Inventory, tree: Tree) -> Survey:
     """What is known of one file."""
-    claims = Counter(_kind(claim, inventory) for claim in inventory.claims)
+    named = zip(inventory.claims, inventory.names, strict=True)
+    claims = Counter(_kind(claim, names) for claim, names in named)
     return Survey(1, _loaded(inventory), claims, _mentions(inventory, tree))
 
 
@@ -109,11 +110,9 @@ def _sum(first: Tally | None, second: Tally) -> Tally:
     return first._replace(times=first.times + second.times, files=first.files + second.files)
 
 
-def _kind(claim: Claim, inventory: Inventory) -> str:
+def _kind(claim: Claim, names: Sequence[Name]) -> str:
     """The kind of a claimed value, which is that of the first name in it."""
-    declared = inventory.declared
-    parts = names_in(claim, declared)
-    return kind_of(parts[0], claim.site.role, declared) or UNRESOLVED if parts else _first(claim)
+    return names[0].kind or UNRESOLVED if names else _first(claim)
 
 
 def _first(claim: Claim) -> str:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, spelled
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_default
 from multibot_rewrite.rewriters.switches import is_true
@@ -68,7 +68,7 @@ def _defaults(
         spelling = spell_default(site, default, declared, naming)
         if spelling:
             new = respelled(default, spelling, HOLE)
-            yield _insertion(host, path, spelling[0][0], default, new)
+            yield _insertion(host, path, spelling[0].kind, default, new)
 
 
 def _default(host: etree._Element, default: str, naming: Naming) -> str:
@@ -144,5 +144,5 @@ def _remap_target(topic: str, naming: Naming) -> str:
         return ""
     if naming.topics == NAMESPACE:
         return relative if topic.startswith("/") else ""
-    there = affix(naming, "topic", relative)
-    return there.spell(relative, HOLE) if there else ""
+    target = spelled(naming, HOLE, "topic", relative)
+    return target if target != relative else ""

@@ -1,4 +1,5 @@
-"""Document -> inventory: every value a site claims, every symbol declared, every plugin met."""
+"""Document -> inventory: every value a site claims, the names in it, every symbol declared, every
+plugin met."""
 
 from __future__ import annotations
 
@@ -9,7 +10,7 @@ from lxml import etree
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import takes_empty
+from multibot_rewrite.rewriters.spelling import Name, resolved_names, takes_empty
 from multibot_rewrite.rewriters.tree import Node, Tree
 from multibot_rewrite.steps.document import Document, locate
 
@@ -27,13 +28,15 @@ class Host(NamedTuple):
 
 class Inventory(NamedTuple):
     """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
-    URDF beside an SRDF included; ``format`` is the section of the root element."""
+    URDF beside an SRDF included; ``format`` is the section of the root element; ``names`` are the
+    names in each of the ``claims``, in their order."""
 
     document: Document
     claims: list[Claim]
     hosts: list[Host]
     declared: dict[str, dict[str, Claim]]
     format: str
+    names: list[tuple[Name, ...]]
 
 
 def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inventory:
@@ -64,7 +67,9 @@ def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inve
             below[element] = found.active
         if found.attributes or found.text is not None:
             _claim(claims, found, element, start)
-    return Inventory(document, claims, hosts, _declared(claims, outside), format_)
+    declared = _declared(claims, outside)
+    names = resolved_names(claims, declared)
+    return Inventory(document, claims, hosts, declared, format_, names)
 
 
 def _format(document: Document, tree: Tree, likely: str) -> str:

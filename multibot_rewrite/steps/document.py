@@ -8,6 +8,7 @@ back as the parsed value. What would make that unsafe (other encodings, DOCTYPE)
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from lxml import etree
@@ -128,6 +129,34 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
     if earlier and (b"'" in source[start:begin] or source.count(b'"', start, begin) % 2):
         return attribute_slot(source, start, attribute, value)
     return begin + len(attribute) + 3, begin + len(written) - 1
+
+
+def value_places(
+    source: bytes, start: int, attribute: str, value: str, characters: Iterable[int]
+) -> list[int] | None:
+    """The byte offsets of ``characters`` of a value; None where escapes hide one of them."""
+    slot = value_slot(source, start, attribute, value)
+    if slot is None:
+        return None
+    places = [_place(source, slot, value, at) for at in characters]
+    found = [place for place in places if place is not None]
+    return found if len(found) == len(places) else None
+
+
+def _place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
+    """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
+    begin, end = slot
+    # As many bytes as characters: nothing is escaped, each stands for itself.
+    if end - begin == len(value):
+        return begin + at
+    raw = source[begin:end]
+    head, tail = value[:at].encode(), value[at:].encode()
+    if raw.endswith(tail) and b";" not in tail:
+        return end - len(tail)
+    for written in (head, head.replace(b"\n", b"\r\n")):
+        if raw.startswith(written):
+            return begin + len(written)
+    return None
 
 
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:

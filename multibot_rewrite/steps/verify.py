@@ -74,7 +74,7 @@ def _same_symbols(inventory: Inventory, result: Inventory, robot: str) -> None:
 def _expected(inventory: Inventory, plan: Plan, robot: str) -> list[str]:
     values = [
         respelled(claim.value, spelling, robot) if spelling else claim.value
-        for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
+        for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True)
     ]
     if plan.collisions:
         by_place = {claim.start: new for claim, new in plan.collisions}

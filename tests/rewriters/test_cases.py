@@ -232,7 +232,7 @@ def rows(rewriter: Rewriter) -> list[Site]:
 def touched_rows(case: Case) -> Iterator[Row]:
     """The rows at which the case renames a value."""
     _, plan, *_ = template = run(case).template
-    for claim, spelling in zip(template.inventory.claims, plan.spellings, strict=True):
+    for claim, spelling in zip(template.inventory.claims, plan.renames.values, strict=True):
         if spelling:
             yield place(claim.site)
     for claim, _ in plan.collisions:

@@ -16,6 +16,7 @@ from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.numbers import numbers
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.model import ERROR, WARNING, Edit, Finding
+from multibot_rewrite.steps.renames import make_renames
 
 BOM = b"\xef\xbb\xbf"
 _DECLARED = regex(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
@@ -131,7 +132,8 @@ def leftover(subject: Subject) -> Iterator[Problem]:
 def already(subject: Subject) -> Iterator[Problem]:
     """The first of the robots it is spelled for."""
     settings = subject.settings
-    found = already_rewritten(subject.inventory, settings.naming, settings.robots, False)
+    renames = make_renames(subject.inventory, settings.naming)
+    found = already_rewritten(subject.inventory, renames, settings.robots, False)
     for it in islice(found, 1):
         yield Problem(subject.document.root, it.message, None, "lint the source it was made from")
 

@@ -18,6 +18,7 @@ from multibot_rewrite.rewriters.spelling import HOLE
 from multibot_rewrite.rewriters.switches import switched_off
 from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rosnames import split_remap
+from multibot_rewrite.steps.renames import RenameMap, make_renames
 
 TWO = ("robot1", "robot2")
 # Frames, tf and topics all per robot: whatever has to be inserted for that, copies share.
@@ -44,6 +45,10 @@ DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
 DEVICE = regex(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
 )
+
+
+def _renames(subject: Subject) -> RenameMap:
+    return make_renames(subject.inventory, subject.settings.naming)
 
 
 def _at(remarks: Iterable[Remark]) -> Iterator[Problem]:
@@ -227,7 +232,7 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
 def joints_reordered(subject: Subject) -> Iterator[Problem]:
     """Links whose joints change their order under the robots' naming."""
     if subject.settings.robots:
-        yield from _at(hazards.reordered(subject.inventory, subject.settings.naming))
+        yield from _at(hazards.reordered(subject.inventory, _renames(subject)))
 
 
 @rule(
@@ -584,9 +589,9 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
 )
 def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots would refuse as MB420."""
-    naming, names = subject.settings.naming, subject.settings.robots
+    names = subject.settings.robots
     if names:
-        yield from _at(robots.taken_names(subject.inventory, naming, names))
+        yield from _at(robots.taken_names(subject.inventory, _renames(subject), names))
 
 
 @rule(
@@ -608,7 +613,7 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots would refuse as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
-    for it in robots.meeting(subject.inventory, naming, pairs):
+    for it in robots.meeting(subject.inventory, _renames(subject), pairs):
         yield Problem(subject.document.root, it.message, None, it.hint)
 
 
@@ -678,13 +683,13 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.rewriters.contact import respell_collisions
-    from multibot_rewrite.steps.plan import LAST, respeller
+    from multibot_rewrite.steps.plan import LAST
+    from multibot_rewrite.steps.renames import respeller
 
-    document, claims, _, declared, _ = subject.inventory
+    document, claims, _, declared, *_ = subject.inventory
+    renames = _renames(subject)
     first, last = (
-        respell_collisions(
-            document.root, claims, declared, respeller(subject.settings.naming, name)
-        )
+        respell_collisions(document.root, claims, declared, respeller(renames, name))
         for name in (HOLE, LAST)
     )
     for (claim, text), (_, other) in zip(first, last, strict=False):
@@ -755,7 +760,7 @@ def process_wide_rule(subject: Subject) -> Iterator[Problem]:
 def fixed_to_own_frame(subject: Subject) -> Iterator[Problem]:
     """Fixed virtual joints whose parent frame is spelled for each robot."""
     if subject.settings.robots:
-        yield from _at(hazards.outside_frames(subject.inventory, subject.settings.naming))
+        yield from _at(hazards.outside_frames(subject.inventory, _renames(subject)))
 
 
 @rule(
@@ -777,4 +782,4 @@ def fixed_to_own_frame(subject: Subject) -> Iterator[Problem]:
 def hard_wired_name(subject: Subject) -> Iterator[Problem]:
     """Literal names of plugins that the naming spells."""
     if subject.settings.robots:
-        yield from _at(hazards.hardwired(subject.inventory, subject.settings.naming))
+        yield from _at(hazards.hardwired(subject.inventory, _renames(subject)))
