@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 SHARED_FRAMES = ("world", "map")
@@ -142,7 +142,7 @@ def find_layout(word: str) -> Layout:
 def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
     if word in allowed:
         return
-    near = did_you_mean(word, allowed)
+    near = did_you_mean_one_of(word, allowed)
     hint = f"; {near}" if near else ""
     raise UsageError(f"{what} {word!r} is not known, use one of {', '.join(allowed)}{hint}")
 

@@ -9,7 +9,7 @@ import yaml
 
 from multibot_rewrite.companions.yaml_text import anchors, line_of, pairs, read_yaml
 from multibot_rewrite.model import InputError
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.sources.read import read_file
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -142,4 +142,4 @@ def _where(path: Path) -> str:
 def _known(word: object, known: Iterable[object]) -> str:
     """What to write instead of an unknown word: the nearest known one, else all of them."""
     words = [str(it) for it in known]
-    return did_you_mean(str(word), words) or f"known are {', '.join(words)}"
+    return did_you_mean_one_of(str(word), words) or f"known are {', '.join(words)}"

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 if TYPE_CHECKING:
     import yaml
@@ -142,7 +142,7 @@ def wrong(item: Item, message: str) -> NoReturn:
 def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
     """That ``name`` is not known, with the nearest of all and the list of ``known``."""
     known = sorted(known)
-    near = did_you_mean(name, [*known, *more])
+    near = did_you_mean_one_of(name, [*known, *more])
     return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
 
 

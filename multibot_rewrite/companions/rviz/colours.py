@@ -6,7 +6,7 @@ from colorsys import hls_to_rgb
 
 from multibot_rewrite.companions.rviz.read import rviz_data
 from multibot_rewrite.model import InputError
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 Colour = tuple[int, int, int]
 # Steps of the golden angle never come back near a hue that was there.
@@ -30,7 +30,7 @@ def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
             return red, green, blue
     except ValueError:
         pass
-    hint = did_you_mean(given, known) or "write #rrggbb or [r, g, b]"
+    hint = did_you_mean_one_of(given, known) or "write #rrggbb or [r, g, b]"
     whose = f"robot {robot!r}: " if robot else ""
     raise InputError(f"{whose}colour {given!r} is not known; {hint}")
 

@@ -15,6 +15,8 @@ from multibot_rewrite.rosnames import check_full_name, check_namespace
 
 # A tf2 listener that was made without a node makes one of its own, called by its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
+# Hidden nodes, launch and tf2 listeners: no part of any robot.
+NEVER_MEANT = re.compile(rf".*/(_.*|launch_ros_\d+|{LISTENER}.*)")
 
 
 class Helpers(NamedTuple):
@@ -48,6 +50,14 @@ def choose(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple[str, 
             hint = "end all but one; one that was killed stays in view for 20 s"
             raise UsageError(f"{name}: {times[name]} nodes have this name; {hint}")
     return tuple(chosen)
+
+
+def left_out(graph: Snapshot, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
+    """Tools below ``namespace`` that are not learned and that somebody may have meant to learn."""
+    base = base_of(namespace)
+    below = {node.name for node in graph.nodes if node.name.startswith(f"{base}/")}
+    tools = (name for name in below.difference(chosen) if is_tool(name))
+    return tuple(sorted(name for name in tools if not NEVER_MEANT.fullmatch(name)))
 
 
 def base_of(namespace: str) -> str:
