@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, cast
 
 from lxml import etree
 
-from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.steps.collect import Inventory
 
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
@@ -135,8 +135,7 @@ def _robot_name(name: str, robot: str, naming: Naming) -> str:
     """A word as a robot's own topic."""
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
-    there = affix(naming, "topic", f"/{name}")
-    return there.spell(f"/{name}", robot) if there else f"/{name}"
+    return spelled(naming, robot, "topic", f"/{name}")
 
 
 def as_yaml(carried: Iterable[Bridged]) -> str:

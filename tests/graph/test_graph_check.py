@@ -25,11 +25,11 @@ from graph_cases import (
 )
 
 from multibot_rewrite.graph.check import ABSENCE, check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, Wanted, expect
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.rules.owners import name_owners
 from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphEndpoint, GraphNode, Qos, Snapshot
-from multibot_rewrite.naming import make_naming
+from multibot_rewrite.naming import make_naming, spelled
 from multibot_rewrite.remap.records import (
     PUBLISHES,
     SERVES,
@@ -74,7 +74,7 @@ def plan(layout: str = "L2") -> Expectation:
 
 def frames(layout: str) -> dict[str, list[str]]:
     naming = make_naming(layout)
-    return {robot: [spelled(link, robot, naming) for link in LINKS] for robot in ROBOTS}
+    return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
 
 
 def healthy(layout: str = "L2") -> Snapshot:
@@ -82,7 +82,7 @@ def healthy(layout: str = "L2") -> Snapshot:
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        Frame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
+        Frame(robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ())
         for robot in plan(layout).robots
     )
     return sent(graph._replace(frames=(*graph.frames, *odometry)))
@@ -818,7 +818,7 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
 
 def robots_called(*names: str, layout: str = "L2") -> Expectation:
     naming = make_naming(layout)
-    declared = {name: [spelled(link, name, naming) for link in LINKS] for name in names}
+    declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
     return expect(build_table(names, NODES, naming), naming, declared)
 
 

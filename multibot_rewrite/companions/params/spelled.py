@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.respell import is_declared, respell
 from multibot_rewrite.companions.template import GRAPH, SPELLED
-from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, affix
+from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
 
 Speller = Callable[[Context, str], str]
 _WORD = re.compile(r"[\w./-]+")
@@ -58,8 +58,7 @@ def _chain(context: Context, value: str) -> str:
 
 def controller(context: Context, value: str) -> str:
     """A controller, which is a node: its name is its own where robots have no namespaces."""
-    there = affix(context.topics.naming, "node", value) if is_plain(value) else None
-    return there.spell(value, GRAPH) if there else value
+    return spelled(context.topics.naming, GRAPH, "node", value) if is_plain(value) else value
 
 
 def node(context: Context, value: str) -> str:
@@ -78,8 +77,7 @@ def namespace(context: Context, value: str) -> str:
     naming = context.topics.naming
     if not value.startswith("/") or naming.topics != NAMESPACE:
         return value
-    there = affix(naming, "namespace", value)
-    return there.spell(value, GRAPH) if there else value
+    return spelled(naming, GRAPH, "namespace", value)
 
 
 def stem(context: Context, value: str) -> str:
