@@ -3,35 +3,18 @@
 Text positions are byte offsets into the source; lines and columns count from 1.
 """
 
+# ruff: noqa: PLC0414
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.findings.finding import ERROR as ERROR
+from multibot_rewrite.findings.finding import WARNING as WARNING
+from multibot_rewrite.findings.finding import Edit as Edit
+from multibot_rewrite.findings.finding import Finding as Finding
+
 if TYPE_CHECKING:
     from lxml.etree import _Element
-
-WARNING = "warning"
-ERROR = "error"
-
-
-class Finding(NamedTuple):
-    """Something a person should know about the input.
-
-    ``level`` is ``"warning"`` or ``"error"``; an error stops the job. ``code`` is permanent.
-    """
-
-    code: str
-    level: str
-    message: str
-    hint: str
-    file: str
-    line: int
-    column: int
-
-    def __str__(self) -> str:
-        place = f"{self.file}:{self.line}:{self.column}"
-        hint = f" ({self.hint})" if self.hint else ""
-        return f"{place}: {self.level}: {self.code} {self.message}{hint}"
 
 
 class Site(NamedTuple):
@@ -70,18 +53,6 @@ class Claim(NamedTuple):
     start: int
     attribute: str
     value: str
-
-
-class Edit(NamedTuple):
-    """Replace source bytes ``start:end`` by ``before + robot + after``.
-
-    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it).
-    """
-
-    start: int
-    end: int
-    before: bytes
-    after: bytes | None
 
 
 class Change(NamedTuple):

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 import tf2_build
 from hypothesis import HealthCheck, Phase, settings
-from robots import CORPUS, WHEELS, corpus_files, wheel_files
+from paths import CORPUS
+from real_robots import WHEELS, corpus_files, wheel_files
 
 settings.register_profile(
     "repeatable",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from multibot_rewrite.cli.usage import Parser
-from multibot_rewrite.lint.formats import FORMATS
+from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.version import __version__
 

@@ -15,6 +15,7 @@ from multibot_rewrite.cli.lint_usage import PROGRAM, check_use, given, parser
 from multibot_rewrite.cli.output import diff, print_bytes, say, watched
 from multibot_rewrite.cli.process import DONE, STOPPED, UNUSABLE, guarded
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files
+from multibot_rewrite.findings.finding import LEVELS, Finding
 from multibot_rewrite.lint.configured import (
     Configured,
     check_codes,
@@ -22,7 +23,6 @@ from multibot_rewrite.lint.configured import (
     is_excluded,
     with_options,
 )
-from multibot_rewrite.lint.records import LEVELS, LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.lint.settings import Settings
@@ -56,7 +56,7 @@ def _start(arguments: Sequence[str] | None) -> int:
 
 
 def _tell(options: argparse.Namespace) -> int:
-    from multibot_rewrite.lint.words import explained, listed
+    from multibot_rewrite.findings.rule_docs import explained, listed
 
     if options.explain:
         check_codes((options.explain,), "--explain")
@@ -68,17 +68,17 @@ def _tell(options: argparse.Namespace) -> int:
     return DONE
 
 
-def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[LintFinding]]:
+def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
     """What is to be linted, and findings for folders that cannot be looked into."""
     paths = [word for word in options.words if ":=" not in word]
     if paths == [STDIN]:
         return paths, []
-    refused: list[LintFinding] = []
+    refused: list[Finding] = []
     level = RULES["MB102"].level
 
     def refuse(error: OSError) -> None:
         message = f"cannot be read: {error.strerror}"
-        refused.append(LintFinding("MB102", level, message, "", error.filename, 1, 1))
+        refused.append(Finding("MB102", level, message, "", error.filename, 1, 1))
 
     found = find_files(paths, SUFFIXES, refuse)
     # What is found below "." is named as git names it.
@@ -103,9 +103,7 @@ def _check_targets(options: argparse.Namespace, paths: Sequence[str]) -> None:
             check_folder(target)
 
 
-def _lint(
-    options: argparse.Namespace, settings: Settings, paths: Sequence[str]
-) -> list[LintFinding]:
+def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str]) -> list[Finding]:
     if list(paths) == [STDIN]:
         from multibot_rewrite.cli.urdf_postfix import standard_input
         from multibot_rewrite.lint.check import lint_data
@@ -119,9 +117,7 @@ def _lint(
     return lint_files(paths, settings, jobs=int(options.jobs or 0))
 
 
-def _mended(
-    options: argparse.Namespace, settings: Settings, findings: list[LintFinding]
-) -> list[str]:
+def _mended(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
     """The files that are mended. With --diff none is, and the changes are printed."""
     from multibot_rewrite.lint.fix import fix
     from multibot_rewrite.sources.read import read_file
@@ -139,7 +135,7 @@ def _mended(
     return files
 
 
-def _write_baseline(options: argparse.Namespace, findings: Sequence[LintFinding]) -> int:
+def _write_baseline(options: argparse.Namespace, findings: Sequence[Finding]) -> int:
     from multibot_rewrite.lint.baseline import baseline_text
 
     write_all([(options.write_baseline, baseline_text(findings, options.write_baseline))])
@@ -152,7 +148,7 @@ def _conclude(
     options: argparse.Namespace,
     config: Configured,
     paths: Sequence[str],
-    findings: Sequence[LintFinding],
+    findings: Sequence[Finding],
 ) -> int:
     stale = 0
     if config.baseline:
@@ -171,13 +167,13 @@ def _conclude(
 
 
 def _deliver(
-    options: argparse.Namespace, paths: Sequence[str], findings: Sequence[LintFinding]
+    options: argparse.Namespace, paths: Sequence[str], findings: Sequence[Finding]
 ) -> None:
-    from multibot_rewrite.lint.formats import rendered
+    from multibot_rewrite.findings.formats import Report, rendered
 
     terminal = not options.output and sys.stdout is not None and sys.stdout.isatty()
     colour = terminal and "NO_COLOR" not in os.environ
-    data = rendered(options.format, findings, paths, colour=colour).encode()
+    data = rendered(options.format, findings, Report(PROGRAM, paths, RULES), colour=colour).encode()
     if options.output:
         write_all([(options.output, data)])
     else:
@@ -185,7 +181,7 @@ def _deliver(
 
 
 def _summary(
-    options: argparse.Namespace, paths: Sequence[str], findings: Sequence[LintFinding], stale: int
+    options: argparse.Namespace, paths: Sequence[str], findings: Sequence[Finding], stale: int
 ) -> str:
     files = f"{len(paths)} file{'s' * (len(paths) != 1)}"
     changed = f" changed since {options.changed_since}" if options.changed_since else ""
@@ -195,7 +191,7 @@ def _summary(
     return f"{files}{changed}: {_count(findings)}{hint}{old}"
 
 
-def _count(findings: Sequence[LintFinding]) -> str:
+def _count(findings: Sequence[Finding]) -> str:
     counts = Counter(it.level for it in findings)
     told = [f"{counts[it]} {it}{'s' * (counts[it] != 1)}" for it in LEVELS if counts[it]]
     return ", ".join(told) or "no findings"

@@ -1,10 +1,30 @@
-"""``python -m multibot_rewrite.lint``: the page of rules."""
+"""``python -m multibot_rewrite.lint``: the page of the lint's rules."""
 
 from __future__ import annotations
 
 import sys
 
-from multibot_rewrite.lint.words import page
+from multibot_rewrite.findings.rule_docs import Group, page
+from multibot_rewrite.lint.registry import GROUPS, RULES
+
+HEAD = """\
+# Rules of urdf-lint
+
+Made by `python -m multibot_rewrite.lint > docs/lint-rules.md`; `urdf-lint --explain CODE` prints one.
+An *error* is refused by some loader or cannot work, a *warning* is very probably wrong, a *note* never
+makes the lint fail. Examples are tested: the first is found, the second is not; a fragment stands
+inside `<robot name="r">`.
+"""
+
+
+def rules_page() -> str:
+    """The page, Markdown."""
+    groups = (
+        Group(start, title, tuple(it for code, it in RULES.items() if code.startswith(start)))
+        for start, title, _ in GROUPS
+    )
+    return page(HEAD, groups)
+
 
 if __name__ == "__main__":
-    sys.stdout.write(page())
+    sys.stdout.write(rules_page())

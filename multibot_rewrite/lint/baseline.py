@@ -13,7 +13,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.config import read
-from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import UsageError
 
 FORMAT = "urdf-lint-baseline"
@@ -72,11 +72,11 @@ def _check(entry: object, number: int) -> None:
 
 
 def beyond(
-    findings: Sequence[LintFinding],
+    findings: Sequence[Finding],
     baseline: Baseline,
     path: str,
     linted: Collection[str] | None = None,
-) -> tuple[list[LintFinding], int]:
+) -> tuple[list[Finding], int]:
     """The findings that the baseline at ``path`` does not have, and how many of its are gone.
 
     ``linted`` are the files that were looked at, None for all: of a file that is still there and
@@ -101,7 +101,7 @@ def _is_judged(file: str, path: str, names: Collection[str] | None) -> bool:
     return not os.path.exists(os.path.join(os.path.dirname(path), file))
 
 
-def baseline_text(findings: Iterable[LintFinding], path: str) -> bytes:
+def baseline_text(findings: Iterable[Finding], path: str) -> bytes:
     """The baseline that holds just these findings, to be written to ``path``: sorted, a line each."""
     counts = Counter(_key(it, path) for it in findings)
     lines = [
@@ -114,7 +114,7 @@ def baseline_text(findings: Iterable[LintFinding], path: str) -> bytes:
     return text.encode("utf-8", "backslashreplace")
 
 
-def _key(finding: LintFinding, path: str) -> Key:
+def _key(finding: Finding, path: str) -> Key:
     message = _LINE.sub("line N", finding.message)
     return Key(finding.code, _relative(finding.file, path), message)
 

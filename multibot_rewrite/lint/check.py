@@ -10,11 +10,14 @@ from functools import partial
 from typing import NoReturn
 
 from multibot_rewrite.bulk import uncollected
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.places import numbered, placed
-from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import active_rules
-from multibot_rewrite.lint.settings import Settings, level_of
+from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.lint.subjects import Failed, read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError, VocabularyError
@@ -27,18 +30,18 @@ class _TooLongError(BaseException):
     """The time of a file is over; no ``except Exception`` on the way may swallow it."""
 
 
-def lint_file(path: str, settings: Settings) -> list[LintFinding]:
+def lint_file(path: str, settings: Settings) -> list[Finding]:
     """All findings of a file, in order; a file that cannot be read is a finding."""
     return _linted(path, partial(read_file, path), settings)
 
 
-def lint_data(path: str, data: bytes, settings: Settings) -> list[LintFinding]:
+def lint_data(path: str, data: bytes, settings: Settings) -> list[Finding]:
     """The same for text that is at hand; ``path`` is its name, and where its xacro is."""
     return _linted(path, lambda: data, settings)
 
 
-def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[LintFinding]:
-    found: list[LintFinding] = []
+def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Finding]:
+    found: list[Finding] = []
     sources: dict[str, bytes] = {}
     try:
         with _limited(settings.seconds), uncollected():
@@ -61,14 +64,14 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Li
     return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
 
 
-def lint_subject(subject: Subject) -> list[LintFinding]:
+def lint_subject(subject: Subject) -> list[Finding]:
     """What the rules that are on find in one document."""
     settings = subject.settings
     found: list[tuple[Rule, list[Problem]]] = []
-    crashes: list[LintFinding] = []
+    crashes: list[Finding] = []
     for rule in active_rules(settings, subject.format):
         try:
-            problems = list(rule.check(subject))
+            problems = list(rule.check(subject)) if rule.check else []
         except Exception as error:  # told as a finding, and the other rules are asked all the same
             crashes.append(crash(rule, subject, error))
             continue
@@ -81,15 +84,15 @@ def lint_subject(subject: Subject) -> list[LintFinding]:
     return crashes + [placed(subject, numbers, it, rule) for rule, its in found for it in its]
 
 
-def _merged(found: Iterable[LintFinding]) -> list[LintFinding]:
+def _merged(found: Iterable[Finding]) -> list[Finding]:
     """What several expansions have in common is told once, of the first of them."""
-    first: dict[LintFinding, LintFinding] = {}
+    first: dict[Finding, Finding] = {}
     for finding in found:
         first.setdefault(finding._replace(arguments=""), finding)
     return list(first.values())
 
 
-def by_place(finding: LintFinding) -> tuple[str, int, int, str, str, str]:
+def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
     """What findings are sorted by: file, line, column, and what is told there."""
     it = finding
     return it.file, it.line, it.column, it.code, it.message, it.arguments

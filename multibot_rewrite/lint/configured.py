@@ -14,7 +14,8 @@ from multibot_rewrite.config import (
     read,
     type_name,
 )
-from multibot_rewrite.lint.settings import EVERY_FILE, OFF, ArgumentSet, Settings, matches
+from multibot_rewrite.findings.selection import OFF
+from multibot_rewrite.lint.settings import EVERY_FILE, ArgumentSet, Settings, matches
 from multibot_rewrite.lint.values import (
     FIELDS,
     READERS,

@@ -5,10 +5,13 @@ from __future__ import annotations
 import re
 import signal
 
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.records import LintFinding, Rule, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings, level_of
+from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR
 
 _PLACE = regex(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
@@ -22,7 +25,7 @@ _CODES = (
 )
 
 
-def failure(path: str, message: str, settings: Settings) -> LintFinding:
+def failure(path: str, message: str, settings: Settings) -> Finding:
     """The finding for a file that cannot be read; ``message`` is that of its InputError."""
     code = next((code for said, code in _CODES if said in message), "MB101")
     level = level_of(settings, code, RULES[code].level)
@@ -31,40 +34,40 @@ def failure(path: str, message: str, settings: Settings) -> LintFinding:
     line, column = int(it["line"] or 1), int(it["column"] or 1)
     what, _, hint = it["said"].rpartition("; ")
     file = it["file"].removesuffix(" (expanded)") or path
-    return LintFinding(code, level, what or hint, hint if what else "", file, line, column)
+    return Finding(code, level, what or hint, hint if what else "", file, line, column)
 
 
-def crash(rule: Rule, subject: Subject, error: Exception) -> LintFinding:
+def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:
     """The finding for a rule that fell over a document: the rule did not look at all of it."""
     file = subject.document.file.removesuffix(" (expanded)")
     hint = "this is a fault of urdf-lint; --ignore it to go on"
     return _crashed(file, f"{rule.code} crashed: {_words(error)}", hint)
 
 
-def breakdown(path: str, error: Exception) -> LintFinding:
+def breakdown(path: str, error: Exception) -> Finding:
     """The finding for a file over which the lint itself fell: nobody looked at all of it."""
     if isinstance(error, MemoryError):
         return _crashed(path, "it needs more memory than there is", "do its macros grow?")
     return _crashed(path, f"the lint crashed: {_words(error)}", "this is a fault of urdf-lint")
 
 
-def lost(path: str, died_of: int) -> LintFinding:
+def lost(path: str, died_of: int) -> Finding:
     """The finding for a file whose process was ended by a signal, or by itself for 0."""
     how = f"by {signal.Signals(died_of).name}" if died_of else "before it was done"
     hint = "too little memory may be the reason: try fewer --jobs"
     return _crashed(path, f"the process that linted it was ended {how}", hint)
 
 
-def _crashed(path: str, message: str, hint: str) -> LintFinding:
-    return LintFinding("MB001", ERROR, message, hint, path, 1, 1)
+def _crashed(path: str, message: str, hint: str) -> Finding:
+    return Finding("MB001", ERROR, message, hint, path, 1, 1)
 
 
 def _words(error: Exception) -> str:
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
-def too_long(path: str, seconds: float) -> LintFinding:
+def too_long(path: str, seconds: float) -> Finding:
     """The finding for a file that was left before its end."""
     message = f"it took more than {seconds:g} s and was left"
     endless = "is there a loop in its macros?" if path.endswith(".xacro") else ""
-    return LintFinding("MB004", ERROR, message, endless, path, 1, 1)
+    return Finding("MB004", ERROR, message, endless, path, 1, 1)

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 from multibot_rewrite.steps.apply import cut
@@ -21,7 +21,7 @@ ROUNDS = 5
 _LINE = re.compile(r"\bline \d+")
 
 
-def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[LintFinding]]:
+def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
     """The text with every safe fix made, and what is left to find in it.
 
     Raises InputError where the file cannot be read, ProofError where the result does not hold.
@@ -38,7 +38,7 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[LintF
     raise ProofError(f"{path}: fixes come back after {ROUNDS} rounds")
 
 
-def _edits(path: str, findings: Iterable[LintFinding]) -> set[Edit]:
+def _edits(path: str, findings: Iterable[Finding]) -> set[Edit]:
     return {edit for finding in findings if finding.file == path for edit in finding.edits}
 
 
@@ -53,8 +53,8 @@ def _apart(edits: Iterable[Edit]) -> Iterator[Edit]:
 
 def _prove(
     path: str,
-    old: tuple[bytes, Sequence[LintFinding]],
-    new: tuple[bytes, Sequence[LintFinding]],
+    old: tuple[bytes, Sequence[Finding]],
+    new: tuple[bytes, Sequence[Finding]],
     edits: Sequence[Edit],
 ) -> None:
     """Every element without an edit in its tag or text is what it was, and no finding is new."""
@@ -79,6 +79,6 @@ def _same(old: _Element, new: _Element, touched: bool) -> bool:
     return old.tag == new.tag and (touched or (old.attrib, old.text) == (new.attrib, new.text))
 
 
-def _counted(findings: Iterable[LintFinding]) -> Counter[tuple[str, str]]:
+def _counted(findings: Iterable[Finding]) -> Counter[tuple[str, str]]:
     # Lines move where an edit takes one out.
     return Counter((it.code, _LINE.sub("line N", it.message)) for it in findings)

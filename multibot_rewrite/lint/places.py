@@ -10,8 +10,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.steps.document import tag_end
 
 if TYPE_CHECKING:
@@ -31,11 +33,11 @@ class Place(NamedTuple):
     calls: tuple[Call, ...] = ()
 
 
-def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> LintFinding:
+def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
     """The finding for a problem; ``numbers`` are those of ``numbered``."""
     it = _place(subject, numbers[problem.element], problem.attribute)
     line, column = _locate(it.source, it.offset)
-    return LintFinding(
+    return Finding(
         rule.code,
         rule.level,
         " ".join(problem.message.split()),

@@ -1,31 +1,31 @@
-"""Frozen records of the lint: subject (what a rule looks at), problem (what it yields), rule, finding
-(what a person reads)."""
+"""Frozen records of the lint: subject (what a rule looks at) and problem (what it yields)."""
 
+# ruff: noqa: PLC0414
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.finding import LEVELS as LEVELS
+from multibot_rewrite.findings.finding import NOTE as NOTE
+from multibot_rewrite.findings.finding import Edit
+from multibot_rewrite.findings.rule import SRDF as SRDF
+from multibot_rewrite.findings.rule import URDF as URDF
+from multibot_rewrite.findings.rule import XACRO as XACRO
+from multibot_rewrite.findings.rule import Rule as Rule
+from multibot_rewrite.findings.rule import rule as rule
 from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.robot import Robot
 from multibot_rewrite.lint.schema import Fault
 from multibot_rewrite.lint.settings import Settings
-from multibot_rewrite.model import ERROR, WARNING, Edit
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document
 
 if TYPE_CHECKING:
     from multibot_rewrite.sources.trace import Origin
-
-NOTE = "note"
-# From the worst on; a note never makes a lint fail.
-LEVELS = (ERROR, WARNING, NOTE)
-URDF, SRDF, XACRO = "urdf", "srdf", "xacro"
-NOTHING: Mapping[str, str] = {}
 
 
 class Subject(NamedTuple):
@@ -62,70 +62,4 @@ class Problem(NamedTuple):
     message: str
     attribute: str | None = None
     hint: str = ""
-    edits: tuple[Edit, ...] = ()
-
-
-Check = Callable[[Subject], Iterable[Problem]]
-
-
-class Rule(NamedTuple):
-    """A rule, its words and its examples, which are its documentation and its tests.
-
-    ``what`` it finds, ``why`` that bites at run time, how to ``fix`` it. ``bad`` holds the problem
-    exactly once, ``good`` does not; text that starts with neither ``<?xml`` nor ``<robot`` stands
-    inside ``<robot name="r">``. ``beside`` maps names to the content of files beside the example,
-    ``options`` are the settings it is linted with. ``formats`` are what it is asked about: a
-    ``urdf`` (xacro is expanded), an ``srdf``, the ``xacro`` source itself.
-    """
-
-    code: str
-    name: str
-    level: str
-    what: str
-    why: str
-    fix: str
-    bad: str
-    good: str
-    check: Check
-    formats: tuple[str, ...] = (URDF,)
-    beside: Mapping[str, str] = NOTHING
-    options: Mapping[str, object] = {}
-
-
-def rule(
-    code: str,
-    name: str,
-    level: str,
-    *,
-    what: str,
-    why: str,
-    fix: str,
-    bad: str,
-    good: str,
-    formats: tuple[str, ...] = (URDF,),
-    beside: Mapping[str, str] = NOTHING,
-    options: Mapping[str, object] = {},
-) -> Callable[[Check], Rule]:
-    """Makes a function that looks at a subject and yields problems a ``Rule``."""
-    words = partial(Rule, code, name, level, what, why, fix, bad, good)
-    return partial(words, formats=formats, beside=beside, options=options)
-
-
-class LintFinding(NamedTuple):
-    """A finding of the lint; lines and columns count from 1.
-
-    ``calls`` are the xacro macro calls that made the element, the innermost first, as
-    ``file:line: name``; ``arguments`` are the xacro arguments under which it is found, empty for
-    the default ones. ``edits`` mend it in ``file``.
-    """
-
-    code: str
-    level: str
-    message: str
-    hint: str
-    file: str
-    line: int
-    column: int
-    calls: tuple[str, ...] = ()
-    arguments: str = ""
     edits: tuple[Edit, ...] = ()

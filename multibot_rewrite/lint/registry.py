@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 from types import ModuleType
 
-from multibot_rewrite.lint.records import Rule
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.rules import (
     files,
     itself,
@@ -18,7 +19,7 @@ from multibot_rewrite.lint.rules import (
     semantics,
     structure,
 )
-from multibot_rewrite.lint.settings import Settings, is_on
+from multibot_rewrite.lint.settings import Settings
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB0", "the lint itself", itself),

@@ -6,11 +6,11 @@ import os
 import signal
 from collections.abc import Callable, Iterable, Sequence
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import by_place, lint_file
 from multibot_rewrite.lint.failures import lost, too_long
 from multibot_rewrite.lint.included import included
 from multibot_rewrite.lint.pairing import named_urdfs
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.rewriters.builtin import builtin_tree
 
@@ -19,12 +19,12 @@ FEW = 12
 EACH = 4
 # What a worker may compute beyond the time of a file before it is ended.
 GRACE = 1.0
-Watch = Callable[[Iterable[list[LintFinding]]], Iterable[list[LintFinding]]]
+Watch = Callable[[Iterable[list[Finding]]], Iterable[list[Finding]]]
 
 
 def lint_files(
     paths: Sequence[str], settings: Settings, *, jobs: int = 0, watch: Watch = iter
-) -> list[LintFinding]:
+) -> list[Finding]:
     """Every finding of the files, each once, in the order of files and lines.
 
     ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` sees the
@@ -45,18 +45,18 @@ def among(paths: Sequence[str], settings: Settings) -> Settings:
 
 def _linted(
     paths: Sequence[str], settings: Settings, jobs: int, watch: Watch
-) -> Iterable[list[LintFinding]]:
+) -> Iterable[list[Finding]]:
     # xacro runs what a file says, which only the end of a process stops for certain.
     alone = not any(path.endswith(".xacro") for path in paths)
     if alone and (jobs == 1 or len(paths) <= FEW):
         return list(watch(lint_file(path, settings) for path in paths))
     from multibot_rewrite.lint.workers import crew, limit_time
 
-    def lint(path: str) -> list[LintFinding]:
+    def lint(path: str) -> list[Finding]:
         limit_time(settings.seconds + GRACE)
         return lint_file(path, settings)
 
-    def unfinished(path: str, died_of: int) -> list[LintFinding]:
+    def unfinished(path: str, died_of: int) -> list[Finding]:
         if died_of == signal.SIGXCPU:
             return [too_long(path, settings.seconds)]
         return [lost(path, died_of)]
@@ -65,9 +65,9 @@ def _linted(
         return list(watch(workers.results()))
 
 
-def _once(found: Iterable[LintFinding]) -> list[LintFinding]:
+def _once(found: Iterable[Finding]) -> list[Finding]:
     """One place in a macro is one finding, however many calls, of however many files, reach it."""
-    alike: dict[tuple[object, ...], dict[str, LintFinding]] = {}
+    alike: dict[tuple[object, ...], dict[str, Finding]] = {}
     for it in found:
         place = (it.code, it.level, it.file, it.line, it.column)
         key = place if it.calls else (*place, it.message, it.hint)
@@ -75,14 +75,14 @@ def _once(found: Iterable[LintFinding]) -> list[LintFinding]:
     return [_with_others(*its.values()) for its in alike.values()]
 
 
-def _with_others(first: LintFinding, *others: LintFinding) -> LintFinding:
+def _with_others(first: Finding, *others: Finding) -> Finding:
     if not others:
         return first
     also = f"and {len(others)} more like it, by other calls of the macro"
     return first._replace(hint=f"{first.hint}; {also}" if first.hint else also)
 
 
-def _in_order(found: Iterable[LintFinding], paths: Sequence[str]) -> list[LintFinding]:
+def _in_order(found: Iterable[Finding], paths: Sequence[str]) -> list[Finding]:
     """By file, those that were asked for first; then by line."""
     rank = {path: at for at, path in enumerate(paths)}
     for it in found:

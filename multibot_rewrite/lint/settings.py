@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
+from multibot_rewrite.findings.selection import NO_LEVELS, matched
 from multibot_rewrite.naming import Naming, make_naming
 
 ALL = ("MB",)
-NO_LEVELS: Mapping[str, str] = {}
 TARGETS = ("usd", "mjcf")
 TIME_LIMIT = 60.0
-# In the place of a level: the rule is not asked.
-OFF = "off"
 EVERY_FILE = "*"
 
 
@@ -58,28 +56,6 @@ class Settings(NamedTuple):
     seconds: float = TIME_LIMIT
 
 
-def decides(codes: Sequence[str], code: str) -> int:
-    """How much of ``code`` the longest of ``codes`` that it begins with tells; -1 for none."""
-    return max((len(it) for it in codes if code.startswith(it)), default=-1)
-
-
-def is_on(settings: Settings, code: str) -> bool:
-    """Is a rule asked at all? What selects it has to say more than what ignores it."""
-    decided = _level_key(settings, code)
-    off = len(decided) if settings.levels.get(decided) == OFF else -1
-    return decides(settings.select, code) > max(decides(settings.ignore, code), off)
-
-
-def level_of(settings: Settings, code: str, default: str) -> str:
-    """The level that the configuration gives a rule, the longest beginning of its code first."""
-    level = settings.levels.get(_level_key(settings, code), OFF)
-    return default if level == OFF else level
-
-
-def _level_key(settings: Settings, code: str) -> str:
-    return max((it for it in settings.levels if code.startswith(it)), key=len, default="")
-
-
 def matches(path: str, pattern: str) -> bool:
     """Does a pattern, as ``fnmatch`` has them, match a path as it is given or the whole of it?"""
     return fnmatchcase(path, pattern) or fnmatchcase(os.path.abspath(path), pattern)
@@ -88,5 +64,5 @@ def matches(path: str, pattern: str) -> bool:
 def is_silent(settings: Settings, file: str, code: str) -> bool:
     """Do the settings silence a rule in that one file?"""
     return any(
-        decides(codes, code) >= 0 and matches(file, pattern) for pattern, codes in settings.per_file
+        matched(codes, code) >= 0 and matches(file, pattern) for pattern, codes in settings.per_file
     )

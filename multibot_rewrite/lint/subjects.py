@@ -11,10 +11,11 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.findings.rule import SRDF, URDF, XACRO
 from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.packages import package_folder
 from multibot_rewrite.lint.pairing import SRDF_MARK, find_pair
-from multibot_rewrite.lint.records import SRDF, URDF, XACRO, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.robot import read_robot
 from multibot_rewrite.lint.schema import read_faults
 from multibot_rewrite.lint.settings import ArgumentSet, Settings, matches

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.lint.directives import (
     ALWAYS_TOLD,
@@ -14,9 +16,8 @@ from multibot_rewrite.lint.directives import (
     Directive,
     read_directives,
 )
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings, is_on, is_silent, level_of
+from multibot_rewrite.lint.settings import Settings, is_silent
 from multibot_rewrite.model import Edit
 from multibot_rewrite.steps.document import locate
 
@@ -40,8 +41,8 @@ class Comment(NamedTuple):
 
 
 def unsuppressed(
-    findings: Sequence[LintFinding], sources: Mapping[str, bytes], settings: Settings
-) -> list[LintFinding]:
+    findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
+) -> list[Finding]:
     """The findings that no comment and no per-file setting silences, and those about comments.
 
     The first of ``sources`` is the file that is linted, the others are those it includes.
@@ -58,7 +59,7 @@ def unsuppressed(
     return left
 
 
-def _file(finding: LintFinding) -> str:
+def _file(finding: Finding) -> str:
     return finding.file.removesuffix(" (expanded)")
 
 
@@ -70,8 +71,8 @@ def _comments(file: str, source: bytes) -> Iterator[Comment]:
 
 
 def _apply(
-    findings: Iterable[LintFinding], comments: Iterable[Comment]
-) -> tuple[list[LintFinding], set[tuple[str, int]]]:
+    findings: Iterable[Finding], comments: Iterable[Comment]
+) -> tuple[list[Finding], set[tuple[str, int]]]:
     """The findings that are left, and the codes that silenced one, by file and offset."""
     by_code: dict[str, list[tuple[Comment, Code]]] = {}
     for comment in comments:
@@ -86,7 +87,7 @@ def _apply(
     return left, used
 
 
-def _reaches(comment: Comment, finding: LintFinding) -> bool:
+def _reaches(comment: Comment, finding: Finding) -> bool:
     """What a macro call makes is where the macro is written, and where the call stands."""
     if comment.it.word == IGNORE_FILE:
         return _file(finding) == comment.file
@@ -109,7 +110,7 @@ def _holds_line(comment: Comment, line: int) -> bool:
     return any(first <= line <= last for first, last in spans)
 
 
-def _told(found: Iterable[LintFinding], code: str, settings: Settings) -> Iterator[LintFinding]:
+def _told(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:
     if not is_on(settings, code):
         return
     level = level_of(settings, code, RULES[code].level)
@@ -118,11 +119,11 @@ def _told(found: Iterable[LintFinding], code: str, settings: Settings) -> Iterat
             yield finding._replace(code=code, level=level)
 
 
-def _broken(comments: Iterable[Comment]) -> Iterator[LintFinding]:
+def _broken(comments: Iterable[Comment]) -> Iterator[Finding]:
     for comment in comments:
         for fault in comment.it.faults:
             line, column = locate(comment.source, fault.start)
-            yield LintFinding(BROKEN, "", fault.message, fault.hint, comment.file, line, column)
+            yield Finding(BROKEN, "", fault.message, fault.hint, comment.file, line, column)
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
@@ -136,7 +137,7 @@ def _is_whole(comment: Comment, settings: Settings) -> bool:
 
 def _unused(
     comments: Iterable[Comment], used: set[tuple[str, int]], settings: Settings
-) -> Iterator[LintFinding]:
+) -> Iterator[Finding]:
     for comment in comments:
         codes = comment.it.codes
         idle = [it for it in codes if (comment.file, it.start) not in used]
@@ -145,7 +146,7 @@ def _unused(
             line, column = locate(comment.source, code.start)
             message = f"nothing of {code.text} is found where this comment silences it"
             hint = "delete it" if not comment.it.idle else "put it on the line above the element"
-            yield LintFinding(UNUSED, "", message, hint, comment.file, line, column, edits=edits)
+            yield Finding(UNUSED, "", message, hint, comment.file, line, column, edits=edits)
 
 
 def _is_asked(code: str, file: str, settings: Settings) -> bool:

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.findings.place import locate as locate  # noqa: PLC0414
 from multibot_rewrite.lazy import regex
 from multibot_rewrite.model import Edit, Finding, InputError
 
@@ -220,13 +221,6 @@ def tag_end(source: bytes, start: int) -> int:
     tag = _TAG.match(source, start)
     assert tag is not None, "lxml read a start tag here"
     return tag.end()
-
-
-def locate(source: bytes, offset: int) -> tuple[int, int]:
-    """Line and column, from 1, of a byte offset; the column counts characters."""
-    line_start = source.rfind(b"\n", 0, offset) + 1
-    column = len(source[line_start:offset].decode("utf-8", "replace")) + 1
-    return source.count(b"\n", 0, offset) + 1, column
 
 
 def finding(

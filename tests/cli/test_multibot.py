@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
-from robots import CORPUS
+from paths import CORPUS, ROBOTS, ROOT
 
 import multibot_rewrite
 from multibot_rewrite.cli.multibot import COMMANDS, main
@@ -23,8 +23,6 @@ from multibot_rewrite.rewriters.lookup import look_up
 from multibot_rewrite.rewriters.vocabulary import TYPES, load_vocabulary
 
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.multibot")
-ROOT = Path(__file__).parents[2]
-ROBOTS = ROOT / "fixtures" / "robots"
 PAGE = ROOT / "docs" / "coverage.md"
 UNCLAIMED = ROOT / "fixtures" / "unclaimed.tsv"
 PATIENCE = 60

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.remap.forms import FORMS

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 
 import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from paths import ROOT
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.rewrite import kind_of, moveit, with_semantics
@@ -434,7 +434,7 @@ def test_another_manager_asks_nobody() -> None:
 
 
 def test_every_code_is_on_the_page() -> None:
-    home = Path(__file__).parents[2]
+    home = ROOT
     source = "".join(
         (home / "multibot_rewrite" / "companions" / f"{name}.py").read_text()
         for name in ("moveit/rewrite", "behavior_tree", "lua")

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from robots import CORPUS, FIXTURES
+from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.rewrite import kind_of, moveit

@@ -10,6 +10,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from paths import ROOT
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.params.known import (
@@ -27,7 +28,6 @@ from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.known import extended, stack_of
 from multibot_rewrite.remap.stacks import built_in, load_stack
 
-ROOT = Path(__file__).parents[2]
 LINKS = ("base_link", "base_footprint", "laser", "tool0")
 JOINTS = ("left_wheel", "right_wheel", "shoulder", "elbow")
 SENSORS = ("imu_sensor",)

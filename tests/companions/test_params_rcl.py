@@ -11,8 +11,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from robots import spread
-from test_params_corpus import POLICIES, ROBOT, declared, facts, files, is_respelled
+from params_corpus import POLICIES, ROBOT, declared, facts, files, is_respelled
+from paths import SUPPORT
+from real_robots import spread
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.params.known import built_in_params
@@ -28,7 +29,7 @@ pytestmark = pytest.mark.skipif(
     not importlib.util.find_spec("rclpy"),
     reason=f"parameter files are not read with the real rcl: no rclpy here, {INSTALL}",
 )
-CHILD = Path(__file__).parents[1].joinpath("rcl_params_child.py")
+CHILD = SUPPORT / "rcl_params_child.py"
 SECONDS = 300
 OWN = """\
 amcl:

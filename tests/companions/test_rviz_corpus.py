@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
-from robots import CORPUS
+from paths import CORPUS
 from rviz_robots import declared, robots_of
 
 from multibot_rewrite.companions.rviz.read import rviz_data

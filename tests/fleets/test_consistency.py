@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from fleet_folder import PARAMS, SMALL, fleet_folder, mixed
-from robots import CORPUS
+from paths import CORPUS
 
 from multibot_rewrite.fleets.artefacts import Artefacts, make_artefacts
 from multibot_rewrite.fleets.consistency import consistency, twice

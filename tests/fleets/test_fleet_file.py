@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 import yaml
 from fleet_folder import fleet_folder
+from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.by_schema import TYPES
@@ -24,9 +25,8 @@ from multibot_rewrite.fleets.fleet_file import (
 )
 from multibot_rewrite.model import InputError
 
-REPO = Path(__file__).parents[2]
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
-PAGE = (REPO / "docs" / "fleet-file.md").read_text()
+PAGE = (ROOT / "docs" / "fleet-file.md").read_text()
 
 
 def read(folder: Path, text: str, **files: str) -> FleetFile:
@@ -371,5 +371,5 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
     line = re.search(r"yaml-language-server: \$schema=(\S+)", PAGE)
     assert line is not None
     named = line[1].rpartition("/")[2]
-    assert (REPO / "multibot_rewrite" / "fleets" / named).exists()
+    assert (ROOT / "multibot_rewrite" / "fleets" / named).exists()
     assert yaml.safe_load(EXAMPLES[0])["robots"]

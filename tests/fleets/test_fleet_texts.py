@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
-from robots import CORPUS
+from paths import CORPUS
 
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES, SUPPORT
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
@@ -54,7 +54,7 @@ companions:
   params: [params.yaml]
 """
 LAYOUTS = ("L1", "L2", "L3", "L4")
-CHILD = Path(__file__).parents[1].joinpath("rcl_params_child.py")
+CHILD = SUPPORT / "rcl_params_child.py"
 
 
 def fleet(folder: Path, layout: str = "L2", text: str = FLEET, params: str = PARAMS) -> LoadedFleet:

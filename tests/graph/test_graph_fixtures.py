@@ -6,7 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
-from graph_cases import CASES, FLEET, FOLDERS, GRAPHS, ROOT, Case, healthy, read_plan
+from graph_cases import CASES, FLEET, FOLDERS, GRAPHS, Case, healthy, read_plan
+from paths import ROOT
 from pytest import CaptureFixture, MonkeyPatch
 
 from multibot_rewrite.cli.multibot import main

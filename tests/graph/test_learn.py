@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.learning.choosing import choose, left_out, strays

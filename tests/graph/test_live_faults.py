@@ -12,10 +12,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import live_commands
 import live_fleet
-import planned
 import pytest
 import tf2_build
+from paths import ROOT
 
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
@@ -29,7 +30,6 @@ from multibot_rewrite.steps.document import read_document
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )
-ROOT = Path(__file__).parents[2]
 GRAPHS = ROOT / "fixtures" / "graphs"
 ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
 LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}
@@ -177,12 +177,14 @@ class Outcome(NamedTuple):
 
 def check(at: int, scenario: Scenario, more: Mapping[str, str]) -> Outcome:
     """What the command finds while the scenario's processes run."""
-    domain = planned.domain(at)
+    domain = live_commands.domain(at)
     fleet = fleet_of(scenario.layout)
     scenario.fault(fleet)
     env = {**live_fleet.environ(domain), **more}
     with live_fleet.running(domain, *(list(nodes.values()) for nodes in fleet.values()), **more):
-        done = planned.multibot("check", plan_of(scenario.layout), *planned.PATIENTLY, env=env)
+        done = live_commands.multibot(
+            "check", plan_of(scenario.layout), *live_commands.PATIENTLY, env=env
+        )
     return Outcome(done.returncode, frozenset(_found(done.stdout)), done.stdout + done.stderr)
 
 

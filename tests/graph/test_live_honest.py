@@ -14,8 +14,16 @@ from typing import IO, Any
 
 import live_fleet
 import pytest
-from network import THIS, discovery_server
-from planned import COMMAND, PATIENTLY, assert_inconclusive, domain, multibot, node, write_plan
+from live_commands import (
+    COMMAND,
+    PATIENTLY,
+    assert_inconclusive,
+    domain,
+    multibot,
+    node,
+    write_plan,
+)
+from network_hosts import THIS, discovery_server
 
 from multibot_rewrite.graph.environment import setting_caveats, settings, view_caveats
 from multibot_rewrite.graph.snapshot import (

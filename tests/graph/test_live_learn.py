@@ -8,8 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import live_commands
 import live_fleet
-import planned
 import pytest
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
@@ -48,12 +48,12 @@ TF = {
 
 def domain(offset: int) -> int:
     """A domain of this test's own."""
-    return planned.domain(25 + offset)
+    return live_commands.domain(25 + offset)
 
 
 def multibot(offset: int, *words: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    return planned.multibot(*words, env=env)
+    return live_commands.multibot(*words, env=env)
 
 
 @pytest.fixture(scope="module")

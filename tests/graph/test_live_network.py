@@ -13,8 +13,9 @@ from typing import Any
 
 import live_fleet
 import pytest
-from network import Host, discovery_server, hosts
-from planned import PATIENTLY, assert_inconclusive, multibot, node, write_plan
+from live_commands import PATIENTLY, assert_inconclusive, multibot, node, write_plan
+from network_hosts import Host, discovery_server, hosts
+from paths import ROOT
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -131,7 +132,7 @@ def test_a_super_client_sees_forty_participants_and_a_plain_one_says_why_not(
 
 @pytest.mark.deep
 def test_the_profile_of_the_page_lifts_the_limit(tmp_path: Path) -> None:
-    page = Path(__file__).parents[2] / "docs" / "large-fleets.md"
+    page = ROOT / "docs" / "large-fleets.md"
     profile = tmp_path / "look.xml"
     profile.write_text(page.read_text().partition("```xml\n")[2].partition("```")[0])
     plan = write_plan(tmp_path / "plan.yaml", MANY)

@@ -12,10 +12,11 @@ from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 from pathlib import Path
 
+import live_commands
 import live_fleet
-import planned
 import pytest
 import tf2_build
+from paths import ROBOTS
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 
@@ -23,7 +24,6 @@ pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "rehearse"]
-ROBOTS = Path(__file__).parents[2] / "fixtures" / "robots"
 ROVER = str(ROBOTS / "rover.urdf")
 PAIR = (ROVER, "robot1", "robot2")
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -31,13 +31,13 @@ LAYOUTS = ("L1", "L2", "L3", "L4")
 
 def domain(offset: int) -> int:
     """A domain of this test's own."""
-    return planned.domain(80 + offset)
+    return live_commands.domain(80 + offset)
 
 
 def rehearse(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
     words = ("rehearse", *arguments, "--domain", domain(offset))
-    return planned.multibot(*words, env=env)
+    return live_commands.multibot(*words, env=env)
 
 
 @pytest.fixture(scope="module")

@@ -12,11 +12,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+import live_commands
 import live_fleet
-import planned
 import pytest
 import tf2_build
-from planned import domain
+from live_commands import domain
 
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -40,7 +40,7 @@ Build = dict[str, str]
 
 def multibot(offset: int, *arguments: str, **more: str) -> subprocess.CompletedProcess[str]:
     env = {**live_fleet.environ(domain(offset)), **more}
-    return planned.multibot("snapshot", *arguments, env=env)
+    return live_commands.multibot("snapshot", *arguments, env=env)
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import live_fleet
 import pytest
-from planned import COMMAND, domain, node, write_plan
+from live_commands import COMMAND, domain, node, write_plan
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError

@@ -16,11 +16,12 @@ from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
-import drawn
+import nav2_graphs
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import html
+from paths import ROOT
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.expectation import Expectation
@@ -49,7 +50,7 @@ from multibot_rewrite.remap.records import PUBLISHES
 LEAKY = ("/robot1/cmd_vel", "/cmd_vel", "collision_monitor")
 CROSSED = ("/robot2/scan", "/robot1/scan", "amcl")
 ABSENT = "/robot2/bt_navigator"
-DOCS = Path(__file__).parents[2] / "docs" / "report.md"
+DOCS = ROOT / "docs" / "report.md"
 # What a page is made of.
 TAGS = frozenset(
     re.findall(
@@ -92,16 +93,16 @@ def section(tree: html.HtmlElement, id_: str) -> html.HtmlElement:
 
 
 def swarm() -> Expectation:
-    return drawn.fleet(30, 4)
+    return nav2_graphs.fleet(30, 4)
 
 
 # ---------------------------------------------------------------- the scene
 
 
-@pytest.mark.parametrize("layout", drawn.LAYOUTS)
+@pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
 def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
-    plan = drawn.nav2(layout)
-    scene = drawn.scene(plan, drawn.healthy(plan))
+    plan = nav2_graphs.nav2(layout)
+    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan))
     assert scene.verdict == Verdict.PLANNED
     assert {edge.state for group in scene.groups for edge in group.edges} == {OK}
     assert set(node_states(scene).values()) == {OK}
@@ -112,11 +113,13 @@ def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
         assert own == set(robot.nodes)
 
 
-@pytest.mark.parametrize("layout", drawn.LAYOUTS)
+@pytest.mark.parametrize("layout", nav2_graphs.LAYOUTS)
 def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> None:
-    plan = drawn.nav2(layout)
+    plan = nav2_graphs.nav2(layout)
     own = next(w for w in plan.endpoints if "collision_monitor" in w.node and "scan" in w.asked)
-    scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), own.name, "/scan", own.node))
+    scene = nav2_graphs.scene(
+        plan, nav2_graphs.moved(nav2_graphs.healthy(plan), own.name, "/scan", own.node)
+    )
     assert states(scene, "robot1")["/scan"] == {LEAK}
     assert states(scene, "")["/scan"] == {LEAK}
     assert "/scan" not in states(scene, "robot2")
@@ -127,15 +130,15 @@ def test_a_leak_is_red_at_its_robot_and_among_what_is_shared(layout: str) -> Non
 
 
 def test_what_is_missing_in_place_of_a_leak_is_drawn() -> None:
-    plan = drawn.nav2()
-    scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), *LEAKY))
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *LEAKY))
     assert states(scene, "robot1")["/robot1/cmd_vel"] == {OK, MISSING}
     assert node_states(scene)["/robot1/collision_monitor"] == LEAK
 
 
 def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None:
-    plan = drawn.nav2()
-    scene = drawn.scene(plan, drawn.moved(drawn.healthy(plan), *CROSSED))
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *CROSSED))
     assert CROSS_TALK in states(scene, "robot1")["/robot1/scan"]
     assert states(scene, "robot2")["/robot1/scan"] == {CROSS_TALK}
     assert scene.reaches == (("robot2", "", "robot1", CROSS_TALK, ("subscribes /robot1/scan",)),)
@@ -145,8 +148,8 @@ def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None
 
 
 def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
-    plan = drawn.nav2()
-    scene = drawn.scene(plan, drawn.without_node(drawn.healthy(plan), ABSENT))
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT))
     assert node_states(scene)[ABSENT] == MISSING
     own = {e.name for e in plan.endpoints if e.node == ABSENT}
     missing = {e.name for e in group(scene, "robot2").edges if e.state == MISSING}
@@ -157,26 +160,30 @@ def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
 
 
 def test_a_silent_robot_is_drawn_as_missing_whole() -> None:
-    plan = drawn.fleet(2, 4)
-    graph = drawn.without_node(drawn.healthy(plan), "/robot1/driver")
-    scene = drawn.scene(plan, drawn.without_node(graph, "/robot1/planner"))
+    plan = nav2_graphs.fleet(2, 4)
+    graph = nav2_graphs.without_node(nav2_graphs.healthy(plan), "/robot1/driver")
+    scene = nav2_graphs.scene(plan, nav2_graphs.without_node(graph, "/robot1/planner"))
     assert {node.state for node in group(scene, "robot1").nodes} == {MISSING}
     assert {edge.state for edge in group(scene, "robot1").edges} == {MISSING}
 
 
 def test_what_a_plan_leaves_open_is_not_drawn_as_missing() -> None:
-    plan = drawn.nav2()
+    plan = nav2_graphs.nav2()
     first, *others = plan.robots
     loose = plan._replace(robots=(first._replace(optional=("/robot1/amcl",)), *others))
-    scene = drawn.scene(loose, drawn.without_node(drawn.healthy(plan), "/robot1/amcl"))
+    scene = nav2_graphs.scene(
+        loose, nav2_graphs.without_node(nav2_graphs.healthy(plan), "/robot1/amcl")
+    )
     assert "/robot1/amcl" not in node_states(scene)
     assert TROUBLE.isdisjoint(edge.state for edge in group(scene, "robot1").edges)
 
 
 def test_a_node_and_a_topic_that_nobody_planned() -> None:
-    plan = drawn.nav2()
-    graph = drawn.with_end(drawn.healthy(plan), "/robot1/gripper", "/robot1/grip")
-    scene = drawn.scene(plan, drawn.with_end(graph, "/robot1/amcl", "/robot1/debug", PUBLISHES))
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.with_end(nav2_graphs.healthy(plan), "/robot1/gripper", "/robot1/grip")
+    scene = nav2_graphs.scene(
+        plan, nav2_graphs.with_end(graph, "/robot1/amcl", "/robot1/debug", PUBLISHES)
+    )
     assert node_states(scene)["/robot1/gripper"] == UNEXPECTED
     assert states(scene, "robot1")["/robot1/grip"] == {UNEXPECTED}
     assert states(scene, "robot1")["/robot1/debug"] == {UNEXPECTED}
@@ -184,62 +191,64 @@ def test_a_node_and_a_topic_that_nobody_planned() -> None:
 
 
 def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not() -> None:
-    plan = drawn.nav2()
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.healthy(plan)
     for node in ("/rqt_gui", "/robot1/gripper"):
         log = graph.endpoints[-1]._replace(node=node)
         seen = (*graph.nodes, GraphNode(node, ""))
         graph = graph._replace(nodes=seen, endpoints=(*graph.endpoints, log))
-    scene = drawn.scene(plan, graph)
+    scene = nav2_graphs.scene(plan, graph)
     light = {n.name for one in scene.groups for n in plain(one).nodes}
     more = {n.name for one in scene.groups for n in rest(one).nodes}
     assert "/robot1/gripper" in light and "/rqt_gui" not in light and "/rqt_gui" in more
 
 
 def test_a_clash_of_types_marks_all_ends() -> None:
-    plan = drawn.nav2()
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.healthy(plan)
     end = next(e for e in graph.endpoints if e.name == "/robot1/odom" and e.role == PUBLISHES)
     other = end._replace(type="std_msgs/msg/String", node="/robot1/amcl")
-    scene = drawn.scene(plan, graph._replace(endpoints=(*graph.endpoints, other)))
+    scene = nav2_graphs.scene(plan, graph._replace(endpoints=(*graph.endpoints, other)))
     assert states(scene, "robot1")["/robot1/odom"] == {CLASH}
     (name,) = (n for n in group(scene, "robot1").names if n.name == "/robot1/odom")
     assert len(name.types) == 2
 
 
 def test_two_nodes_of_one_name_clash() -> None:
-    plan = drawn.nav2()
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.healthy(plan)
     twin = graph._replace(nodes=(*graph.nodes, GraphNode("/robot1/amcl", "other")))
-    assert node_states(drawn.scene(plan, twin))["/robot1/amcl"] == CLASH
+    assert node_states(nav2_graphs.scene(plan, twin))["/robot1/amcl"] == CLASH
 
 
 def test_a_node_started_without_its_namespace_is_a_leak() -> None:
-    plan = drawn.fleet(2, 2)
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.fleet(2, 2)
+    graph = nav2_graphs.healthy(plan)
     lost = graph._replace(
         nodes=tuple(n._replace(name=n.name.replace("/robot1/d", "/d")) for n in graph.nodes),
         endpoints=tuple(
             e._replace(node=e.node.replace("/robot1/d", "/d")) for e in graph.endpoints
         ),
     )
-    found = node_states(drawn.scene(plan, lost))
+    found = node_states(nav2_graphs.scene(plan, lost))
     assert (found["/driver"], found["/robot1/driver"]) == (LEAK, MISSING)
 
 
 def test_among_what_is_shared_a_robot_is_one_box() -> None:
-    plan = drawn.nav2()
-    shared = group(drawn.scene(plan, drawn.healthy(plan)), "")
+    plan = nav2_graphs.nav2()
+    shared = group(nav2_graphs.scene(plan, nav2_graphs.healthy(plan)), "")
     assert {node.name for node in shared.nodes} == {"robot1", "robot2"}
     assert all(node.whole for node in shared.nodes)
     assert {name.name for name in shared.names} >= {"/rosout", "/diagnostics", "/tf"}
 
 
 def test_in_an_incomplete_view_the_verdict_is_open() -> None:
-    plan = drawn.nav2()
-    graph = drawn.without_node(drawn.healthy(plan), ABSENT)
-    cut = drawn.environment(Caveat("participant-limit", True, "the view may be cut off at 32"))
-    scene = drawn.scene(plan, graph._replace(environment=cut))
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.without_node(nav2_graphs.healthy(plan), ABSENT)
+    cut = nav2_graphs.environment(
+        Caveat("participant-limit", True, "the view may be cut off at 32")
+    )
+    scene = nav2_graphs.scene(plan, graph._replace(environment=cut))
     assert scene.verdict == Verdict.INCONCLUSIVE
     assert {finding.level for finding in scene.findings} == {INCONCLUSIVE}
     header = pick(page(scene), "header")[0].text_content()
@@ -248,8 +257,8 @@ def test_in_an_incomplete_view_the_verdict_is_open() -> None:
 
 
 def test_the_light_picture_and_the_rest_are_the_whole() -> None:
-    plan = drawn.nav2()
-    for one in drawn.scene(plan, drawn.spoiled(plan)).groups:
+    plan = nav2_graphs.nav2()
+    for one in nav2_graphs.scene(plan, nav2_graphs.spoiled(plan)).groups:
         light, more = plain(one), rest(one)
         merged = {name for it in light.names for name in it.merged}
         shown = {n.name for n in light.names if not n.merged}
@@ -264,13 +273,13 @@ def test_the_light_picture_and_the_rest_are_the_whole() -> None:
 
 
 def scenes() -> Iterable[Scene]:
-    for layout in drawn.LAYOUTS:
-        plan = drawn.nav2(layout)
-        yield drawn.scene(plan, drawn.healthy(plan))
-    plan = drawn.nav2()
-    yield drawn.scene(plan, drawn.spoiled(plan))
-    yield drawn.scene(*drawn.nasty(plan))
-    yield drawn.scene(swarm(), drawn.healthy(swarm()))
+    for layout in nav2_graphs.LAYOUTS:
+        plan = nav2_graphs.nav2(layout)
+        yield nav2_graphs.scene(plan, nav2_graphs.healthy(plan))
+    plan = nav2_graphs.nav2()
+    yield nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
+    yield nav2_graphs.scene(*nav2_graphs.nasty(plan))
+    yield nav2_graphs.scene(swarm(), nav2_graphs.healthy(swarm()))
 
 
 def test_nothing_overlaps_and_everything_has_a_place() -> None:
@@ -294,15 +303,15 @@ def assert_apart(places: list[float], gap: float) -> None:
 
 
 def test_what_is_wrong_stands_on_top() -> None:
-    plan = drawn.nav2()
-    scene = drawn.scene(plan, drawn.spoiled(plan))
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     order = [name for name, _ in lay_out(plain(group(scene, "robot1"))).names]
     assert [name.name for name in order[:2]] == ["/cmd_vel", "/robot1/scan"]
 
 
 def test_the_order_leaves_fewer_crossings_than_the_alphabet() -> None:
-    plan = drawn.nav2()
-    one = plain(group(drawn.scene(plan, drawn.healthy(plan)), "robot1"))
+    plan = nav2_graphs.nav2()
+    one = plain(group(nav2_graphs.scene(plan, nav2_graphs.healthy(plan)), "robot1"))
     place = lay_out(one)
     rows = {(n.kind, n.name): y for n, y in place.names}
     left = {n.name: y for n, y in place.left}
@@ -323,8 +332,8 @@ def crossings(edges: list[tuple[float, float]]) -> int:
 
 
 def test_each_robots_tree_stands_by_itself_below_a_shared_root() -> None:
-    plan = drawn.nav2("L2")
-    trees = drawn.scene(plan, drawn.healthy(plan)).outlines
+    plan = nav2_graphs.nav2("L2")
+    trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).outlines
     assert [(tree.topic, tree.robot, tree.rows[0].frame) for tree in trees] == [
         ("/tf", "robot1", "map"),
         ("/tf", "robot2", "map"),
@@ -333,20 +342,20 @@ def test_each_robots_tree_stands_by_itself_below_a_shared_root() -> None:
 
 
 def test_a_tf_topic_a_robot_is_a_tree_a_robot() -> None:
-    plan = drawn.nav2("L1")
-    trees = drawn.scene(plan, drawn.healthy(plan)).outlines
+    plan = nav2_graphs.nav2("L1")
+    trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).outlines
     assert [tree.topic for tree in trees] == ["/robot1/tf", "/robot2/tf"]
     assert {row.robot for row in trees[0].rows} == {"robot1"}
     assert [row.static for row in trees[0].rows[:3]] == [False, False, True]
 
 
 def with_frames(plan: Expectation, *more: Frame) -> Scene:
-    graph = drawn.healthy(plan)
-    return drawn.scene(plan, graph._replace(frames=(*graph.frames, *more)))
+    graph = nav2_graphs.healthy(plan)
+    return nav2_graphs.scene(plan, graph._replace(frames=(*graph.frames, *more)))
 
 
 def test_a_frame_with_two_parents_is_red_where_it_hangs() -> None:
-    scene = with_frames(drawn.nav2(), Frame("imu_link/robot1", "map", "/tf", False, ()))
+    scene = with_frames(nav2_graphs.nav2(), Frame("imu_link/robot1", "map", "/tf", False, ()))
     (first, second) = (
         row for tree in scene.outlines for row in tree.rows if row.frame == "imu_link/robot1"
     )
@@ -357,24 +366,24 @@ def test_a_frame_with_two_parents_is_red_where_it_hangs() -> None:
 
 
 def test_bare_frames_are_red_on_one_robots_topic_only() -> None:
-    scene = with_frames(drawn.nav2("L1"), Frame("imu_link", "map", "/robot1/tf", False, ()))
+    scene = with_frames(nav2_graphs.nav2("L1"), Frame("imu_link", "map", "/robot1/tf", False, ()))
     red = {t.topic for t in scene.outlines for row in t.rows if row.state == CLASH}
     assert red == {"/robot1/tf"}
 
 
 def test_a_declared_frame_that_was_not_heard() -> None:
-    plan = drawn.nav2()
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.healthy(plan)
     last = plan.robots[1].frames[-1]
     silent = graph._replace(frames=tuple(f for f in graph.frames if f.child != last))
-    unheard = drawn.scene(plan, silent).outlines[-1]
+    unheard = nav2_graphs.scene(plan, silent).outlines[-1]
     assert (unheard.heard, unheard.robot) == (False, "robot2")
     assert [(row.frame, row.state) for row in unheard.rows] == [(last, MISSING)]
 
 
 def test_without_any_tf_no_frame_is_called_missing() -> None:
-    plan = drawn.nav2()
-    scene = drawn.scene(plan, drawn.healthy(plan)._replace(frames=()))
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)._replace(frames=()))
     assert scene.outlines == ()
     assert "No tf was heard" in section(page(scene), "tf").text_content()
 
@@ -382,7 +391,7 @@ def test_without_any_tf_no_frame_is_called_missing() -> None:
 def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
     ring = [Frame(f"r{(at + 1) % 3}", f"r{at}", "/tf", False, ()) for at in range(3)]
     chain = [Frame(f"c{at + 1}", f"c{at}", "/tf", False, ()) for at in range(3000)]
-    scene = with_frames(drawn.nav2(), *ring, *chain)
+    scene = with_frames(nav2_graphs.nav2(), *ring, *chain)
     rows = {row.frame: row for tree in scene.outlines for row in tree.rows}
     assert rows["c3000"].depth == 3000
     assert {"r0", "r1", "r2"} <= set(rows)
@@ -393,8 +402,8 @@ def test_a_ring_and_a_chain_deeper_than_pythons_stack_end() -> None:
 
 
 def test_the_page_is_one_file_that_asks_for_nothing() -> None:
-    plan = drawn.nav2()
-    text = to_html(drawn.scene(plan, drawn.spoiled(plan))).decode()
+    plan = nav2_graphs.nav2()
+    text = to_html(nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))).decode()
     tree = html.document_fromstring(text)
     for element in tree.iter():
         for name, value in element.attrib.items():
@@ -406,7 +415,7 @@ def test_the_page_is_one_file_that_asks_for_nothing() -> None:
 
 
 def test_the_policy_lets_in_the_pages_own_script_and_looks_alone() -> None:
-    tree = page(drawn.scene(swarm(), drawn.healthy(swarm())))
+    tree = page(nav2_graphs.scene(swarm(), nav2_graphs.healthy(swarm())))
     (policy,) = (it for it in tree.iter("meta") if it.get("http-equiv"))
     rules = dict(rule.split(None, 1) for rule in policy.get("content").split("; "))
     for rule in ("default-src", "base-uri", "form-action"):
@@ -433,8 +442,8 @@ def test_all_links_and_hooks_lead_somewhere() -> None:
 
 
 def test_every_finding_is_told_and_leads_to_what_it_is_about() -> None:
-    plan = drawn.nav2()
-    scene = drawn.scene(plan, drawn.spoiled(plan))
+    plan = nav2_graphs.nav2()
+    scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     tree = page(scene)
     rows = [row for row in tree.iter("tr") if row.get("data-level")]
     assert len(rows) == len(scene.findings) > 5
@@ -451,11 +460,13 @@ def test_every_finding_is_told_and_leads_to_what_it_is_about() -> None:
 
 
 def test_a_small_fleet_is_open_and_the_healthy_of_a_large_one_are_folded() -> None:
-    small = page(drawn.scene(drawn.fleet(2, 4), drawn.healthy(drawn.fleet(2, 4))))
+    small = page(
+        nav2_graphs.scene(nav2_graphs.fleet(2, 4), nav2_graphs.healthy(nav2_graphs.fleet(2, 4)))
+    )
     assert {one.get("open") for one in section(small, "graph").iter("details")} == {""}
     plan = swarm()
-    graph = drawn.moved(drawn.healthy(plan), "/robot7/topic1", "/topic1")
-    tree = page(drawn.scene(plan, graph))
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot7/topic1", "/topic1")
+    tree = page(nav2_graphs.scene(plan, graph))
     assert unfolded(tree) == ["g6", "shared"]
     (away,) = (it for it in tree.iter("b") if it.text == "29 more robots as planned")
     assert len(list(away.getparent().getparent().iter("details"))) == 30
@@ -468,12 +479,12 @@ def unfolded(tree: html.HtmlElement) -> list[str]:
 
 
 def test_a_hundred_robots_are_a_small_page_soon() -> None:
-    plan = drawn.fleet(100, 20)
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.fleet(100, 20)
+    graph = nav2_graphs.healthy(plan)
     for at in (3, 50, 99):
-        graph = drawn.moved(graph, f"/robot{at}/topic2", "/topic2")
+        graph = nav2_graphs.moved(graph, f"/robot{at}/topic2", "/topic2")
     start = time.perf_counter()
-    scene = drawn.scene(plan, graph)
+    scene = nav2_graphs.scene(plan, graph)
     data = to_html(scene)
     to_mermaid(scene)
     assert time.perf_counter() - start < 5
@@ -483,16 +494,16 @@ def test_a_hundred_robots_are_a_small_page_soon() -> None:
 
 def test_a_plan_without_robots_is_drawn() -> None:
     empty = Expectation("L2", (), (), (), (), ())
-    scene = drawn.scene(empty, Snapshot((), (), (), drawn.environment()))
+    scene = nav2_graphs.scene(empty, Snapshot((), (), (), nav2_graphs.environment()))
     assert pick(page(scene), "svg", "overview")
     assert to_mermaid(scene).startswith(b"flowchart LR\n")
 
 
 def test_the_environment_is_told() -> None:
-    plan = drawn.nav2()
-    around = drawn.environment(Caveat("range-word", False, "a word that is no range"))
+    plan = nav2_graphs.nav2()
+    around = nav2_graphs.environment(Caveat("range-word", False, "a word that is no range"))
     around = around._replace(static_peers=("10.0.0.1", "10.0.0.2"), discovery_server="h:11811")
-    scene = drawn.scene(plan, drawn.healthy(plan)._replace(environment=around))
+    scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)._replace(environment=around))
     text = section(page(scene), "environment").text_content()
     for word in ("SUBNET", "10.0.0.1 10.0.0.2", "rmw_fastrtps_cpp", "h:11811", "3.5 s", "no range"):
         assert word in text
@@ -506,9 +517,9 @@ def all_pictures(scene: Scene) -> bytes:
 
 
 def test_the_order_of_a_snapshot_does_not_show() -> None:
-    plan = drawn.nav2()
-    graph = drawn.spoiled(plan)
-    found = drawn.scene(plan, graph).findings
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.spoiled(plan)
+    found = nav2_graphs.scene(plan, graph).findings
     mixed = random.Random(7)
     shuffled = graph._replace(
         nodes=tuple(mixed.sample(graph.nodes, len(graph.nodes))),
@@ -521,9 +532,9 @@ def test_the_order_of_a_snapshot_does_not_show() -> None:
 
 
 def test_every_process_draws_the_same_bytes(tmp_path: Path) -> None:
-    plan = drawn.nav2()
+    plan = nav2_graphs.nav2()
     (tmp_path / "plan.yaml").write_text(to_yaml(plan))
-    (tmp_path / "graph.json").write_bytes(to_json(drawn.spoiled(plan)))
+    (tmp_path / "graph.json").write_bytes(to_json(nav2_graphs.spoiled(plan)))
     command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check", "plan.yaml"]
     command += ["--snapshot", "graph.json"]
     results = []
@@ -553,10 +564,10 @@ def assert_harmless(scene: Scene) -> None:
 
 
 def test_names_from_the_graph_do_not_break_out() -> None:
-    scene = drawn.scene(*drawn.nasty(drawn.nav2()))
+    scene = nav2_graphs.scene(*nav2_graphs.nasty(nav2_graphs.nav2()))
     assert_harmless(scene)
     text = page(scene).text_content()
-    for name in drawn.NASTY:
+    for name in nav2_graphs.NASTY:
         assert visible(name) in text
 
 
@@ -564,13 +575,13 @@ def test_names_from_the_graph_do_not_break_out() -> None:
 @given(st.lists(st.text(max_size=20), min_size=6, max_size=6))
 def test_any_text_may_be_a_name(words: list[str]) -> None:
     node, topic, child, parent, robot, type_ = words
-    plan = drawn.fleet(2, 1)
+    plan = nav2_graphs.fleet(2, 1)
     first = plan.robots[0]._replace(name=robot or "r")
-    graph = drawn.with_end(drawn.healthy(plan), f"/{node}", f"/{topic}")
+    graph = nav2_graphs.with_end(nav2_graphs.healthy(plan), f"/{node}", f"/{topic}")
     ends = tuple(e._replace(type=type_) if e.name == f"/{topic}" else e for e in graph.endpoints)
     frame = Frame(child, parent, f"/{topic}", True, (node,))
     odd = graph._replace(endpoints=ends, frames=(*graph.frames, frame))
-    assert_harmless(drawn.scene(plan._replace(robots=(first, *plan.robots[1:])), odd))
+    assert_harmless(nav2_graphs.scene(plan._replace(robots=(first, *plan.robots[1:])), odd))
 
 
 @given(st.text(max_size=60), st.integers(4, 40))
@@ -622,8 +633,10 @@ def assert_mermaid(text: str) -> None:
 
 
 def test_mermaid_has_a_subgraph_a_robot_and_the_leak_in_red() -> None:
-    plan = drawn.nav2()
-    text = to_mermaid(drawn.scene(plan, drawn.moved(drawn.healthy(plan), *LEAKY))).decode()
+    plan = nav2_graphs.nav2()
+    text = to_mermaid(
+        nav2_graphs.scene(plan, nav2_graphs.moved(nav2_graphs.healthy(plan), *LEAKY))
+    ).decode()
     assert_mermaid(text)
     titles = re.findall(r'subgraph g\d+\["(.*)"\]', text)
     assert titles == ["robot1", "robot2", "shared and others"]
@@ -645,24 +658,24 @@ def test_mermaid_has_a_subgraph_a_robot_and_the_leak_in_red() -> None:
     ],
 )
 def test_mermaid_shows_as_much_as_it_bears(robots: int, leaks: int, note: str) -> None:
-    plan = drawn.fleet(robots, 20)
-    graph = drawn.healthy(plan)
+    plan = nav2_graphs.fleet(robots, 20)
+    graph = nav2_graphs.healthy(plan)
     last = 2 if leaks < robots else 20
     leaked = {f"/robot{r}/topic{t}" for r in range(1, leaks + 1) for t in range(last)}
     ends = (
         e._replace(name=f"/{e.name.rpartition('/')[2]}") if e.name in leaked else e
         for e in graph.endpoints
     )
-    text = to_mermaid(drawn.scene(plan, graph._replace(endpoints=tuple(ends)))).decode()
+    text = to_mermaid(nav2_graphs.scene(plan, graph._replace(endpoints=tuple(ends)))).decode()
     assert_mermaid(text)
     assert text.splitlines()[1] == f"  %% {note}"
     assert ("leak" in re.findall(r":::([a-z]+)", text)) == (leaks > 0)
 
 
 def test_the_flowchart_on_the_docs_page_is_a_real_one() -> None:
-    plan = drawn.fleet(2, 2)
-    graph = drawn.moved(drawn.healthy(plan), "/robot1/topic1", "/topic1", "driver")
-    text = to_mermaid(drawn.scene(plan, graph)).decode()
+    plan = nav2_graphs.fleet(2, 2)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot1/topic1", "/topic1", "driver")
+    text = to_mermaid(nav2_graphs.scene(plan, graph)).decode()
     shown = re.findall(r"```mermaid\n(.*?)```", DOCS.read_text(), re.DOTALL)
     assert shown == [text.replace("topic0", "odom").replace("topic1", "cmd_vel")]
 
@@ -687,8 +700,8 @@ def assert_dot(text: str) -> None:
 
 
 def test_dot_has_a_cluster_a_robot_and_what_is_missing_dashed() -> None:
-    plan = drawn.nav2()
-    text = to_dot(drawn.scene(plan, drawn.spoiled(plan))).decode()
+    plan = nav2_graphs.nav2()
+    text = to_dot(nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))).decode()
     assert_dot(text)
     assert re.findall(r"^    label=(.*);$", text, re.MULTILINE) == [
         '"robot1"',
@@ -703,13 +716,13 @@ def test_dot_has_a_cluster_a_robot_and_what_is_missing_dashed() -> None:
 @pytest.mark.skipif(not shutil.which("dot"), reason="no Graphviz here: apt install graphviz")
 @pytest.mark.parametrize("case", ["healthy", "spoiled", "nasty", "swarm"])
 def test_graphviz_draws_it(case: str) -> None:
-    plan = drawn.nav2()
-    graph = drawn.spoiled(plan) if case == "spoiled" else drawn.healthy(plan)
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.spoiled(plan) if case == "spoiled" else nav2_graphs.healthy(plan)
     if case == "nasty":
-        plan, graph = drawn.nasty(plan)
+        plan, graph = nav2_graphs.nasty(plan)
     elif case == "swarm":
-        plan, graph = swarm(), drawn.healthy(swarm())
-    text = to_dot(drawn.scene(plan, graph))
+        plan, graph = swarm(), nav2_graphs.healthy(swarm())
+    text = to_dot(nav2_graphs.scene(plan, graph))
     done = subprocess.run(
         ["dot", "-Tsvg"], input=text, capture_output=True, timeout=60, check=False
     )
@@ -724,9 +737,9 @@ def test_graphviz_draws_it(case: str) -> None:
 @pytest.fixture
 def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a plan and a spoiled graph, which the command runs in."""
-    plan = drawn.nav2()
+    plan = nav2_graphs.nav2()
     (tmp_path / "plan.yaml").write_text(to_yaml(plan))
-    (tmp_path / "graph.json").write_bytes(to_json(drawn.spoiled(plan)))
+    (tmp_path / "graph.json").write_bytes(to_json(nav2_graphs.spoiled(plan)))
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -743,7 +756,7 @@ def test_the_command_writes_what_is_asked_for(
     assert sorted(path.name for path in files.iterdir()) == ["graph.json", "plan.yaml"]
     assert check("--report", "r.html", "--mermaid", "m.mmd", "--dot", "d.dot") == code == 1
     assert capsys.readouterr().out == printed
-    scene = drawn.scene(drawn.nav2(), drawn.spoiled(drawn.nav2()))
+    scene = nav2_graphs.scene(nav2_graphs.nav2(), nav2_graphs.spoiled(nav2_graphs.nav2()))
     assert (files / "r.html").read_bytes() == to_html(scene)
     assert (files / "m.mmd").read_bytes() == to_mermaid(scene)
     assert (files / "d.dot").read_bytes() == to_dot(scene)
@@ -775,7 +788,7 @@ def test_all_pictures_or_none(
 def test_a_snapshot_of_names_that_bite_goes_through_the_command(
     files: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    _, graph = drawn.nasty(drawn.nav2())
+    _, graph = nav2_graphs.nasty(nav2_graphs.nav2())
     text = to_json(graph).replace(b"\\ud800", b"?")
     (files / "graph.json").write_bytes(text)
     assert check("--report", "r.html", "--mermaid", "m.mmd", "--dot", "d.dot") in (1, 3)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from graph_cases import as_planned as planned_graph
 from graph_cases import environment, moved, without_node
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.cli import rehearse
 from multibot_rewrite.graph.expectation import expect
@@ -48,7 +46,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
-ROVER = Path(__file__).parents[2] / "fixtures" / "robots" / "rover.urdf"
+ROVER = ROBOTS / "rover.urdf"
 LASER = "sensor_msgs/msg/LaserScan"
 NODE = NodeFacts(
     "drive",

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import drawn
+import nav2_graphs
 import pytest
 
 from multibot_rewrite.graph.pictures.page import to_html
@@ -89,14 +89,14 @@ def fetched(driver: webdriver.Chrome) -> Iterator[str]:
 
 
 def spoiled() -> bytes:
-    plan = drawn.nav2()
-    return to_html(drawn.scene(plan, drawn.spoiled(plan)))
+    plan = nav2_graphs.nav2()
+    return to_html(nav2_graphs.scene(plan, nav2_graphs.spoiled(plan)))
 
 
 def swarm() -> bytes:
-    plan = drawn.fleet(30, 4)
-    graph = drawn.moved(drawn.healthy(plan), "/robot7/topic1", "/topic1")
-    return to_html(drawn.scene(plan, drawn.without_node(graph, "/robot9/driver")))
+    plan = nav2_graphs.fleet(30, 4)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot7/topic1", "/topic1")
+    return to_html(nav2_graphs.scene(plan, nav2_graphs.without_node(graph, "/robot9/driver")))
 
 
 def every(driver: webdriver.Chrome, css: str) -> list[Any]:
@@ -127,7 +127,9 @@ def test_what_is_wrong_is_told_first(show: Open) -> None:
     driver = show(spoiled())
     assert every(driver, "h1")[0].text.lower() == "not as planned"
     texts = [it.text for it in seen(driver, "#findings tbody tr")]
-    assert len(texts) == len(drawn.scene(drawn.nav2(), drawn.spoiled(drawn.nav2())).findings)
+    assert len(texts) == len(
+        nav2_graphs.scene(nav2_graphs.nav2(), nav2_graphs.spoiled(nav2_graphs.nav2())).findings
+    )
     assert any("/cmd_vel is not robot1's own" in text for text in texts)
     assert in_view(driver, every(driver, "#findings tbody tr")[0])
 
@@ -158,9 +160,9 @@ def test_a_click_on_a_finding_shows_what_it_is_about(
 
 
 def test_findings_are_filtered_by_level_and_robot(show: Open) -> None:
-    plan = drawn.nav2()
-    graph = drawn.with_end(drawn.spoiled(plan), "/robot2/gripper", "/robot2/grip")
-    scene = drawn.scene(plan, graph)
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.with_end(nav2_graphs.spoiled(plan), "/robot2/gripper", "/robot2/grip")
+    scene = nav2_graphs.scene(plan, graph)
     driver = show(to_html(scene))
     pairs = [(finding.level, finding.robot) for finding in scene.findings]
     level, robot = (Select(it) for it in every(driver, "#filters select"))
@@ -254,12 +256,12 @@ def test_what_is_open_is_printed_without_switches(show: Open) -> None:
 
 @pytest.mark.parametrize("case", ["healthy", "spoiled", "swarm", "nasty"])
 def test_nothing_hangs_over_the_edge(show: Open, case: str) -> None:
-    plan = drawn.nav2()
+    plan = nav2_graphs.nav2()
     pages = {
-        "healthy": lambda: to_html(drawn.scene(plan, drawn.healthy(plan))),
+        "healthy": lambda: to_html(nav2_graphs.scene(plan, nav2_graphs.healthy(plan))),
         "spoiled": spoiled,
         "swarm": swarm,
-        "nasty": lambda: to_html(drawn.scene(*drawn.nasty(plan))),
+        "nasty": lambda: to_html(nav2_graphs.scene(*nav2_graphs.nasty(plan))),
     }
     driver = show(pages[case]())
     every(driver, "label[for=more]")[0].click()
@@ -281,7 +283,7 @@ def test_nothing_hangs_over_the_edge(show: Open, case: str) -> None:
 
 
 def test_names_from_the_graph_run_nothing(show: Open) -> None:
-    driver = show(to_html(drawn.scene(*drawn.nasty(drawn.nav2()))))
+    driver = show(to_html(nav2_graphs.scene(*nav2_graphs.nasty(nav2_graphs.nav2()))))
     for it in every(driver, "#findings tbody tr")[:6]:
         it.click()
     script = "return [typeof window.pwned, document.images.length, document.scripts.length]"
@@ -291,9 +293,9 @@ def test_names_from_the_graph_run_nothing(show: Open) -> None:
 
 
 def test_a_hundred_robots_open_soon(show: Open) -> None:
-    plan = drawn.fleet(100, 20)
-    graph = drawn.moved(drawn.healthy(plan), "/robot50/topic2", "/topic2")
-    driver = show(to_html(drawn.scene(plan, graph)))
+    plan = nav2_graphs.fleet(100, 20)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot50/topic2", "/topic2")
+    driver = show(to_html(nav2_graphs.scene(plan, graph)))
     timing = "return performance.getEntriesByType('navigation')[0].domComplete"
     # Milliseconds; a busy machine has a share of it.
     assert 0 < driver.execute_script(timing) < 8000

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.environment import (
@@ -293,7 +294,7 @@ def test_expected_nodes_that_are_absent_are_named() -> None:
 
 
 def test_every_caveat_is_documented() -> None:
-    root = Path(__file__).parents[2]
+    root = ROOT
     source = "".join(file.read_text() for file in (root / "multibot_rewrite/graph").rglob("*.py"))
     page = (root / "docs/snapshot.md").read_text().partition("## Caveats")[2]
     assert set(re.findall(r'Caveat\(\s*"([\w-]+)"', source)) == set(

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import pytest
-from test_graph_check import environment, healthy, moved, plan, without_node
+from graph_cases import environment, moved, without_node
+from small_fleet import healthy, plan
 
 from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.graph.watching import Moment, There, Verdict, final, next_moment

@@ -23,15 +23,15 @@ from typing import Any
 import launch_stand_in
 import pytest
 import yaml
-from robots import FIXTURES, REPO
+from paths import FIXTURES, ROOT, SUPPORT
 
 from multibot_rewrite import InputError, UsageError, launch, load_fleet
 
 REAL = not launch.missing()
 NO_LAUNCH = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(not REAL, reason=NO_LAUNCH)
-CHILD = Path(__file__).parents[1].joinpath("launch_child.py")
-EXAMPLE = REPO / "examples" / "multibot_example"
+CHILD = SUPPORT / "launch_child.py"
+EXAMPLE = ROOT / "examples" / "multibot_example"
 FLEET = """\
 layout: frames-per-robot
 affix: prefix
@@ -429,7 +429,7 @@ def test_a_substitution_needs_a_word(frontend: Any) -> None:
         frontend.words([])
 
 
-PAGE = (REPO / "docs" / "launch.md").read_text()
+PAGE = (ROOT / "docs" / "launch.md").read_text()
 PYTHON = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 
 

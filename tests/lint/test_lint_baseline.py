@@ -8,16 +8,16 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import UsageError
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.baseline import FORMAT, Baseline, baseline_text, beyond, read_baseline
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 
 
 def finding(
     code: str = "MB501", file: str = "a.urdf", message: str = "m", line: int = 1
-) -> LintFinding:
-    return LintFinding(code, "error", message, "hint", file, line, 1)
+) -> Finding:
+    return Finding(code, "error", message, "hint", file, line, 1)
 
 
 @pytest.fixture(autouse=True)
@@ -25,9 +25,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def kept(
-    known: list[LintFinding], found: list[LintFinding], path: str = "b.json"
-) -> tuple[int, int]:
+def kept(known: list[Finding], found: list[Finding], path: str = "b.json") -> tuple[int, int]:
     """How many are new and how many gone after a way through the file."""
     Path(path).write_bytes(baseline_text(known, path))
     new, gone = beyond(found, read_baseline(path), path)
@@ -56,7 +54,7 @@ KEPT = [
 
 @pytest.mark.parametrize(("known", "found", "wanted"), KEPT)
 def test_only_what_is_on_top_is_new(
-    known: list[LintFinding], found: list[LintFinding], wanted: tuple[int, int]
+    known: list[Finding], found: list[Finding], wanted: tuple[int, int]
 ) -> None:
     assert kept(known, found) == wanted
 

@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.lint_usage import SWITCHES, VALUES
 from multibot_rewrite.cli.urdf_lint import main
-from multibot_rewrite.lint.formats import FORMATS
+from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import ERROR
 
@@ -27,7 +27,9 @@ BROKEN = '<robot name="r"><link name="a">'
 TWO_ROOTS = '<robot name="r">\n<link name="a"/>\n<link name="b"/></robot>'
 LEFT = '<robot name="r"><link name="${p}a"/></robot>'
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
-LINE = re.compile(r"(?P<file>.+):(?P<line>\d+):(?P<column>\d+): (?P<code>MB\d{3}) (note: )?\S.*")
+LINE = re.compile(
+    r"(?P<file>.+):(?P<line>\d+):(?P<column>\d+): (error|warning|note): (?P<code>MB\d{3}) \S.*"
+)
 
 
 @pytest.fixture
@@ -337,7 +339,7 @@ def test_a_terminal_has_colours_and_a_progress_bar() -> None:
     for at in range(40):
         Path(f"sub/{at}.urdf").write_text(HARMLESS)
     text = on_a_terminal(["."])
-    assert "\x1b[31mMB501\x1b[0m" in text
+    assert "\x1b[31merror: MB501\x1b[0m" in text
     assert "linting" in text and "\x1b[2K" in text
     # The bar is taken away before anything else is written.
     assert "linting" not in text[text.index("two_roots.urdf") :]

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import ROOT
 
 from multibot_rewrite import UsageError
+from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.configured import (
     Configured,
@@ -18,18 +20,11 @@ from multibot_rewrite.lint.configured import (
     with_options,
 )
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import (
-    ArgumentSet,
-    Settings,
-    is_on,
-    is_silent,
-    level_of,
-    matches,
-)
+from multibot_rewrite.lint.settings import ArgumentSet, Settings, is_silent, matches
 from multibot_rewrite.lint.values import READERS
 from multibot_rewrite.naming import make_naming
 
-PAGE = (Path(__file__).parents[2] / "docs" / "lint-config.md").read_text()
+PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 TWO_ROOTS = '<robot name="r"><link name="a"/><link name="b"/></robot>'
 SECTION = "[plugin mine]\nmy_frame uses link frame\n"
 

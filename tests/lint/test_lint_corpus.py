@@ -6,8 +6,7 @@ from collections import Counter
 from functools import cache
 
 import pytest
-from robots import CORPUS, FIXTURES, corpus_files, wheel_files
-from triage import (
+from lint_triage import (
     LEAST,
     Judged,
     committed,
@@ -17,14 +16,16 @@ from triage import (
     linted_wheels,
     page,
 )
+from paths import CORPUS, FIXTURES
+from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import ERROR
 
 UNFINISHED = {"MB001", "MB004"}
 JUDGED = [it for it in judgements() if RULES[it.code].level == ERROR]
-Found = dict[str, list[LintFinding]]
+Found = dict[str, list[Finding]]
 
 
 @cache

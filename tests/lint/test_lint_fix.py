@@ -6,13 +6,13 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from robots import spread
+from real_robots import spread
 
 from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 
@@ -50,7 +50,7 @@ def by_hand(path: str, data: bytes) -> bytes:
     return data
 
 
-def counted(found: list[LintFinding]) -> Counter[str]:
+def counted(found: list[Finding]) -> Counter[str]:
     return Counter(it.code for it in found)
 
 
@@ -100,8 +100,8 @@ def test_every_file_of_the_corpus(corpus: dict[str, Path]) -> None:
 def with_edits(monkeypatch: pytest.MonkeyPatch, *edits: Edit) -> None:
     """The lint proposes these edits, whatever it finds."""
 
-    def lint(path: str, data: bytes, _: Settings) -> list[LintFinding]:
-        return [LintFinding("MB142", "note", "m", "", path, 1, 1, edits=edits)]
+    def lint(path: str, data: bytes, _: Settings) -> list[Finding]:
+        return [Finding("MB142", "note", "m", "", path, 1, 1, edits=edits)]
 
     monkeypatch.setattr(fixing, "lint_data", lint)
 
@@ -160,7 +160,7 @@ def test_fix_writes_and_tells_what_is_left(
     out, err = capsys.readouterr()
     assert file.read_bytes().count(b"xmlns") == 0
     assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, MENDED)
-    assert [line.split()[1] for line in out.splitlines() if "note:" not in line] == ["MB501"]
+    assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
     assert f"mended {file}" in err and "other.urdf" not in err
 
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tarfile
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import unquote_to_bytes
@@ -20,10 +21,11 @@ from markdown_it import MarkdownIt
 from pydantic import BaseModel
 from sarif_pydantic import Sarif
 
+from multibot_rewrite.findings import formats
+from multibot_rewrite.findings.finding import LEVELS, NOTE, Finding
+from multibot_rewrite.findings.formats import FORMATS, Report, text
+from multibot_rewrite.findings.formats.markdown import ROOM
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.formats import FORMATS, rendered, text
-from multibot_rewrite.lint.formats.markdown import ROOM
-from multibot_rewrite.lint.records import LEVELS, NOTE, LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
@@ -59,10 +61,18 @@ ARM = f"""<robot name="r" {XACRO}>
 SETTINGS = Settings(select=("MB101", "MB501"), levels={"MB101": WARNING})
 
 
+def rendered(
+    name: str, findings: Sequence[Finding], files: Sequence[str], *, colour: bool = False
+) -> str:
+    """The report of urdf-lint."""
+    report = Report("urdf-lint", files, RULES)
+    return formats.rendered(name, findings, report, colour=colour)
+
+
 class Linted(NamedTuple):
     """Findings and the files they are of."""
 
-    findings: list[LintFinding]
+    findings: list[Finding]
     files: list[str]
 
 
@@ -134,10 +144,10 @@ def test_a_report_is_utf8_and_the_same_each_time(name: str, linted: Linted) -> N
 def test_only_the_module_of_a_format_is_loaded() -> None:
     code = """if True:
         import sys
-        from multibot_rewrite.lint.formats import FORMATS, rendered
+        from multibot_rewrite.findings.formats import FORMATS, Report, rendered
         for name in FORMATS:
-            rendered(name, [], [])
-            loaded = {it for it in sys.modules if ".lint.formats." in it}
+            rendered(name, [], Report("lint", [], {}))
+            loaded = {it for it in sys.modules if ".findings.formats." in it}
             print(name, *(it.rpartition(".")[2] for it in loaded))
             for it in loaded: del sys.modules[it]
     """
@@ -154,12 +164,12 @@ def test_only_the_module_of_a_format_is_loaded() -> None:
 
 
 def test_text_is_a_line_a_finding() -> None:
-    first = LintFinding("MB501", ERROR, "'é' is lost", "", "a b.urdf", 4, 3)
+    first = Finding("MB501", ERROR, "'é' is lost", "", "a b.urdf", 4, 3)
     calls = ("p/r.urdf.xacro:5: wheel", "p/r.urdf.xacro:8: axle")
     more = first._replace(hint="join it", calls=calls, arguments="sim:=gz n:=2", level=WARNING)
     assert rendered("text", [first, more], []).splitlines() == [
-        "a b.urdf:4:3: MB501 'é' is lost",
-        "a b.urdf:4:3: MB501 'é' is lost (join it) [with sim:=gz n:=2]",
+        "a b.urdf:4:3: error: MB501 'é' is lost",
+        "a b.urdf:4:3: warning: MB501 'é' is lost (join it) [with sim:=gz n:=2]",
         "    via p/r.urdf.xacro:5: wheel",
         "    via p/r.urdf.xacro:8: axle",
     ]
@@ -169,7 +179,9 @@ def test_text_is_what_was_found(nasty: Linted) -> None:
     lines = iter(rendered("text", *nasty).splitlines())
     for it in nasty.findings:
         line = next(lines)
-        assert line.startswith(f"{text.one_line(it.file)}:{it.line}:{it.column}: {it.code} ")
+        assert line.startswith(
+            f"{text.one_line(it.file)}:{it.line}:{it.column}: {it.level}: {it.code} "
+        )
         assert it.message in line
         for call in it.calls:
             assert next(lines) == f"    via {call}"
@@ -225,10 +237,15 @@ JSON_FINDING = object_of(
     column=PLACE,
     calls=list_of(object_of(file=STRING, line=PLACE, macro=STRING)),
     arguments=STRING,
+    robot=STRING,
+    node=STRING,
+    names=list_of(STRING),
+    others=list_of(STRING),
     edits=list_of(object_of(start=NUMBER, end=NUMBER, text=STRING)),
 )
 JSON = object_of(
-    version={"const": 1},
+    version={"const": 2},
+    tool=STRING,
     files=NUMBER,
     counts=object_of(**dict.fromkeys(LEVELS, NUMBER)),
     findings=list_of(JSON_FINDING),
@@ -262,7 +279,7 @@ def test_json_tells_of_macros_and_edits(nasty: Linted) -> None:
 
 def test_a_call_is_read_from_its_end() -> None:
     calls = ("a:3: b.xacro:5: wheel",)
-    finding = LintFinding("MB501", ERROR, "m", "", "a", 1, 1, calls)
+    finding = Finding("MB501", ERROR, "m", "", "a", 1, 1, calls)
     (call,) = report("json", Linted([finding], []))["findings"][0]["calls"]
     assert call == {"file": "a:3: b.xacro", "line": 5, "macro": "wheel"}
 
@@ -418,7 +435,7 @@ def test_a_sarif_fix_of_a_file_that_changed_is_left_out(
 ) -> None:
     if content:
         Path("a.urdf").write_bytes(content)
-    finding = LintFinding("MB501", ERROR, "m", "", "a.urdf", 1, 1, edits=(edit,))
+    finding = Finding("MB501", ERROR, "m", "", "a.urdf", 1, 1, edits=(edit,))
     assert "fixes" not in report("sarif", Linted([finding], []))["runs"][0]["results"][0]
 
 
@@ -428,7 +445,7 @@ def test_a_sarif_fix_of_a_file_that_changed_is_left_out(
 @pytest.mark.parametrize("spelled", ["a/b.urdf", "./a/b.urdf", "a/../a/b.urdf", "{here}/a/b.urdf"])
 def test_services_get_paths_relative_to_where_the_lint_runs(spelled: str, here: Path) -> None:
     path = spelled.format(here=here)
-    linted = Linted([LintFinding("MB501", ERROR, "m", "", path, 1, 1)], [path])
+    linted = Linted([Finding("MB501", ERROR, "m", "", path, 1, 1)], [path])
     result = report("sarif", linted)["runs"][0]["results"][0]
     location = result["locations"][0]["physicalLocation"]["artifactLocation"]
     assert location == {"uri": "a/b.urdf", "uriBaseId": "%SRCROOT%"}
@@ -441,7 +458,7 @@ def test_services_get_paths_relative_to_where_the_lint_runs(spelled: str, here: 
 
 
 def test_a_path_elsewhere_is_absolute_in_sarif(here: Path) -> None:
-    linted = Linted([LintFinding("MB501", ERROR, "m", "", "../é a.urdf", 1, 1)], [])
+    linted = Linted([Finding("MB501", ERROR, "m", "", "../é a.urdf", 1, 1)], [])
     result = report("sarif", linted)["runs"][0]["results"][0]
     location = result["locations"][0]["physicalLocation"]["artifactLocation"]
     assert location == {"uri": f"file://{here.parent}/%C3%A9%20a.urdf"}
@@ -473,7 +490,7 @@ def test_a_fingerprint_survives_a_moved_line_and_another_path_to_it(here: Path) 
 
 @pytest.mark.parametrize("change", [{"code": "MB502"}, {"file": "b"}, {"message": "n"}])
 def test_a_fingerprint_is_of_code_file_and_message(change: dict[str, str], here: Path) -> None:
-    finding = LintFinding("MB501", ERROR, "m", "", "a", 1, 1)
+    finding = Finding("MB501", ERROR, "m", "", "a", 1, 1)
     other = finding._replace(**change)  # type: ignore[arg-type]
     assert prints(Linted([finding], [])) != prints(Linted([other], []))
 
@@ -515,7 +532,7 @@ def test_github_reads_back_every_finding(linted: Linted) -> None:
 
 
 def test_github_escapes_are_as_documented() -> None:
-    finding = LintFinding("MB501", ERROR, "50%: a,b", "", "a%,:.urdf", 1, 1)
+    finding = Finding("MB501", ERROR, "50%: a,b", "", "a%,:.urdf", 1, 1)
     assert rendered("github", [finding], []) == (
         "::error file=a%25%2C%3A.urdf,line=1,col=1,title=MB501 several-roots::50%25: a,b\n"
     )
@@ -580,7 +597,7 @@ def test_junit_cases_hold_the_whole_text(nasty: Linted) -> None:
 
 @pytest.mark.parametrize("code", [*range(0x20), 0x7F, 0x85, 0xFFFE, 0xFFFF, 0xD800, 0xDFFF])
 def test_junit_holds_characters_that_xml_does_not(code: int) -> None:
-    finding = LintFinding("MB501", ERROR, f"a{chr(code)}b", "", f"{chr(code)}.urdf", 1, 1)
+    finding = Finding("MB501", ERROR, f"a{chr(code)}b", "", f"{chr(code)}.urdf", 1, 1)
     (case,) = etree.fromstring(rendered("junit", [finding], []).encode()).iter("failure")
     assert case.get("message") == "a" + chr(code).encode("unicode_escape").decode() + "b"
 
@@ -642,7 +659,7 @@ def test_markdown_of_many_findings_fits_into_a_comment(thousand: Linted) -> None
 )
 def test_markdown_begins_with_the_counts(levels: str, files: int, line: str) -> None:
     names = {"E": ERROR, "W": WARNING, "N": NOTE}
-    found = [LintFinding("MB501", names[it], "m", "", "a", 1, 1) for it in levels]
+    found = [Finding("MB501", names[it], "m", "", "a", 1, 1) for it in levels]
     assert rendered("markdown", found, ["a"] * files).startswith(f"**urdf-lint**: {line}\n")
 
 
@@ -651,5 +668,5 @@ def test_markdown_begins_with_the_counts(levels: str, files: int, line: str) -> 
 
 @pytest.mark.parametrize("name", FORMATS)
 def test_a_finding_of_an_unknown_rule_is_told_all_the_same(name: str, here: Path) -> None:
-    finding = LintFinding("MB999", ERROR, "odd", "", "a.urdf", 1, 1)
+    finding = Finding("MB999", ERROR, "odd", "", "a.urdf", 1, 1)
     assert "odd" in rendered(name, [finding], ["a.urdf"])

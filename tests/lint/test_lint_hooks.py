@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 from junitparser import JUnitXml
+from paths import ROOT
 
 from multibot_rewrite.cli.lint_usage import check_use, parser
 from multibot_rewrite.cli.urdf_lint import main
 
-ROOT = Path(__file__).parents[2]
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 PAGE = (ROOT / "docs" / "lint-ci.md").read_text()
 HOME = "https://github.com/OWNER/multibot_rewrite"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.rules.physics import _eigenvalues
 from multibot_rewrite.lint.settings import Settings
@@ -49,13 +49,13 @@ def robot(*parts: str, name: str = "a") -> str:
     return text
 
 
-def found(body: str, folder: Path, settings: Settings = GROUP) -> list[LintFinding]:
+def found(body: str, folder: Path, settings: Settings = GROUP) -> list[Finding]:
     file = folder / "robot.urdf"
     file.write_text(f'<robot name="r">{body}</robot>')
     return lint_file(str(file), settings)
 
 
-def told(findings: list[LintFinding]) -> str:
+def told(findings: list[Finding]) -> str:
     return " ".join(sorted(f"{it.code}:{it.line}" for it in findings))
 
 

@@ -7,10 +7,10 @@ as well, and nothing else.
 from __future__ import annotations
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
+from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.records import NOTE
 from multibot_rewrite.lint.settings import Settings
 
 PLANTED = FIXTURES / "lint" / "planted"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.settings import Settings
 
 LINKS = '<link name="base_link"/><link name="arm_link"/><link name="tip"/>'
@@ -30,7 +30,7 @@ P3D = "<ros/><body_name>tip</body_name><frame_name>{}</frame_name>"
 DRIVE = PLUGIN.format("gazebo_ros_diff_drive", "<ros/><left_joint>{}</left_joint>")
 
 
-def lint(folder: Path, body: str, codes: tuple[str, ...] = ("MB2",)) -> list[LintFinding]:
+def lint(folder: Path, body: str, codes: tuple[str, ...] = ("MB2",)) -> list[Finding]:
     file = folder / "in.urdf"
     file.write_text(body if body.startswith("<robot") else f'<robot name="r">{body}</robot>')
     return lint_file(str(file), Settings(select=codes))

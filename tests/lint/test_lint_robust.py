@@ -13,15 +13,17 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from robots import FIXTURES, spread
-from test_fuzz import SAMPLE, fixtures, mutant, read_all
+from mutants import SAMPLE, fixtures, mutant, read_all
+from paths import FIXTURES
+from real_robots import spread
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.cli.walk import find_files
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.lint import run
 from multibot_rewrite.lint.check import lint_data, lint_file
-from multibot_rewrite.lint.formats import FORMATS, rendered
-from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import FEW, lint_files
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.naming import make_naming
@@ -139,7 +141,7 @@ def bad(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return home
 
 
-def codes(found: list[LintFinding]) -> dict[str, set[str]]:
+def codes(found: list[Finding]) -> dict[str, set[str]]:
     """The codes of each file, by the path below its folder."""
     result: dict[str, set[str]] = {}
     for it in found:
@@ -148,7 +150,7 @@ def codes(found: list[LintFinding]) -> dict[str, set[str]]:
 
 
 @pytest.fixture(scope="module")
-def found(bad: Path) -> tuple[list[LintFinding], float]:
+def found(bad: Path) -> tuple[list[Finding], float]:
     paths = find_files([str(bad)], (".urdf", ".xacro"))
     assert not any("pipe" in path for path in paths)
     endless = [path for path in paths if "MB004" in BAD.get(Path(path).name, (b"", set()))[1]]
@@ -159,19 +161,19 @@ def found(bad: Path) -> tuple[list[LintFinding], float]:
     return found, time.monotonic() - start
 
 
-def test_endless_files_end_in_time(found: tuple[list[LintFinding], float]) -> None:
+def test_endless_files_end_in_time(found: tuple[list[Finding], float]) -> None:
     assert found[1] < 3 * BOUND
 
 
 @pytest.mark.parametrize("name", BAD)
-def test_a_bad_file_is_told(found: tuple[list[LintFinding], float], name: str) -> None:
+def test_a_bad_file_is_told(found: tuple[list[Finding], float], name: str) -> None:
     told = codes(found[0]).get(name, set())
     assert told >= BAD[name][1]
     assert told & UNFINISHED <= BAD[name][1]
 
 
 def test_what_is_no_file_is_told_and_the_others_are_linted(
-    found: tuple[list[LintFinding], float],
+    found: tuple[list[Finding], float],
 ) -> None:
     told = codes(found[0])
     assert [told[name] for name in LINKS] == [{"MB102"}] * len(LINKS)
@@ -180,9 +182,9 @@ def test_what_is_no_file_is_told_and_the_others_are_linted(
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_every_format_tells_all_of_it(
-    found: tuple[list[LintFinding], float], form: str, bad: Path
+    found: tuple[list[Finding], float], form: str, bad: Path
 ) -> None:
-    text = rendered(form, found[0], [str(bad / name) for name in BAD], colour=False)
+    text = rendered(form, found[0], Report("urdf-lint", [str(bad / name) for name in BAD], RULES))
     text.encode()
     assert "Traceback" not in text
 
@@ -243,7 +245,7 @@ def test_a_file_that_changes_while_it_is_read(tmp_path: Path) -> None:
 def fallen(how: Callable[[], object], monkeypatch: pytest.MonkeyPatch) -> None:
     """Linting a file called fallen.* ends like this."""
 
-    def lint(path: str, settings: Settings) -> list[LintFinding]:
+    def lint(path: str, settings: Settings) -> list[Finding]:
         if "fallen" in path:
             how()
         return lint_file(path, settings)
@@ -438,7 +440,7 @@ def test_many_mutants(corpus: dict[str, Path], part: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def by_jobs() -> list[list[LintFinding]]:
+def by_jobs() -> list[list[Finding]]:
     homes = [str(FIXTURES / "robots"), str(FIXTURES / "lint")]
     paths = find_files(homes, (".urdf", ".xacro", ".srdf"))
     settings = Settings(arguments=(ArgumentSet("*", (("sim", "gz"),)),))
@@ -446,8 +448,9 @@ def by_jobs() -> list[list[LintFinding]]:
 
 
 @pytest.mark.parametrize("form", FORMATS)
-def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[LintFinding]]) -> None:
-    results = [rendered(form, found, ["a.urdf"], colour=False).encode() for found in by_jobs]
+def test_the_number_of_workers_changes_no_byte(form: str, by_jobs: list[list[Finding]]) -> None:
+    report = Report("urdf-lint", ["a.urdf"], RULES)
+    results = [rendered(form, found, report).encode() for found in by_jobs]
     assert results[0].count(b"MB") > 20
     assert results[0] == results[1] == results[2]
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.numbers import number, vector
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.robot import loops, read_robot
 from multibot_rewrite.lint.settings import Settings
@@ -41,7 +41,7 @@ def reach(lower: str, upper: str) -> str:
     return f'lower="{lower}" upper="{upper}" effort="1" velocity="1"'
 
 
-def found(body: str, folder: Path) -> list[LintFinding]:
+def found(body: str, folder: Path) -> list[Finding]:
     file = folder / "robot.urdf"
     file.write_text(f'<robot name="r">{body}</robot>')
     return lint_file(str(file), GROUP)

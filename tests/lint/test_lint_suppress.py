@@ -8,16 +8,20 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from paths import ROOT
 
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.directives import ALWAYS_TOLD, read_directives
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.records import LintFinding, Problem, Rule, Subject
+from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import ArgumentSet, Settings, is_on
+from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.suppress import unsuppressed
 
-PAGE = (Path(__file__).parents[2] / "docs" / "lint-config.md").read_text()
+PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
 QUIET = ("MB502", "MB503", "MB504")
 ON = ("MB501", *QUIET, "MB0")
@@ -45,13 +49,13 @@ def simple_rule(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(RULES, code, RULES[code]._replace(check=lambda _: (), options={}))
 
 
-def linted(folder: Path, text: str, name: str = "a.urdf", **options: Any) -> list[LintFinding]:
+def linted(folder: Path, text: str, name: str = "a.urdf", **options: Any) -> list[Finding]:
     path = folder / name
     path.write_bytes(text.encode())
     return lint_file(str(path), Settings(**{"select": ON, **options}))
 
 
-def told(found: list[LintFinding]) -> list[str]:
+def told(found: list[Finding]) -> list[str]:
     return [f"{it.code}:{it.line}" for it in found]
 
 
@@ -116,7 +120,7 @@ def test_children_and_the_end_tag_are_reached(tmp_path: Path) -> None:
     assert it.element is not None
     assert text[slice(*it.element)].startswith("<link")
     assert text[slice(*it.element)].endswith("</a></link>")
-    finding = LintFinding("MB501", "error", "m", "", "f", 6, 5)
+    finding = Finding("MB501", "error", "m", "", "f", 6, 5)
     for line, column, left in ((6, 4, 0), (6, 5, 0), (6, 10, 0), (6, 12, 1), (7, 1, 1)):
         there = finding._replace(line=line, column=column)
         settings = Settings(select=("MB501",))
@@ -279,7 +283,7 @@ def test_a_file_that_was_not_looked_at_to_its_end_is_not_judged() -> None:
     settings = Settings(select=ON)
     assert [it.code for it in unsuppressed([], source, settings)] == ["MB002"]
     for code in ("MB001", "MB004", "MB101", "MB102", "MB103"):
-        finding = LintFinding(code, "error", "m", "", "f", 2, 1)
+        finding = Finding(code, "error", "m", "", "f", 2, 1)
         assert unsuppressed([finding], source, settings) == [finding]
 
 
@@ -393,7 +397,7 @@ def test_files_without_the_word_are_not_read_for_it(monkeypatch: pytest.MonkeyPa
         raise AssertionError
 
     monkeypatch.setattr("multibot_rewrite.lint.suppress.read_directives", never)
-    finding = LintFinding("MB501", "error", "m", "", "f", 1, 1)
+    finding = Finding("MB501", "error", "m", "", "f", 1, 1)
     assert unsuppressed([finding], {"f": b"<robot/>"}, Settings()) == [finding]
 
 
@@ -411,7 +415,7 @@ def test_files_without_the_word_are_not_read_for_it(monkeypatch: pytest.MonkeyPa
     ],
 )
 def test_text_that_is_no_xml_ends_in_no_traceback(text: bytes) -> None:
-    unsuppressed([LintFinding("MB501", "error", "m", "", "f", 1, 1)], {"f": text}, Settings())
+    unsuppressed([Finding("MB501", "error", "m", "", "f", 1, 1)], {"f": text}, Settings())
 
 
 def test_hundreds_of_comments_take_no_time(tmp_path: Path) -> None:

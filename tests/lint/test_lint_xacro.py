@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.cli.urdf_lint import main
-from multibot_rewrite.lint.records import LintFinding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.lint.settings import ArgumentSet, Settings
 
@@ -30,7 +30,7 @@ def write(folder: Path, files: Mapping[str, str | bytes]) -> None:
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
-def linted(folder: Path, *paths: str, **settings: object) -> list[LintFinding]:
+def linted(folder: Path, *paths: str, **settings: object) -> list[Finding]:
     """All findings that fail, of files named relative to the folder, linted from there."""
     before = Path.cwd()
     os.chdir(folder)
@@ -41,13 +41,11 @@ def linted(folder: Path, *paths: str, **settings: object) -> list[LintFinding]:
         os.chdir(before)
 
 
-def places(found: list[LintFinding]) -> list[tuple[str, str, int, int]]:
+def places(found: list[Finding]) -> list[tuple[str, str, int, int]]:
     return [(it.code, it.file, it.line, it.column) for it in found]
 
 
-def one(
-    folder: Path, files: Mapping[str, str | bytes], *paths: str, **options: object
-) -> LintFinding:
+def one(folder: Path, files: Mapping[str, str | bytes], *paths: str, **options: object) -> Finding:
     write(folder, files)
     (found,) = linted(folder, *(paths or files), **options)
     return found

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from paths import ROOT
 
 from multibot_rewrite.rewriters import vocabulary
 from multibot_rewrite.rewriters.vocabulary import FORMS, KINDS, TYPES
 from multibot_rewrite.rewriters.vocabulary.grammar import OPTIONS, ROLES, SETTINGS
 
-ROOT = Path(__file__).parents[2]
 GUIDE = (ROOT / "docs" / "add-a-plugin.md").read_text()
 # What stands before a block, the language of the block, its text.
 _BLOCK = re.compile(r"([^\n]*)\n\n```(\w*)\n(.*?)```\n", re.DOTALL)

@@ -4,43 +4,18 @@ behind. Run as a process, because that is where a traceback would show."""
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from test_cli import ROBOTS, TEN, Result, contents, run, run_on_terminal, temporaries
+from paths import ROBOTS
+from postfix_command import TEN, contents, run, run_on_terminal
+from refusals import STOPPED, UNUSABLE, check_refusal, robot, xacro
 
-STOPPED, UNUSABLE = 1, 2
-XACRO = "http://www.ros.org/wiki/xacro"
 DEEP = 5_000
 BIG = 50 * 2**20
 ROVER = (ROBOTS / "rover.urdf").read_text()
 LAUGHS = "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 10))
-# What a line must not hold, whatever went wrong: this is for developers.
-NOISE = ("Traceback", "Errno", "<class", "0x", "XML_PARSE_HUGE")
-
-
-def robot(body: str, attributes: str = "") -> str:
-    """A robot of four lines; ``body`` is the third."""
-    return f'<?xml version="1.0"?>\n<robot name="bot"{attributes}>\n{body}\n</robot>\n'
-
-
-def xacro(body: str) -> str:
-    """The same for xacro."""
-    return robot(body, f' xmlns:xacro="{XACRO}"')
-
-
-def check_refusal(folder: Path, result: Result, code: int, words: Sequence[str]) -> None:
-    """One line that holds every word; nothing on standard output, nothing in the folder."""
-    assert result.err.count("\n") == 1, result.err
-    for word in words:
-        assert word in result.err
-    for word in NOISE:
-        assert word not in result.err
-    assert result.code == code
-    assert result.out == b""
-    assert not (folder / "out.urdf").exists()
-    assert temporaries(folder) == []
 
 
 # ---------------------------------------------------------------- not readable as XML: exit code 2

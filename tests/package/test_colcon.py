@@ -14,7 +14,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import pytest
-from robots import REPO
+from paths import ROOT
 
 try:
     import tomllib
@@ -25,7 +25,7 @@ COLCON = ("colcon-core", "colcon-ros", "colcon-python-setup-py", "colcon-recursi
 # What a build takes; the rest of the repository is large, and no business of it.
 SOURCES = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml", "resource", "multibot_rewrite")
 NAMES = ("multibot_rewrite", "multibot_example")
-TOML = tomllib.loads((REPO / "pyproject.toml").read_text())
+TOML = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PROGRAMS = sorted(TOML["project"]["scripts"])
 SECONDS = 300
 
@@ -60,12 +60,12 @@ def copied(folder: Path) -> Path:
     ours.mkdir(parents=True)
     no_caches = shutil.ignore_patterns("__pycache__", "*.egg-info")
     for name in SOURCES:
-        source = REPO / name
+        source = ROOT / name
         if source.is_dir():
             shutil.copytree(source, ours / name, ignore=no_caches)
         else:
             shutil.copy(source, ours / name)
-    example = REPO / "examples" / "multibot_example"
+    example = ROOT / "examples" / "multibot_example"
     shutil.copytree(example, ours / "examples" / example.name, ignore=no_caches)
     return ours
 
@@ -157,14 +157,14 @@ def test_data_files_are_there(workspace: Path) -> None:
 
 def test_the_example_is_installed_whole(workspace: Path) -> None:
     share = workspace / "install" / "multibot_example" / "share" / "multibot_example"
-    example = REPO / "examples" / "multibot_example"
+    example = ROOT / "examples" / "multibot_example"
     for folder in ("config", "launch", "urdf"):
         for path in (example / folder).iterdir():
             assert (share / folder / path.name).read_bytes() == path.read_bytes()
 
 
 def test_versions_and_descriptions_agree() -> None:
-    manifest = ET.parse(REPO / "package.xml")
+    manifest = ET.parse(ROOT / "package.xml")
     for tag, key in (("name", "name"), ("version", "version"), ("description", "description")):
         assert manifest.findtext(tag) == TOML["project"][key]
     assert manifest.findtext("license") == TOML["project"]["license"]
@@ -173,7 +173,7 @@ def test_versions_and_descriptions_agree() -> None:
 def test_pip_goes_by_pyproject_alone(tmp_path: Path) -> None:
     source, target = copied(tmp_path), tmp_path / "target"
     for name in ("README.md", "LICENSE"):
-        shutil.copy(REPO / name, source)
+        shutil.copy(ROOT / name, source)
     offline = ["--no-deps", "--no-index", "--no-build-isolation", "--no-compile"]
     pip = [sys.executable, "-m", "pip", "install", "--quiet", *offline, "--target", target, source]
     done = run(pip, tmp_path)

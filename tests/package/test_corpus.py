@@ -3,24 +3,16 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import pytest
-from lxml import etree
-from robots import (
-    FIXTURES,
-    ROBOT,
-    WHEELS,
-    changed_slots,
-    graph_problems,
-    is_insertion,
-    wheel_files,
-)
+from expected_names import ROBOT, changed_slots, graph_problems, is_insertion
+from paths import FIXTURES
+from real_robots import WHEELS, wheel_files
+from refusal_reasons import Outcome, is_true, reason
 
-from multibot_rewrite import MultibotError, ProofError, RewriteRefused, rewrite, rewrite_all, strip
+from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
 from multibot_rewrite.naming import make_naming
 
 REFUSALS = FIXTURES / "corpus_refusals.json"
@@ -40,13 +32,6 @@ DEEP = (
 RECOMPUTED = ("collision",)
 
 
-class Outcome(NamedTuple):
-    """What became of one file: refused with ``reason``, or ``problem`` (empty: proved)."""
-
-    reason: str
-    problem: str
-
-
 def outcome(data: bytes, options: Mapping[str, object]) -> Outcome:
     """Rewrite one file and look at the result with other eyes."""
     try:
@@ -58,15 +43,6 @@ def outcome(data: bytes, options: Mapping[str, object]) -> Outcome:
     except Exception as error:
         return Outcome("", f"{type(error).__name__}: {error}")
     return Outcome("", "; ".join(problems(data, result.data, options)))
-
-
-def reason(error: MultibotError) -> str:
-    """Code or class of an error and its message, without file, line and hint."""
-    if not isinstance(error, RewriteRefused):
-        text = str(error).partition(";")[0]
-        return f"{type(error).__name__} {re.sub(r'^[^ ]*: |, line .*', '', text)}"
-    first = next(finding for finding in error.findings if finding.level == "error")
-    return f"{first.code} {first.message}"
 
 
 def problems(data: bytes, output: bytes, options: Mapping[str, object]) -> Iterator[str]:
@@ -111,20 +87,6 @@ def test_every_refusal_is_true(corpus: dict[str, Path]) -> None:
 def test_every_refusal_of_a_wheel_file_is_true(wheels: dict[str, Path]) -> None:
     for name, why in on_record("wheels", wheels).items():
         assert is_true(why, wheels[name].read_bytes()), f"{name}: {why}"
-
-
-def is_true(why: str, data: bytes) -> bool:
-    """The reason, seen by other means than the package's; False for a reason not known here."""
-    if found := re.fullmatch(r"MB105 xacro element <(\w+)>", why):
-        wanted = f"//*[contains(namespace-uri(), 'xacro') and local-name() = '{found[1]}']"
-        return bool(etree.fromstring(data).xpath(wanted))
-    if found := re.fullmatch(r"MB105 xacro substitution '(.*)'", why):
-        values = etree.fromstring(data).xpath("//@*|//text()")
-        return any(found[1] == " ".join(value.split()) for value in values)
-    if found := re.search(r"Namespace prefix (\w+) .* is not defined", why):
-        prefix = found[1].encode()
-        return prefix + b":" in data and b"xmlns:" + prefix not in data
-    return False
 
 
 @pytest.mark.parametrize("options", [{}, *DEEP[:2]], ids=str)

@@ -9,13 +9,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
+from multibot_rewrite.lint.__main__ import rules_page
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.words import page as rules_page
 from multibot_rewrite.pipeline import prepare
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
 
-ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text()
 COMMANDS = re.findall(
     r"^    (urdf-postfix fixtures.*|urdf-lint .*|multibot .*)$", README, re.MULTILINE

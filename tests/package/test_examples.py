@@ -6,11 +6,12 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-import planned
+import live_commands
+import page_commands
 import pytest
-import shown
 import yaml
-from shown import ROOT, Shown
+from page_commands import Shown
+from paths import ROOT
 
 OURS = ("two_robots_postfix", "namespace_and_prefix")
 FOLDERS = [ROOT / "examples" / name for name in OURS]
@@ -23,24 +24,26 @@ FLEETS = [
 PAGES = {
     f"{folder.name}: {heading}": commands
     for folder in FOLDERS
-    for heading, commands in shown.sections((folder / "README.md").read_text()).items()
+    for heading, commands in page_commands.sections((folder / "README.md").read_text()).items()
 }
 
 
 @pytest.fixture(scope="module")
-def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> shown.Tried:
+def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> page_commands.Tried:
     """What the commands of every part of the pages do."""
-    return shown.tried(PAGES, tmp_path_factory.mktemp("pages"), 20, tf2)
+    return page_commands.tried(PAGES, tmp_path_factory.mktemp("pages"), 20, tf2)
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_a_page_shows_what_is_printed(name: str, tried: shown.Tried) -> None:
-    shown.assert_as_shown(name, tried)
+def test_a_page_shows_what_is_printed(name: str, tried: page_commands.Tried) -> None:
+    page_commands.assert_as_shown(name, tried)
 
 
 def rehearsed(commands: Iterable[Shown]) -> dict[str, tuple[str, ...]]:
     return {
-        it.command.split()[-1]: it.lines for it in commands if it.command.startswith(shown.LIVE)
+        it.command.split()[-1]: it.lines
+        for it in commands
+        if it.command.startswith(page_commands.LIVE)
     }
 
 
@@ -58,7 +61,7 @@ def test_every_fleet_is_shown_and_rehearsed() -> None:
 def built(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     """Every fleet of the examples, built; by the names of its file."""
     folder = tmp_path_factory.mktemp("built")
-    there = shown.reader(folder)
+    there = page_commands.reader(folder)
     for fleet in FLEETS:
         done = there.run(
             f"multibot build {fleet.relative_to(ROOT)} -o {fleet.stem}-{fleet.parent.name}"
@@ -138,7 +141,7 @@ def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:
 def test_the_fleet_file_of_the_readme_works_as_it_stands(tmp_path: Path) -> None:
     (fleet,) = re.findall(r"```yaml\n(layout.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
     (tmp_path / "fleet.yaml").write_text(fleet)
-    there = shown.reader(tmp_path)
+    there = page_commands.reader(tmp_path)
     nav2 = "examples/namespace_and_prefix/nav2"
     there.run(f"cp fixtures/robots/rover.urdf .; cp {nav2}_params.yaml params.yaml")
     there.run(f"cp {nav2}.rviz one_robot.rviz")
@@ -149,7 +152,7 @@ def test_the_fleet_file_of_the_readme_works_as_it_stands(tmp_path: Path) -> None
 
 
 def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:
-    there = shown.reader(tmp_path)
+    there = page_commands.reader(tmp_path)
     copied = "cp -r examples/two_robots_postfix own && multibot build own/fleet.yaml -o out"
     assert there.run(copied).returncode == 0
     again = there.run("multibot build own/fleet.yaml -o out --check")
@@ -162,10 +165,12 @@ def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:
 
 @pytest.mark.deep
 def test_twenty_robots_are_as_planned(tmp_path: Path, tf2: dict[str, str]) -> None:
-    if not shown.has_ros():
+    if not page_commands.has_ros():
         pytest.skip("no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
     rows = "".join(f"  - {{name: robot{at}, pose: {{x: {at}}}}}\n" for at in range(20))
     include = "include: examples/two_robots_postfix/fleet.yaml\n"
     (tmp_path / "twenty.yaml").write_text(f"{include}robots:\n{rows}")
-    done = shown.reader(tmp_path, planned.domain(99), **tf2).run("multibot rehearse twenty.yaml")
+    done = page_commands.reader(tmp_path, live_commands.domain(99), **tf2).run(
+        "multibot rehearse twenty.yaml"
+    )
     assert (done.returncode, "20 robots, 0 findings: as planned" in done.stdout) == (0, True)

@@ -8,18 +8,17 @@ vocabulary decides otherwise, type, first name, path and the reason.
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 from lxml import etree
+from paths import FIXTURES
 
 from multibot_rewrite.model import Site
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Node, qualified
 from multibot_rewrite.rewriters.vocabulary import Rewriter, load_vocabulary, split_path, split_step
 
-FIXTURES = Path(__file__).parents[2] / "fixtures"
 LEAST_FACTS = 1500
 # Kinds of facts that are no name of ours: nothing may be renamed there.
 NO_NAMES = {"value", "param_name", "param_file", "material", "visual", "light"}

@@ -20,7 +20,9 @@ from multibot_rewrite import model
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("model", "bulk", "version", "lazy", "nearest"),
+    ("bulk", "version", "lazy", "nearest"),
+    ("findings",),
+    ("model",),
     ("rosnames", "naming", "config"),
     ("rewriters",),
     ("steps",),
@@ -31,7 +33,7 @@ FLOORS = (
     ("remap",),
     ("graph", "lint", "companions"),
     ("fleets",),
-    ("__init__", "launch"),
+    ("__init__", "launch", "catalogue"),
     ("cli",),
 )
 HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro")

@@ -6,27 +6,22 @@ import re
 from collections import Counter
 
 import pytest
-from hypothesis import assume, given, settings
-from hypothesis import strategies as st
-from lxml import etree
-from robots import (
-    LAYOUTS,
-    PARAMETERS,
+from expected_names import (
     ROBOT,
-    SEPARATORS,
     Names,
     Options,
-    Robot,
     bare,
     changed_slots,
     graph_problems,
     is_insertion,
     new_names,
-    random_robots,
-    robot_names,
     slots,
     spelled,
 )
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from lxml import etree
+from random_robots import LAYOUTS, PARAMETERS, SEPARATORS, Robot, random_robots, robot_names
 
 from multibot_rewrite import (
     Rewrite,

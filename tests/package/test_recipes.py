@@ -4,26 +4,26 @@ from __future__ import annotations
 
 import re
 
+import page_commands
 import pytest
-import shown
-from shown import ROOT
+from paths import ROOT
 
 PAGE = (ROOT / "docs" / "recipes.md").read_text()
-RECIPES = shown.sections(PAGE)
+RECIPES = page_commands.sections(PAGE)
 # Questions of users, numbered, with the threads they come from.
 QUESTIONS = ROOT.parent / "shared" / "field" / "systems.md"
 THREAD = re.compile(r"([\w.-]+)(?: PR)?#(\d+)")
 
 
 @pytest.fixture(scope="module")
-def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> shown.Tried:
+def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> page_commands.Tried:
     """What the commands of every recipe do."""
-    return shown.tried(RECIPES, tmp_path_factory.mktemp("recipes"), 60, tf2)
+    return page_commands.tried(RECIPES, tmp_path_factory.mktemp("recipes"), 60, tf2)
 
 
 @pytest.mark.parametrize("name", RECIPES)
-def test_a_recipe_prints_what_it_shows(name: str, tried: shown.Tried) -> None:
-    shown.assert_as_shown(name, tried)
+def test_a_recipe_prints_what_it_shows(name: str, tried: page_commands.Tried) -> None:
+    page_commands.assert_as_shown(name, tried)
 
 
 def test_every_recipe_has_a_question_an_answer_and_a_command() -> None:

@@ -15,8 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 import yourdfpy
+from expected_names import ROBOT, new_names
 from lxml import etree
-from robots import FIXTURES, ROBOT, corpus_files, new_names, spread, wheel_files
+from paths import FIXTURES
+from real_robots import corpus_files, spread, wheel_files
 
 from multibot_rewrite import MultibotError, rewrite
 

@@ -7,7 +7,7 @@ import inspect
 from importlib.metadata import entry_points
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import COMMANDS, main
 from multibot_rewrite.cli.ros2_verb import MultibotCommand

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 import yaml
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming

@@ -7,16 +7,15 @@ nodes' sources. ``fixtures/node_facts_exceptions.tsv`` holds node, role, name an
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from paths import FIXTURES
 
 from multibot_rewrite.remap.records import Endpoint
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.rosnames import expand
 
-FIXTURES = Path(__file__).parents[2] / "fixtures"
 LEAST_FACTS = 600
 LEAST_NODES = 94
 

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import importlib.util
-import json
-import os
 import random
-import subprocess
-import sys
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import pytest
+from rcl_names import INSTALL, ask
 
 from multibot_rewrite import UsageError
 from multibot_rewrite.rosnames import (
@@ -28,13 +24,10 @@ from multibot_rewrite.rosnames import (
     resolve_name,
 )
 
-INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
 pytestmark = pytest.mark.skipif(
     not importlib.util.find_spec("rclpy"),
     reason=f"names are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
 )
-CHILD = Path(__file__).parents[1].joinpath("rcl_child.py")
-SECONDS = 120
 CHECKS = {
     "topic": check_topic_name,
     "full": check_full_name,
@@ -78,30 +71,6 @@ SIDES = (
 )  # fmt: skip
 TARGETS = (*SIDES, "d/" * 100 + "d", "/d" * 124)
 NAMESPACE_TARGETS = ("/r", "/q", "/q/s", "/", "/q/", "/q" * 123)
-
-
-def ask(cases: Sequence[dict[str, Any]]) -> list[Any]:
-    """What rcl says to each case. One process answers all; it ends when its stdin does."""
-    domain = str(150 + os.getpid() % 50)
-    here = {
-        "ROS_DOMAIN_ID": domain,
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
-        # Shared memory may hang where several runs start hundreds of participants at once.
-        "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
-    }
-    done = subprocess.run(
-        [sys.executable, str(CHILD)],
-        input="".join(f"{json.dumps(case)}\n" for case in cases),
-        capture_output=True,
-        text=True,
-        timeout=SECONDS,
-        env={**os.environ, **here},
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr[-2000:]
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    assert len(answers) == len(cases), done.stderr[-2000:]
-    return answers
 
 
 def jumbled(dice: random.Random, pieces: Sequence[str], most: int) -> str:

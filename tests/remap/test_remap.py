@@ -10,7 +10,7 @@ import shlex
 import pytest
 import yaml
 from lxml import etree
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import ERROR

@@ -7,7 +7,7 @@ import itertools
 import shlex
 
 import pytest
-from test_rcl_agreement import INSTALL, ask
+from rcl_names import INSTALL, ask
 
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.forms import ros_args

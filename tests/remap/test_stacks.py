@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from paths import ROOT
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.known import Library, extended, stack_of
@@ -14,8 +15,6 @@ from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, Nod
 from multibot_rewrite.remap.stacks import built_in, load_nodes, load_stack, user_stack
 from multibot_rewrite.remap.stacks_page import page
 from multibot_rewrite.rosnames import expand
-
-ROOT = Path(__file__).parents[2]
 
 WANTED = {
     "robot_state": {"robot_state_publisher", "joint_state_publisher"},

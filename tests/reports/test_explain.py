@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.cli.urdf_postfix import main
 from multibot_rewrite.library import explain

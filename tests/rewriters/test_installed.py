@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from case_files import read_case
+from paths import FIXTURES
 
 from multibot_rewrite import VocabularyError, rewrite, strip
 from multibot_rewrite.rewriters.builtin import builtin_tree
@@ -18,7 +19,7 @@ from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
 from multibot_rewrite.rewriters.vocabulary.installed import announcing, installed
 
-ACME = Path(__file__).parents[2] / "fixtures" / "third_party" / "acme_robots"
+ACME = FIXTURES / "third_party" / "acme_robots"
 CASE = read_case("acme", (ACME / "cases" / "acme_winch.case").read_bytes())
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")
 PIP = (sys.executable, "-m", "pip", "--disable-pip-version-check", "install", "--quiet")

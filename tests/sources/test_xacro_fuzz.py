@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from robots import FIXTURES
+from paths import FIXTURES
 
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.expand import expand

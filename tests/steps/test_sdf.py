@@ -14,23 +14,14 @@ from xml.etree import ElementTree
 from xml.parsers import expat
 
 import pytest
-import test_corpus
+import refusal_reasons
 from case_files import load_cases
+from expected_names import ROBOT, Options, bare, changed_slots, frame_spelled, is_insertion, spelled
 from lxml import etree
-from robots import (
-    CORPUS,
-    FIXTURES,
-    ROBOT,
-    Options,
-    bare,
-    changed_slots,
-    frame_spelled,
-    is_insertion,
-    spelled,
-    spread,
-)
-from test_bad_input import STOPPED, UNUSABLE, check_refusal
-from test_cli import run
+from paths import CORPUS, FIXTURES
+from postfix_command import run
+from real_robots import spread
+from refusals import STOPPED, UNUSABLE, check_refusal
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip
 
@@ -152,18 +143,18 @@ def is_declared(element: etree._Element) -> bool:
 # ---------------------------------------------------------------- every real file
 
 
-def outcome(data: bytes, options: Options) -> test_corpus.Outcome:
+def outcome(data: bytes, options: Options) -> refusal_reasons.Outcome:
     """Rewrite one file and look at the result with other eyes."""
     try:
         output = rewrite(data, ROBOT, **options).data
     except ProofError as error:
-        return test_corpus.Outcome("", str(error))
+        return refusal_reasons.Outcome("", str(error))
     except MultibotError as error:
-        return test_corpus.Outcome(test_corpus.reason(error), "")
+        return refusal_reasons.Outcome(refusal_reasons.reason(error), "")
     wrong = [*problems(data, output, options)]
     if strip(output, ROBOT, **options) != data:
         wrong.append("strip does not give the input back")
-    return test_corpus.Outcome("", "; ".join(wrong))
+    return refusal_reasons.Outcome("", "; ".join(wrong))
 
 
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
@@ -199,7 +190,7 @@ def is_true(why: str, data: bytes) -> bool:
     for message, fault in FAULTS.items():
         if re.fullmatch(f"InputError not well-formed XML: {message}", why):
             return expat_says(data) == fault
-    return why.startswith("MB105") and test_corpus.is_true(why, data)
+    return why.startswith("MB105") and refusal_reasons.is_true(why, data)
 
 
 def expat_says(data: bytes) -> str:

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from expected_names import ROBOT, Options, Slot, changed_slots, frame_spelled, spelled
 from lxml import etree
-from robots import CORPUS, ROBOT, Options, Slot, changed_slots, frame_spelled, spelled
-from test_bad_input import STOPPED, UNUSABLE, check_refusal, xacro
-from test_cli import ROBOTS, contents, run
+from paths import CORPUS, ROBOTS
+from postfix_command import contents, run
+from refusals import STOPPED, UNUSABLE, check_refusal, xacro
 
 from multibot_rewrite import Finding, MultibotError, Rewrite, rewrite, rewrite_all, strip
 

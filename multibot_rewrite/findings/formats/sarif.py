@@ -8,18 +8,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from multibot_rewrite.lint.formats.shared import (
+from multibot_rewrite.findings.finding import INCONCLUSIVE, WARNING, Edit, Finding
+from multibot_rewrite.findings.formats import Report
+from multibot_rewrite.findings.formats.shared import (
     calls,
     circumstances,
+    file_of,
     fingerprints,
     inside,
     json_text,
     one_line,
-    said,
+    said_of,
 )
-from multibot_rewrite.lint.records import LintFinding, Rule
-from multibot_rewrite.model import Edit
-from multibot_rewrite.steps.document import locate
+from multibot_rewrite.findings.place import locate
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]
@@ -27,25 +29,25 @@ SCHEMA = (
     "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 )
 _ROOT = "%SRCROOT%"
-_ROOT_SAID = "The folder in which urdf-lint was started: the root of the repository."
+_ROOT_SAID = "The folder in which the command was started: the root of the repository."
 
 
-def render(findings: Sequence[LintFinding], files: Sequence[str], rules: Mapping[str, Rule]) -> str:
+def render(findings: Sequence[Finding], report: Report) -> str:
     """One run with every rule, the files that were linted, and a result for each finding."""
-    numbers = {code: number for number, code in enumerate(rules)}
+    numbers = {code: number for number, code in enumerate(report.rules)}
     driver = {
-        "name": "urdf-lint",
+        "name": report.tool,
         "version": __version__,
         "semanticVersion": __version__,
-        "rules": [_rule(it) for it in rules.values()],
+        "rules": [_rule(it) for it in report.rules.values()],
     }
     run = {
         "tool": {"driver": driver},
         "originalUriBaseIds": {_ROOT: {"description": {"text": _ROOT_SAID}}},
-        "artifacts": [{"location": _file(path)} for path in dict.fromkeys(files)],
+        "artifacts": [{"location": _file(path)} for path in dict.fromkeys(report.files)],
         "columnKind": "unicodeCodePoints",
         "results": [
-            _result(it, numbers, fingerprint)
+            _result(it, report, numbers, fingerprint)
             for it, fingerprint in zip(findings, fingerprints(findings), strict=True)
         ],
     }
@@ -68,17 +70,17 @@ def _rule(rule: Rule) -> Json:
     }
 
 
-def _result(finding: LintFinding, numbers: Mapping[str, int], fingerprint: str) -> Json:
+def _result(finding: Finding, report: Report, numbers: Mapping[str, int], fingerprint: str) -> Json:
     it = finding
     via = ", ".join(f"[{_escaped(call.macro)}]({at})" for at, call in enumerate(calls(it), 1))
-    message = f"{said(it)}{circumstances(it)}"
+    message = f"{said_of(it)}{circumstances(it)}"
     fixes = _fixes(it)
     return {
         "ruleId": it.code,
         **({"ruleIndex": numbers[it.code]} if it.code in numbers else {}),
-        "level": it.level,
+        "level": WARNING if it.level == INCONCLUSIVE else it.level,
         "message": {"text": f"{message} via {via}" if via else message},
-        "locations": [_location(it.file, {"startLine": it.line, "startColumn": it.column})],
+        "locations": _locations(it, report),
         # GitHub's upload adds its own, made from the line's text, and complains of another one
         # that has its name.
         "partialFingerprints": {"urdfLint/v1": fingerprint},
@@ -87,7 +89,18 @@ def _result(finding: LintFinding, numbers: Mapping[str, int], fingerprint: str) 
     }
 
 
-def _related(finding: LintFinding) -> Iterator[Json]:
+def _locations(finding: Finding, report: Report) -> list[Json]:
+    """Where it is: in a file, and the robot's node by its name; none where neither is known."""
+    it = finding
+    node = {"fullyQualifiedName": it.place, "kind": "resource"} if it.robot or it.node else {}
+    file = file_of(it, report)
+    if not file:
+        return [{"logicalLocations": [node]}] if node else []
+    region = {"startLine": it.line or 1, "startColumn": it.column or 1}
+    return [{**_location(file, region), **({"logicalLocations": [node]} if node else {})}]
+
+
+def _related(finding: Finding) -> Iterator[Json]:
     for at, call in enumerate(calls(finding), 1):
         place = _location(call.file, {"startLine": call.line})
         yield {"id": at, **place, "message": {"text": f"call of {one_line(call.macro)}"}}
@@ -109,7 +122,7 @@ def _escaped(text: str) -> str:
     return re.sub(r"([\\\[\]])", r"\\\1", one_line(text))
 
 
-def _fixes(finding: LintFinding) -> list[Json]:
+def _fixes(finding: Finding) -> list[Json]:
     """The fix, unless the file is not the one that was linted any more."""
     source = _source(finding.file) if finding.edits else b""
     if not source or any(edit.end > len(source) for edit in finding.edits):

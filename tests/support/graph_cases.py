@@ -1,6 +1,6 @@
 """The graphs in ``fixtures/graphs``: a fleet as planned, and one broken for each rule.
 
-``python tests/graph_cases.py`` writes them anew, the printed lines beside them included.
+``python tests/support/graph_cases.py`` writes them anew, the printed lines beside them included.
 """
 
 from __future__ import annotations
@@ -10,8 +10,9 @@ import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import redirect_stdout
 from io import BytesIO, TextIOWrapper
-from pathlib import Path
 from typing import NamedTuple
+
+from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main as multibot
 from multibot_rewrite.graph.expectation import Expectation, WantedRobot
@@ -28,7 +29,6 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 
-ROOT = Path(__file__).parent.parent
 # As a user names them: messages hold the paths.
 GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"
 FLEET = (ROVER, "robot1", "robot2", "--nodes", f"{GRAPHS}/nodes.yaml", "--stack", "small")

@@ -8,8 +8,10 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.findings.finding import LEVELS, Finding
+from multibot_rewrite.findings.formats import Report
+from multibot_rewrite.findings.grouping import same_for
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.records import LEVELS, LintFinding
 
 # What ends a line, steers a terminal, or stands in no XML or UTF-8: lone surrogates are bytes of a
 # file's name that are no UTF-8.
@@ -56,18 +58,35 @@ def path_below(path: str) -> str:
     return inside(path) or path_given(path)
 
 
-def said(finding: LintFinding) -> str:
-    """Message and hint, in one line."""
+def said(finding: Finding) -> str:
+    """Message, further robots and hint, in one line."""
     hint = f" ({finding.hint})" if finding.hint else ""
-    return one_line(f"{finding.message}{hint}")
+    return one_line(f"{finding.message}{same_for(finding)}{hint}")
 
 
-def circumstances(finding: LintFinding) -> str:
+def said_of(finding: Finding) -> str:
+    """The same with the robot or node in front: for formats that show files only."""
+    who = f"{finding.place}: " if finding.robot or finding.node else ""
+    return f"{one_line(who)}{said(finding)}"
+
+
+def title(finding: Finding, report: Report) -> str:
+    """The code and, where the rule is known, its name."""
+    rule = report.rules.get(finding.code)
+    return f"{finding.code} {rule.name}" if rule else finding.code
+
+
+def file_of(finding: Finding, report: Report) -> str:
+    """The file to show a finding at: its own, else the first that was read (a plan, a fleet)."""
+    return finding.file or next(iter(report.files), "")
+
+
+def circumstances(finding: Finding) -> str:
     """The xacro arguments under which it is found, behind a space; empty for the default ones."""
     return one_line(f" [with {finding.arguments}]") if finding.arguments else ""
 
 
-def calls(finding: LintFinding) -> Iterator[MacroCall]:
+def calls(finding: Finding) -> Iterator[MacroCall]:
     """The xacro macro calls that made what is at fault, the innermost first."""
     for call in finding.calls:
         parts = _CALL.fullmatch(call)
@@ -75,36 +94,35 @@ def calls(finding: LintFinding) -> Iterator[MacroCall]:
         yield MacroCall(parts["file"], int(parts["line"]), parts["macro"])
 
 
-def via(finding: LintFinding, spelled: Callable[[str], str]) -> Iterator[str]:
+def via(finding: Finding, spelled: Callable[[str], str]) -> Iterator[str]:
     """A line for each of the calls, with its path so spelled."""
     for call in calls(finding):
         yield one_line(f"via {spelled(call.file)}:{call.line}: {call.macro}")
 
 
-def counts(findings: Iterable[LintFinding]) -> dict[str, int]:
+def counts(findings: Iterable[Finding]) -> dict[str, int]:
     """How many there are of each level, from the worst on."""
     found = Counter(it.level for it in findings)
-    return {level: found[level] for level in LEVELS}
+    return {level: found[level] for level in (*LEVELS, *(found.keys() - set(LEVELS)))}
 
 
-def by_file(
-    findings: Iterable[LintFinding], files: Iterable[str] = ()
-) -> dict[str, list[LintFinding]]:
-    """The findings of each file; ``files`` come first, whether they have any or not."""
-    result: dict[str, list[LintFinding]] = {file: [] for file in files}
+def by_file(findings: Iterable[Finding], report: Report) -> dict[str, list[Finding]]:
+    """The findings of each file; the files that were read come first, with findings or without."""
+    result: dict[str, list[Finding]] = {file: [] for file in report.files}
     for finding in findings:
-        result.setdefault(finding.file, []).append(finding)
+        result.setdefault(file_of(finding, report), []).append(finding)
     return result
 
 
-def fingerprints(findings: Sequence[LintFinding]) -> list[str]:
+def fingerprints(findings: Sequence[Finding]) -> list[str]:
     """What each finding is known by from run to run: no two are equal, and lines may move."""
     from hashlib import sha256
 
     seen: Counter[tuple[str, ...]] = Counter()
     result = []
     for it in findings:
-        known = (it.code, path_below(it.file), it.message, it.arguments)
+        where = path_below(it.file) if it.file else it.place
+        known = (it.code, where, it.message, it.arguments)
         seen[known] += 1
         whole = "\0".join((*known, str(seen[known])))
         result.append(sha256(whole.encode("utf-8", "backslashreplace")).hexdigest())

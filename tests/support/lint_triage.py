@@ -1,7 +1,7 @@
 """What the lint finds in public files, counted, and the judgements about it as a page.
 
-python tests/triage.py counts > fixtures/lint_triage_counts.tsv
-python tests/triage.py page > docs/lint-triage.md
+python tests/support/lint_triage.py counts > fixtures/lint_triage_counts.tsv
+python tests/support/lint_triage.py page > docs/lint-triage.md
 """
 
 from __future__ import annotations
@@ -12,11 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from robots import CORPUS, FIXTURES, corpus_files, wheel_files
+from paths import CORPUS, FIXTURES
+from real_robots import corpus_files, wheel_files
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.pairing import named_urdfs
-from multibot_rewrite.lint.records import LintFinding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.lint.settings import Settings
@@ -29,7 +30,8 @@ SHOWN = 5
 _HEAD = """\
 # What urdf-lint says about public robots
 
-Made by `python tests/triage.py page > docs/lint-triage.md` from `fixtures/lint_triage_*.tsv`.
+Made by `python tests/support/lint_triage.py page > docs/lint-triage.md`
+from `fixtures/lint_triage_*.tsv`.
 
 Every rule that finds an error in {corpus} public files or {wheels} of Python packages was
 judged: at least five of its findings, or all, by reading the file or by what check_urdf,
@@ -66,7 +68,7 @@ def _judged(line: str) -> Judged:
     return Judged(code, file.removeprefix("urdf/"), int(number), judgement == "true", reason)
 
 
-def linted_corpus() -> dict[str, list[LintFinding]]:
+def linted_corpus() -> dict[str, list[Finding]]:
     """The findings of the public files by their name there, each repository's SRDF files with its
     own URDF files."""
     files = corpus_files()
@@ -87,24 +89,22 @@ def _srdfs() -> dict[str, dict[str, Path]]:
     return found
 
 
-def linted_wheels() -> dict[str, list[LintFinding]]:
+def linted_wheels() -> dict[str, list[Finding]]:
     """The findings of the description wheels by file, ``wheel:NAME/...``."""
     files = {f"wheel:{name}": path for name, path in wheel_files().items()}
     return _by_file(lint_files([str(it) for it in files.values()], Settings()), files)
 
 
-def _by_file(
-    found: Iterable[LintFinding], files: Mapping[str, Path]
-) -> dict[str, list[LintFinding]]:
+def _by_file(found: Iterable[Finding], files: Mapping[str, Path]) -> dict[str, list[Finding]]:
     names = {str(path): name for name, path in files.items()}
-    result: dict[str, list[LintFinding]] = {name: [] for name in files}
+    result: dict[str, list[Finding]] = {name: [] for name in files}
     for it in found:
         if it.file in names:
             result[names[it.file]].append(it)
     return result
 
 
-def errors(found: Mapping[str, list[LintFinding]]) -> Counter[str]:
+def errors(found: Mapping[str, list[Finding]]) -> Counter[str]:
     """How many of each rule are errors."""
     return Counter(it.code for its in found.values() for it in its if it.level == ERROR)
 

@@ -16,11 +16,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+import live_commands
 import live_fleet
-import planned
 import pytest
+from paths import ROOT
 
-ROOT = Path(__file__).parent.parent
 MODULES = {
     "multibot": "multibot_rewrite.cli.multibot",
     "urdf-postfix": "multibot_rewrite.cli.urdf_postfix",
@@ -105,7 +105,9 @@ def reader(folder: Path, domain: int = 1, **more: str) -> Reader:
     programs.mkdir()
     for name, module in MODULES.items():
         file = programs / name
-        own = f" --domain {domain} {' '.join(planned.PATIENTLY)}" if name == "multibot" else ""
+        own = (
+            f" --domain {domain} {' '.join(live_commands.PATIENTLY)}" if name == "multibot" else ""
+        )
         rest = f'if [ "$1" = rehearse ]; then set -- "$@"{own}; fi\n' if own else ""
         file.write_text(f'#!/bin/bash\n{rest}exec "{sys.executable}" -m {module} "$@"\n')
         file.chmod(0o755)
@@ -130,7 +132,7 @@ def tried(
     for at, _ in enumerate(names):
         own = folder / str(at)
         own.mkdir()
-        readers.append(reader(own, planned.domain(offset + at), **more))
+        readers.append(reader(own, live_commands.domain(offset + at), **more))
 
     def one(name: str, there: Reader) -> list[tuple[Shown, subprocess.CompletedProcess[str]]]:
         return [(it, there.run(it.command)) for it in pages[name]]

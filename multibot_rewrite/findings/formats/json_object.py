@@ -2,41 +2,46 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
-from multibot_rewrite.lint.formats.shared import calls, counts, json_text, path_given
-from multibot_rewrite.lint.records import LintFinding, Rule
-from multibot_rewrite.model import Edit
+from multibot_rewrite.findings.finding import Edit, Finding
+from multibot_rewrite.findings.formats import Report
+from multibot_rewrite.findings.formats.shared import calls, counts, json_text, path_given
 
 # Grows when a key goes or means something else; a new key is no new version.
-VERSION = 1
+VERSION = 2
 
 
-def render(findings: Sequence[LintFinding], files: Sequence[str], rules: Mapping[str, Rule]) -> str:
+def render(findings: Sequence[Finding], report: Report) -> str:
     """The object, indented, in UTF-8."""
     table = {
         "version": VERSION,
-        "files": len(files),
+        "tool": report.tool,
+        "files": len(report.files),
         "counts": counts(findings),
-        "findings": [_finding(it, rules) for it in findings],
+        "findings": [_finding(it, report) for it in findings],
     }
     return json_text(table)
 
 
-def _finding(finding: LintFinding, rules: Mapping[str, Rule]) -> dict[str, Any]:
+def _finding(finding: Finding, report: Report) -> dict[str, Any]:
     it = finding
     return {
         "code": it.code,
-        "name": rules[it.code].name if it.code in rules else "",
+        "name": report.rules[it.code].name if it.code in report.rules else "",
         "level": it.level,
         "message": it.message,
         "hint": it.hint,
-        "file": path_given(it.file),
-        "line": it.line,
-        "column": it.column,
+        "file": path_given(it.file) or None,
+        "line": it.line or None,
+        "column": it.column or None,
         "calls": [call._replace(file=path_given(call.file))._asdict() for call in calls(it)],
         "arguments": it.arguments,
+        "robot": it.robot,
+        "node": it.node,
+        "names": list(it.names),
+        "others": list(it.others),
         "edits": [_edit(edit) for edit in it.edits],
     }
 

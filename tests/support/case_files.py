@@ -6,8 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-HOME = Path(__file__).parents[1] / "fixtures" / "cases"
-ROBOTS = HOME.parent / "robots"
+from paths import FIXTURES, ROBOTS
+
+HOME = FIXTURES / "cases"
 RULE = b"----\n"
 HEADERS = ("about", "rewriter", "options", "expect", "finds")
 REQUIRED = ("about", "rewriter", "expect")

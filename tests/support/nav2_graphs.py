@@ -7,6 +7,8 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from paths import ROBOTS
+
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
@@ -22,7 +24,7 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
-ROVER = Path(__file__).parent.parent / "fixtures" / "robots" / "rover.urdf"
+ROVER = ROBOTS / "rover.urdf"
 LAYOUTS = ("L1", "L2", "L3", "L4")
 TEXT = "std_msgs/msg/String"
 # What every node has beside what is planned.

@@ -3,29 +3,31 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.lint.formats.shared import (
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.formats import Report
+from multibot_rewrite.findings.formats.shared import (
     by_file,
     circumstances,
     counts,
     one_line,
     path_below,
-    said,
+    said_of,
+    title,
     via,
 )
-from multibot_rewrite.lint.records import LintFinding, Rule
 
 # A comment on GitHub holds 65,536 characters.
 ROOM = 60_000
 _MARKUP = re.compile(r"([\\`*_{}\[\]<>|~#&!$])")
 
 
-def render(findings: Sequence[LintFinding], files: Sequence[str], rules: Mapping[str, Rule]) -> str:
+def render(findings: Sequence[Finding], report: Report) -> str:
     """Counts, then a table for each file with findings, as many as a comment holds."""
-    told = _sum(findings, files)
+    told = _sum(findings, report)
     shown = 0
-    for is_row, part in _parts(findings, rules):
+    for is_row, part in _parts(findings, report):
         if len(told) + len(part) > ROOM:
             return f"{told}\n{len(findings) - shown} more are not shown here.\n"
         told += part
@@ -33,31 +35,31 @@ def render(findings: Sequence[LintFinding], files: Sequence[str], rules: Mapping
     return told
 
 
-def _sum(findings: Sequence[LintFinding], files: Sequence[str]) -> str:
+def _sum(findings: Sequence[Finding], report: Report) -> str:
     found = [_counted(number, level) for level, number in counts(findings).items() if number]
-    return f"**urdf-lint**: {', '.join(found) or 'no findings'} in {_counted(len(files), 'file')}\n"
+    files = _counted(len(report.files), "file")
+    return f"**{report.tool}**: {', '.join(found) or 'no findings'} in {files}\n"
 
 
 def _counted(number: int, what: str) -> str:
     return f"{number} {what}{'s' * (number != 1)}"
 
 
-def _parts(
-    findings: Sequence[LintFinding], rules: Mapping[str, Rule]
-) -> Iterator[tuple[bool, str]]:
+def _parts(findings: Sequence[Finding], report: Report) -> Iterator[tuple[bool, str]]:
     """What the text is put together from, and whether it is a finding's row."""
-    for file, found in by_file(findings).items():
+    for file, found in by_file(findings, report).items():
+        if not found:
+            continue
         head = "| line | level | code | finding |\n| ---: | --- | --- | --- |\n"
         yield False, f"\n#### {_escaped(path_below(file))}\n\n{head}"
-        yield from ((True, _row(it, rules)) for it in found)
+        yield from ((True, _row(it, report)) for it in found)
 
 
-def _row(finding: LintFinding, rules: Mapping[str, Rule]) -> str:
+def _row(finding: Finding, report: Report) -> str:
     it = finding
-    name = f" {rules[it.code].name}" if it.code in rules else ""
     calls = "".join(f"<br>{_escaped(line)}" for line in via(it, path_below))
-    what = f"{_escaped(said(it) + circumstances(it))}{calls}"
-    return f"| {it.line} | {it.level} | {it.code}{name} | {what} |\n"
+    what = f"{_escaped(said_of(it) + circumstances(it))}{calls}"
+    return f"| {it.line or ''} | {it.level} | {title(it, report)} | {what} |\n"
 
 
 def _escaped(text: str) -> str:

@@ -1,0 +1,66 @@
+"""Every rule of every command by its code: for ``multibot explain``, reports and the generated pages.
+
+``python -m multibot_rewrite.catalogue > docs/findings.md`` makes the page of what is not a rule of
+``urdf-lint``.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping
+from functools import cache
+from importlib import import_module
+from typing import NamedTuple
+
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.rule_docs import Group, page
+
+HEAD = """\
+# Findings
+
+Made by `python -m multibot_rewrite.catalogue > docs/findings.md`; `multibot explain CODE` prints one.
+An *error* stops the job, a *warning* does so with `--fail-on warning`, a *note* never does. Examples
+are tested: the first has the finding, the last does not. The rules that `urdf-lint` has as well are on
+[their own page](lint-rules.md).
+"""
+
+
+class Home(NamedTuple):
+    """Rules whose codes begin with ``start``, and the modules (below the package) that declare them."""
+
+    start: str
+    title: str
+    modules: tuple[str, ...]
+
+
+HOMES: tuple[Home, ...] = ()
+
+
+@cache
+def rules() -> Mapping[str, Rule]:
+    """All rules by code, in the order of the codes; imports every module that declares one."""
+    from multibot_rewrite.lint.registry import RULES
+
+    found = [*RULES.values(), *(it for home in HOMES for it in _declared(home))]
+    by_code = {it.code: it for it in sorted(found, key=lambda it: it.code)}
+    assert len(by_code) == len(found), "two rules have one code"
+    return by_code
+
+
+def _declared(home: Home) -> Iterator[Rule]:
+    for name in home.modules:
+        module = import_module(f"{__package__}.{name}")
+        yield from (it for it in vars(module).values() if isinstance(it, Rule))
+
+
+def findings_page() -> str:
+    """The page of the rules that only other commands than ``urdf-lint`` have."""
+    groups = (
+        Group(it.start, it.title, tuple(sorted(_declared(it), key=lambda rule: rule.code)))
+        for it in HOMES
+    )
+    return page(HEAD, groups)
+
+
+if __name__ == "__main__":
+    sys.stdout.write(findings_page())

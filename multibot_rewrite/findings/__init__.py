@@ -1,0 +1,1 @@
+"""What every check reports, and the rules that the reports come from."""

@@ -1,0 +1,64 @@
+"""The one record of a finding: of a description, a parameter file, a remap table, the live graph."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+ERROR, WARNING, NOTE, INCONCLUSIVE = "error", "warning", "note", "inconclusive"
+# From the worst on. Inconclusive is no level to ask for: the view of the graph was incomplete.
+LEVELS = (ERROR, WARNING, NOTE)
+
+
+class Edit(NamedTuple):
+    """Replace source bytes ``start:end`` by ``before + robot + after``.
+
+    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it).
+    """
+
+    start: int
+    end: int
+    before: bytes
+    after: bytes | None
+
+
+class Finding(NamedTuple):
+    """Something that a person should know, and where.
+
+    ``code`` is permanent; ``level`` is one of ``LEVELS``, or ``INCONCLUSIVE``. ``hint`` says what to
+    do, in the live graph the likely cause too. ``file``, ``line`` and ``column`` (from 1) are the
+    place in a source file; an empty ``file`` means that there is none. ``calls`` are the xacro macro
+    calls that made the element, the innermost first, as ``file:line: name``; ``arguments`` are the
+    xacro arguments under which it is found, empty for the default ones. ``edits`` fix it in ``file``.
+
+    In a fleet or graph, ``robot`` and ``node`` say who it is about (either may be empty) and
+    ``names`` which topics, services, actions or frames. ``others`` are the further robots of which
+    the same is true.
+    """
+
+    code: str
+    level: str
+    message: str
+    hint: str = ""
+    file: str = ""
+    line: int = 0
+    column: int = 0
+    calls: tuple[str, ...] = ()
+    arguments: str = ""
+    edits: tuple[Edit, ...] = ()
+    robot: str = ""
+    node: str = ""
+    names: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
+
+    @property
+    def place(self) -> str:
+        """Where it is: a node, a robot, or ``file:line:column``."""
+        if self.node.startswith("/"):
+            return self.node
+        if self.robot or self.node:
+            return ": ".join(filter(None, (self.robot, self.node)))
+        return f"{self.file}:{self.line}:{self.column}" if self.file else "graph"
+
+    def __str__(self) -> str:
+        hint = f" ({self.hint})" if self.hint else ""
+        return f"{self.place}: {self.level}: {self.code} {self.message}{hint}"

@@ -1,0 +1,56 @@
+"""Rules in words: one for ``explain``, all of a page for the docs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.findings.rule import Rule
+
+# What an example is written in -> how a Markdown page colours it; XML where it is not here.
+_LANGUAGES = {"yaml": "yaml", "lua": "lua", "graph": "text", "remap": "text"}
+
+
+class Group(NamedTuple):
+    """The rules whose codes begin with ``start``, and what they are about."""
+
+    start: str
+    title: str
+    rules: tuple[Rule, ...]
+
+
+def explained(rule: Rule) -> str:
+    """A rule with its examples, for a terminal."""
+    head = f"{rule.code} {rule.name} ({rule.level})"
+    parts = [head, "", rule.what, "", f"Why: {rule.why}", "", f"Fix: {rule.fix}"]
+    for title, example in _examples(rule):
+        parts += ["", f"{title}:", "", *(f"    {line}" for line in example.splitlines())]
+    return "\n".join(parts) + "\n"
+
+
+def listed(rules: Iterable[Rule]) -> Iterator[tuple[str, str, str, str]]:
+    """Code, level, name and first sentence of each."""
+    return ((it.code, it.level, it.name, it.what.partition(". ")[0].rstrip(".")) for it in rules)
+
+
+def page(head: str, groups: Iterable[Group]) -> str:
+    """A page of rules in Markdown, a heading for each group and rule."""
+    parts = [head]
+    for group in groups:
+        parts.append(f"\n## {group.start}: {group.title}\n")
+        parts += (_section(rule) for rule in group.rules)
+    return "".join(parts)
+
+
+def _section(rule: Rule) -> str:
+    lines = [f"\n### {rule.code} {rule.name}\n", f"*{rule.level}*. {rule.what}\n"]
+    lines += [f"**Why.** {rule.why}\n", f"**Fix.** {rule.fix}\n"]
+    language = next((_LANGUAGES[it] for it in rule.formats if it in _LANGUAGES), "xml")
+    for title, example in _examples(rule):
+        lines.append(f"{title}:\n\n```{language}\n{example.rstrip()}\n```\n")
+    return "\n".join(lines)
+
+
+def _examples(rule: Rule) -> list[tuple[str, str]]:
+    texts = (("Bad", rule.bad), ("Fixed", rule.fixed), ("Good", rule.good))
+    return [(title, text) for title, text in texts if text]

@@ -1,0 +1,67 @@
+"""Every rule of every command finds its bad example, once and in its line, and leaves the good one."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from paths import ROOT
+from rule_examples import found
+
+from multibot_rewrite import catalogue
+from multibot_rewrite.findings.finding import LEVELS
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.lint.registry import GROUPS
+from multibot_rewrite.lint.registry import RULES as LINT_RULES
+
+RULES = catalogue.rules()
+# No text makes them: a fault of the lint, and a file that takes too long. Other tests raise them.
+WITHOUT_EXAMPLES = {"MB001": "test_lint_robust.py", "MB004": "test_lint_robust.py"}
+EXAMPLES = [code for code in RULES if code not in WITHOUT_EXAMPLES]
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_bad_example_is_found_once(code: str, tmp_path: Path) -> None:
+    (finding,) = found(RULES[code], RULES[code].bad, tmp_path)
+    assert finding.message
+    assert finding.line == RULES[code].line
+    assert Path(finding.file).parent == tmp_path if finding.file else finding.place != "graph"
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_good_example_is_left_alone(code: str, tmp_path: Path) -> None:
+    assert found(RULES[code], RULES[code].good, tmp_path) == []
+
+
+@pytest.mark.parametrize("rule", RULES.values(), ids=RULES)
+def test_the_words_of_a_rule_are_all_there(rule: Rule) -> None:
+    assert rule.level in LEVELS
+    assert all(text.endswith(".") for text in (rule.what, rule.why, rule.fix))
+    assert re.fullmatch(r"[a-z]+(-[a-z0-9]+)*", rule.name)
+
+
+def test_names_are_no_two_rules() -> None:
+    assert len({rule.name for rule in RULES.values()}) == len(RULES)
+
+
+def test_every_lint_rule_is_in_its_group() -> None:
+    homes = {start: module.__name__ for start, _, module in GROUPS}
+    wrong = {
+        code: rule.check.__module__
+        for code, rule in LINT_RULES.items()
+        if rule.check and not rule.check.__module__.startswith(homes[code[:3]])
+    }
+    assert wrong == {}
+
+
+@pytest.mark.parametrize("code", WITHOUT_EXAMPLES)
+def test_what_has_no_example_is_raised_in_another_test(code: str) -> None:
+    (path,) = (ROOT / "tests").rglob(WITHOUT_EXAMPLES[code])
+    assert code in path.read_text()
+
+
+def test_every_code_of_the_package_is_declared() -> None:
+    sources = (path.read_text() for path in (ROOT / "multibot_rewrite").rglob("*.py"))
+    codes = {code for text in sources for code in re.findall(r"\bM[BFGR]\d{3}\b", text)}
+    assert codes - RULES.keys() == set()

@@ -1,0 +1,11 @@
+"""Where things are in the repository, and beside it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+SUPPORT = ROOT / "tests" / "support"
+FIXTURES = ROOT / "fixtures"
+ROBOTS = FIXTURES / "robots"
+CORPUS = ROOT.parent / "shared" / "corpus"

@@ -1,0 +1,122 @@
+"""The examples of rules, each in the surroundings that its format needs: what is found in them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from multibot_rewrite import RewriteRefused, rewrite_all
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
+from multibot_rewrite.fleets.artefacts import make_artefacts
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.plan import plan_fleet
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.settings import Settings
+
+# What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
+DESCRIPTION = """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="lidar_link"/>
+  <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
+  <link name="wheel"/>
+  <joint name="wheel_joint" type="continuous">
+    <parent link="base_link"/><child link="wheel"/><axis xyz="0 1 0"/>
+  </joint>
+</robot>
+"""
+# Format of an example -> its file, and the key of a fleet file that names it.
+COMPANIONS = {
+    "params": ("example.yaml", "params"),
+    "rviz": ("example.rviz", "rviz"),
+    "moveit": ("joint_limits.yaml", "moveit"),
+    "tree": ("example.xml", "behavior_trees"),
+    "lua": ("example.lua", "lua"),
+    "bridge": ("example.yaml", "bridge"),
+}
+FLEET: dict[str, Any] = {
+    "layout": "frames-per-robot",
+    "affix": "prefix",
+    "robots": [
+        {"name": "robot1", "description": "robot.urdf"},
+        {"name": "robot2", "description": "robot.urdf"},
+    ],
+}
+
+
+def found(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """What the rule finds in one of its examples."""
+    _write(folder, rule.beside)
+    run = RUNNERS[next(iter(rule.formats), URDF)]
+    findings = run(rule, example, folder)
+    return [it for it in findings if it.code == rule.code]
+
+
+def _write(folder: Path, files: Any) -> None:
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content)
+
+
+def whole(example: str) -> str:
+    """The document that an example stands for."""
+    if re.match(r"\W*(<\?xml|<robot|<sdf)", example):
+        return example
+    return f'<robot name="r">{example}</robot>'
+
+
+def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The file of the example, linted with the rule's options."""
+    ending = "urdf.xacro" if XACRO in rule.formats or "xmlns:xacro" in example else "urdf"
+    ending = "srdf" if rule.formats == (SRDF,) else ending
+    file = folder / f"example.{ending}"
+    file.write_text(whole(example))
+    options: dict[str, Any] = {"roots": (str(folder),), **rule.options}
+    if "urdf" in options:
+        options["urdf"] = str(folder / options["urdf"])
+    return lint_file(str(file), Settings(select=(rule.code,), **options))
+
+
+def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The example rewritten for ``robots`` of the rule's options; the others are those of the call."""
+    options: dict[str, Any] = {"robots": ["robot1"], **rule.options}
+    try:
+        rewrites = list(rewrite_all(whole(example), options.pop("robots"), **options))
+    except RewriteRefused as refused:
+        return list(refused.findings)
+    return list(rewrites[0].findings)
+
+
+def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """A fleet of two robots with the example as one of their files."""
+    file, key = COMPANIONS[rule.formats[0]]
+    _write(folder, {file: example})
+    named = rule.options.get("companions", {})
+    assert isinstance(named, dict)
+    return _fleet(rule, {"companions": {**named, key: [file]}}, folder)
+
+
+def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The example is the fleet file itself, or keys of one."""
+    return _fleet(rule, yaml.safe_load(example), folder)
+
+
+def _fleet(rule: Rule, keys: dict[str, Any], folder: Path) -> list[Finding]:
+    if "robot.urdf" not in rule.beside:
+        _write(folder, {"robot.urdf": DESCRIPTION})
+    _write(folder, {"fleet.yaml": yaml.safe_dump({**FLEET, **rule.options, **keys})})
+    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml")))
+    return list(make_artefacts(plan).findings)
+
+
+RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
+    **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
+    **dict.fromkeys(COMPANIONS, companion_example),
+    "rewrite": rewrite_example,
+    "fleet": fleet_example,
+}

@@ -1,0 +1,67 @@
+"""Two robots of two nodes: their plan, and the graph exactly as planned."""
+
+from __future__ import annotations
+
+from graph_cases import (
+    as_planned,
+    sent,
+)
+
+from multibot_rewrite.graph.expectation import Expectation, expect
+from multibot_rewrite.graph.snapshot import Frame, Snapshot
+from multibot_rewrite.naming import make_naming, spelled
+from multibot_rewrite.remap.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+    NodeFacts,
+)
+from multibot_rewrite.remap.table import build_table
+
+ROBOTS = ("robot1", "robot2")
+NODES = (
+    NodeFacts(
+        "robot_state_publisher",
+        "robot_state_publisher",
+        (
+            Endpoint(TOPIC, PUBLISHES, "/tf", "tf2_msgs/msg/TFMessage"),
+            Endpoint(TOPIC, SUBSCRIBES, "joint_states", "sensor_msgs/msg/JointState"),
+            Endpoint(TOPIC, PUBLISHES, "/rosout", "rcl_interfaces/msg/Log"),
+        ),
+    ),
+    NodeFacts(
+        "driver",
+        "driver",
+        (
+            Endpoint(TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist"),
+            Endpoint(TOPIC, PUBLISHES, "joint_states", "sensor_msgs/msg/JointState"),
+            Endpoint(SERVICE, SERVES, "reset", "std_srvs/srv/Trigger"),
+            Endpoint(TOPIC, PUBLISHES, "extra", "std_msgs/msg/String", when="debug"),
+        ),
+    ),
+)
+LINKS = ("base_link", "laser")
+
+
+def plan(layout: str = "L2") -> Expectation:
+    naming = make_naming(layout)
+    return expect(build_table(ROBOTS, NODES, naming), naming, frames(layout))
+
+
+def frames(layout: str) -> dict[str, list[str]]:
+    naming = make_naming(layout)
+    return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
+
+
+def healthy(layout: str = "L2") -> Snapshot:
+    """The graph exactly as planned, on odometry."""
+    graph = as_planned(plan(layout))
+    naming = make_naming(layout)
+    odometry = tuple(
+        Frame(robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ())
+        for robot in plan(layout).robots
+    )
+    return sent(graph._replace(frames=(*graph.frames, *odometry)))
