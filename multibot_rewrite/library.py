@@ -29,7 +29,7 @@ class Rewrite(NamedTuple):
     robot: str
     data: bytes
     findings: tuple[Finding, ...]
-    template: pipeline.Template
+    template: pipeline.Prepared
 
     @property
     def text(self) -> str:
@@ -88,8 +88,8 @@ def rewrite_all(
     args = xacro_args or {}
     data, name = read_source(source, args_for(source, urdf, args))
     beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
-    outside = pipeline.prepare(*beside, naming, tree).inventory.declared if beside else {}
-    template = pipeline.prepare(data, file or name, naming, tree, outside)
+    urdf_declarations = pipeline.prepare(*beside, naming, tree).inventory.declared if beside else {}
+    template = pipeline.prepare(data, file or name, naming, tree, urdf_declarations)
     texts = pipeline.render(template, robots, again)
     findings = tuple(template.findings)
     return (Rewrite(r, t, findings, template) for r, t in zip(robots, texts, strict=True))
@@ -117,11 +117,11 @@ def explain(
     args = xacro_args or {}
     data, name = read_source(source, args_for(source, urdf, args))
     beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
-    outside = pipeline.declarations(*beside, tree) if beside else {}
+    urdf_declarations = pipeline.declarations(*beside, tree) if beside else {}
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
-    inventory = collect(read_document(data, file or name), tree, outside)
-    pipeline.check_outside(inventory, outside)
+    inventory = collect(read_document(data, file or name), tree, urdf_declarations)
+    pipeline.check_urdf(inventory, urdf_declarations)
     return explain_line(inventory, naming, tree, robot, line)
 
 
@@ -145,8 +145,8 @@ def strip(
     check_robot_name(robot)
     chosen = naming or make_naming(**policy)  # type: ignore[arg-type]
     tree = builtin_tree(tuple(vocabulary))
-    outside = {} if urdf is None else pipeline.declarations(*read_source(urdf, {}), tree)
-    return pipeline.strip(data, file or name, robot, chosen, tree, outside)
+    urdf_declarations = {} if urdf is None else pipeline.declarations(*read_source(urdf, {}), tree)
+    return pipeline.strip(data, file or name, robot, chosen, tree, urdf_declarations)
 
 
 def _check_robots(robots: Sequence[str]) -> None:

@@ -1,10 +1,10 @@
-"""Checks that hang on the robots' names: is it done already, do names meet, can it be stripped."""
+"""Checks that depend on the robots' names: already rewritten, names that become one, strip."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.checks.remarks import Remark, about, told
+from multibot_rewrite.checks.remarks import Remark, about, to_findings
 from multibot_rewrite.model import ERROR, Claim, Finding
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.forms import Declared
@@ -12,7 +12,7 @@ from multibot_rewrite.rewriters.spelling import is_reached, must_be_declared
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding
 from multibot_rewrite.steps.inserted import markers
-from multibot_rewrite.steps.renames import Key, RenameMap
+from multibot_rewrite.steps.renames import NameKey, RenameMap
 
 
 def already_rewritten(
@@ -20,13 +20,14 @@ def already_rewritten(
 ) -> Iterator[Finding]:
     """Refuse a document that carries a robot's affix on every name, or text inserted for it.
 
-    ``again`` insists, but not where inserted text of two rewrites could not be told apart.
+    ``again`` rewrites it once more, but not where it has inserted elements of the same robot.
     """
     marked = {mark.robot for mark in markers(inventory.document)}
     for robot in robots:
         if robot in marked or (not again and _spelled_for(renames, robot)):
             message = f"the description is already rewritten for {robot}"
-            hint = "--strip takes it back first" if again else "--again insists, --strip undoes"
+            more = "" if again else ", or rewrite it once more with --again"
+            hint = f"undo it with --strip{more}"
             yield finding(inventory.document, 0, "MB106", ERROR, message, hint)
 
 
@@ -40,14 +41,14 @@ def _spelled_for(renames: RenameMap, robot: str) -> bool:
     return some
 
 
-def _changing(renames: RenameMap) -> Iterator[Key]:
+def _changing(renames: RenameMap) -> Iterator[NameKey]:
     """The names in values that change, each as often as it is there."""
     return ((it.kind, it.text, it.namespaced) for value in renames.values for it in value)
 
 
 def collisions(inventory: Inventory, renames: RenameMap, robots: Iterable[str]) -> list[Finding]:
     """Names that stay as they are and are what another name becomes for some robot."""
-    return list(told(inventory.document, taken_names(inventory, renames, robots), ERROR))
+    return list(to_findings(inventory.document, taken_names(inventory, renames, robots), ERROR))
 
 
 def taken_names(
@@ -58,7 +59,9 @@ def taken_names(
     for robot in robots if kept else ():
         for kind, name, claim in kept:
             if _stem(renames.naming, robot, kind, name) in inventory.declared.get(kind, ()):
-                message = f"another {kind} becomes {name!r} for {robot}, which is there already"
+                message = (
+                    f"another {kind} would become {name!r} for {robot}, which the file already uses"
+                )
                 yield about(claim, "MB420", message, "choose another separator")
 
 
@@ -91,13 +94,13 @@ def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
 def meeting(
     inventory: Inventory, renames: RenameMap, pairs: Collection[tuple[str, str, str]]
 ) -> list[Finding]:
-    """Names of two different robots that come out alike; ``pairs`` are from ``naming.overlap``."""
+    """Names of two robots that become the same; ``pairs`` are from ``naming.overlap``."""
     names = set(_changing(renames)) if pairs else set()
     found = []
     for robot, other, _ in pairs:
         ours = {(name[0], renames.spelled(robot, *name)) for name in names}
         for kind, both in sorted(ours & {(n[0], renames.spelled(other, *n)) for n in names}):
-            message = f"{kind} {both!r} comes out for {robot} and for {other}"
+            message = f"{robot} and {other} would both have a {kind} {both!r}"
             hint = "rename a robot or choose another separator"
             found.append(finding(inventory.document, 0, "MB421", ERROR, message, hint))
     return found
@@ -107,8 +110,8 @@ def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[
     """Links and joints without the affix that ``--strip`` is to take off."""
     for kind, name, claim, changes in _declarations(inventory, renames):
         if changes and removal(renames.naming, robot, kind, name) is None:
-            message = f"{kind} {name!r} is not spelled for {robot}"
-            hint = "give --strip the robot and the options the file was made with"
+            message = f"{kind} {name!r} does not have the name of {robot}"
+            hint = "give --strip the robot and the options that the file was made with"
             return [finding(inventory.document, claim.start, "MB107", ERROR, message, hint)]
     return []
 
@@ -122,14 +125,14 @@ def other_urdf(
         for name, claim in names.items():
             changes = renames.changes(kind, name) and is_reached(claim, naming)
             if changes and removal(naming, robot, kind, name) is None:
-                message = f"{kind} {name!r} of the URDF is not spelled for {robot}"
+                message = f"{kind} {name!r} of the URDF does not have the name of {robot}"
                 hint = "give --urdf the URDF as it was rewritten with the same options"
                 return [finding(inventory.document, 0, "MB107", ERROR, message, hint)]
     return []
 
 
 def other_options(inventory: Inventory, robot: str) -> Finding:
-    """The stripped text does not lead back to the file."""
-    message = f"the file is not what a rewrite for {robot} with these options makes"
+    """The stripped text, rewritten again, is not the file."""
+    message = f"a rewrite for {robot} with these options does not give this file"
     hint = "give --strip the options the file was made with"
     return finding(inventory.document, 0, "MB108", ERROR, message, hint)

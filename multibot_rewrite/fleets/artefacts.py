@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.graph_names import known_topics
 from multibot_rewrite.companions.rviz.rewrite import RvizRobot, RvizText, rviz, start_command
@@ -23,6 +22,7 @@ from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.plan import FleetPlan
 from multibot_rewrite.fleets.started import alone, started
 from multibot_rewrite.fleets.written import Written
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.remap import forms
@@ -56,7 +56,7 @@ class Artefacts(NamedTuple):
 
 def make_artefacts(plan: FleetPlan) -> Artefacts:
     """Every file of a fleet; raises InputError for a companion that cannot be read or rewritten."""
-    with uncollected():
+    with gc_paused():
         fleet, each = started(plan), list(alone(plan))
         configs = list(_configs(plan, each))
         made = [

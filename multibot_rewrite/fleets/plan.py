@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.fleets.describe import Described, describe
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.gc_pause import gc_paused
 
 
 class FleetPlan(NamedTuple):
@@ -25,7 +25,7 @@ def plan_fleet(file: FleetFile, also: Sequence[str] = ()) -> FleetPlan:
     ``also`` are nodes that every robot runs, too. Raises as ``rewrite_all``, and UsageError for an
     unknown stack.
     """
-    with uncollected():
+    with gc_paused():
         return _planned(file, also)
 
 

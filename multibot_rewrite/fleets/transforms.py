@@ -150,7 +150,7 @@ def _sent(plan: FleetPlan, robot: Described) -> dict[str, list[Edge]]:
 def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
     """The frames that gz-sim's systems start their odometry at, and a bridge brings to tf."""
     for host in inventory.hosts:
-        name = host.node.rewriter.names[0] if host.node.rewriter else ""
+        name = host.node.section.names[0] if host.node.section else ""
         topics = known_topics()["plugins"].get(name, ())
         if any(row[2] == TF_TYPE for row in topics):
             told = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)

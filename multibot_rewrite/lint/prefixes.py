@@ -8,16 +8,16 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.naming import SHARED_FRAMES
 
 # What people call what stands in front of a robot's names.
-_PREFIX = regex(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
-_PARAM = regex(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
-_HOLES = regex(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")
-_LITERAL = regex(r"'[^']*'|\"[^\"]*\"")
-_WORD = regex(r"[A-Za-z_]\w*")
+_PREFIX = lazy_compile(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
+_PARAM = lazy_compile(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
+_HOLES = lazy_compile(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")
+_LITERAL = lazy_compile(r"'[^']*'|\"[^\"]*\"")
+_WORD = lazy_compile(r"[A-Za-z_]\w*")
 # Tag -> the attribute that refers to a link or joint; empty for the text.
 _REFERENCES = {
     "parent": "link",

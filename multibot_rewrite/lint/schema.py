@@ -18,7 +18,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.checks.audit import nearest
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.steps.document import Document, tag_end
 
 _FILE = Path(__file__).parent / "urdf.schema"
@@ -32,16 +32,16 @@ _UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
 # One look tells that a usual value is fine. urdfdom takes blanks in front of a lone number and none
 # behind it.
 _FINE = {
-    "number": regex(rf" *{_SCALAR}", re.ASCII),
-    "numbers": regex(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
-    "rgba": regex(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
-    "version": regex(r"0*1\.0+", re.ASCII),
+    "number": lazy_compile(rf" *{_SCALAR}", re.ASCII),
+    "numbers": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
+    "rgba": lazy_compile(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
+    "version": lazy_compile(r"0*1\.0+", re.ASCII),
 }
 _LONG = 200
 _COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
-_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-_INFINITE = regex(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
-_UNITS = regex(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
+_NUMBER = lazy_compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_INFINITE = lazy_compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
+_UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
 # The parts of a robot that hold text somewhere, which is quickly asked, and where.
 _TOPS = etree.XPath(
     "/robot[text()[normalize-space()]] | /robot/link[normalize-space()]"
@@ -50,11 +50,11 @@ _TOPS = etree.XPath(
 _TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
 # A number with a line end or tab right behind it.
 _BROKEN = (
-    regex(rb"\n(?<=[\d.]\n)"),
-    regex(rb"\t(?<=[\d.]\t)"),
-    regex(rb"\r(?<=[\d.]\r)"),
+    lazy_compile(rb"\n(?<=[\d.]\n)"),
+    lazy_compile(rb"\t(?<=[\d.]\t)"),
+    lazy_compile(rb"\r(?<=[\d.]\r)"),
 )
-_ASSIGNED = regex(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
+_ASSIGNED = lazy_compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
 # Joints of these types have no axis that urdfdom reads.
 _AXIS_FREE = ("fixed", "floating")
 

@@ -68,7 +68,7 @@ def _robot_topics(
     # Bare frames leave the model's name to the spawner: the robot's own, or two models collide.
     model = inventory.document.root.get("name", "") if naming.layout.frames else robot
     for host in inventory.hosts:
-        name = host.node.rewriter.names[0] if host.node.rewriter else ""
+        name = host.node.section.names[0] if host.node.section else ""
         yield from _plugin(
             host.element, known_topics()["plugins"].get(name, ()), robot, model, naming
         )

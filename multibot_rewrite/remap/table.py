@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.bulk import uncollected
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.naming import NAMESPACE, Naming, spelled
 from multibot_rewrite.remap.records import (
@@ -53,7 +53,7 @@ def build_table(
 
     ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
     """
-    with uncollected():
+    with gc_paused():
         return _build(robots, nodes, naming, plugins)
 
 

@@ -16,13 +16,13 @@ from multibot_rewrite.naming import (
     is_keyword,
     removal,
 )
-from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, Part
+from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, NamePart
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
 
-HOLE = "\0"
+ROBOT_SLOT = "\0"
 
 
-class Name(NamedTuple):
+class ResolvedName(NamedTuple):
     """A name in a value: where it starts, and what it is; ``kind`` is empty where the file would
     have to declare it as one of ``kinds`` and does not."""
 
@@ -45,9 +45,9 @@ class Renamed(NamedTuple):
 Spelling = tuple[Renamed, ...]
 
 
-def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[Name, ...]]:
+def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[ResolvedName, ...]]:
     """The names in each claimed value, resolved; claims of one key share theirs."""
-    known: dict[tuple[object, str], tuple[Name, ...]] = {}
+    known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
     result = []
     for claim in claims:
         key = spelling_key(claim)
@@ -58,18 +58,18 @@ def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[Na
     return result
 
 
-def _resolved(claim: Claim, declared: Declared) -> tuple[Name, ...]:
+def _resolved(claim: Claim, declared: Declared) -> tuple[ResolvedName, ...]:
     site, value = claim.site, claim.value
-    if site.plain and value in declared[site.plain]:
-        return (Name(0, value, site.plain, site.kinds),)
+    if site.whole_value_kind and value in declared[site.whole_value_kind]:
+        return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
     return tuple(
-        Name(part.at, part.text, kind_of(part, site.role, declared), part.kinds)
+        ResolvedName(part.at, part.text, kind_of(part, site.role, declared), part.kinds)
         for part in names_in(claim, declared)
     )
 
 
-def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
-    """The names in a claimed value; none where it stands in the scope of another model."""
+def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
+    """The names in a claimed value; none where it is in the scope of another model."""
     site = claim.site
     parts = FORMS[site.form](claim.value, site.kinds, declared)
     return in_scope(claim.element, parts, declared) if site.form == "scoped" else parts
@@ -93,7 +93,7 @@ def spelling_key(claim: Claim) -> tuple[object, str]:
     site = claim.site
     if site.form == "scoped":
         return (id(site), scope_of(claim.element)), claim.value
-    return site.plain or id(site), claim.value
+    return site.whole_value_kind or id(site), claim.value
 
 
 def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:
@@ -119,7 +119,7 @@ def must_be_declared(site: Site) -> bool:
     return site.kinds[-1] in CLOSED_KINDS or site.form == "scoped"
 
 
-def kind_of(part: Part, role: str, declared: Declared) -> str:
+def kind_of(part: NamePart, role: str, declared: Declared) -> str:
     """Which of its kinds a name is; empty for a use of something that is not declared."""
     if part.matched:
         return part.matched[0]

@@ -19,7 +19,7 @@ from lxml import etree
 
 from multibot_rewrite.model import Edit, InputError
 from multibot_rewrite.rewriters.insert import Insertion
-from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.document import Document, tag_end
 
 MARKER = b"<!-- multibot "
@@ -54,12 +54,12 @@ def _parent_edits(
     lead = _lead(source, start, end)
     elements = _elements(items, lead)
     word = " expanded" if expanded else ""
-    marker = f"<!-- multibot {HOLE} +{len(elements)}{word} ({WHY} {_shared(items)}) -->"
+    marker = f"<!-- multibot {ROBOT_SLOT} +{len(elements)}{word} ({WHY} {_shared(items)}) -->"
     text = "".join(lead + part for part in (marker, *elements))
     if expanded:
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
-        return hole_edits(end - 2, end, f">{text}{lead}</{name}>")
-    return hole_edits(end, end, text)
+        return slot_edits(end - 2, end, f">{text}{lead}</{name}>")
+    return slot_edits(end, end, text)
 
 
 def _shared(items: list[Insertion]) -> str:
@@ -85,9 +85,9 @@ def _elements(items: list[Insertion], lead: str) -> list[str]:
     return plain
 
 
-def hole_edits(start: int, end: int, text: str) -> list[Edit]:
-    """Replace ``start:end`` by ``text``, in which ``HOLE`` stands for the robot's name."""
-    first, *rest = (piece.encode() for piece in text.split(HOLE))
+def slot_edits(start: int, end: int, text: str) -> list[Edit]:
+    """Replace ``start:end`` by ``text``, in which ``ROBOT_SLOT`` stands for the robot's name."""
+    first, *rest = (piece.encode() for piece in text.split(ROBOT_SLOT))
     if not rest:
         return [Edit(start, end, first, None)]
     return [Edit(start, end, first, rest[0])] + [Edit(end, end, b"", piece) for piece in rest[1:]]

@@ -1,6 +1,6 @@
 """Inventory + naming -> plan: what each claimed value becomes, as edits of the source bytes.
 
-A plan holds for every robot: the robot's name is a hole in its edits.
+A plan is for any robot: its edits have a slot for the robot's name.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from multibot_rewrite.model import ERROR, Claim, Edit, Finding
 from multibot_rewrite.naming import Affix, Naming
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions
-from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import fillable, finding, value_places, value_slot
-from multibot_rewrite.steps.inserted import hole_edits, insertion_edits
+from multibot_rewrite.steps.inserted import insertion_edits, slot_edits
 from multibot_rewrite.steps.renames import RenameMap, make_renames, respeller
 
 _START = itemgetter(0)
@@ -41,19 +41,19 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     renames = make_renames(inventory, naming)
     edits, findings = _edits(inventory, renames)
     document, claims, hosts, declared, *_ = inventory
-    collisions = respell_collisions(document.root, claims, declared, respeller(renames, HOLE))
+    collisions = respell_collisions(document.root, claims, declared, respeller(renames, ROBOT_SLOT))
     findings += _unstable(inventory, renames, collisions)
     for claim, new in collisions:
         slot = value_slot(document.source, *claim[2:])
         if slot is None:
             findings.append(_not_editable(inventory, claim))
         else:
-            edits += hole_edits(*slot, new)
+            edits += slot_edits(*slot, new)
     added = [
         item
         for host in hosts
-        if host.node.rewriter is not None
-        for item in insertions(host.element, host.node.rewriter, declared, naming)
+        if host.node.section is not None
+        for item in insertions(host.element, host.node.section, declared, naming)
     ]
     edits += insertion_edits(document, added)
     # Stable: several edits at one place stay in the order they were made.
@@ -66,7 +66,7 @@ def _unstable(
 ) -> list[Finding]:
     """Contacts whose collision is numbered by how the robot's name sorts: no plan holds for all."""
     document, claims, _, declared, *_ = inventory
-    # HOLE sorts before every letter, this after.
+    # ROBOT_SLOT sorts before every letter, this after.
     respell = respeller(renames, LAST)
     last = respell_collisions(document.root, claims, declared, respell) if collisions else []
     return [
@@ -79,7 +79,7 @@ def _unstable(
             "use --affix prefix, or keep the fixed joints apart with preserveFixedJoint",
         )
         for (claim, text), (_, other) in zip(collisions, last, strict=False)
-        if text != other.replace(LAST, HOLE)
+        if text != other.replace(LAST, ROBOT_SLOT)
     ]
 
 

@@ -8,11 +8,17 @@ from typing import NamedTuple
 from multibot_rewrite.naming import Affix, Naming, affix
 from multibot_rewrite.rewriters.contact import Respell
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import Name, Renamed, Spelling, is_reached, renamed_at
+from multibot_rewrite.rewriters.spelling import (
+    Renamed,
+    ResolvedName,
+    Spelling,
+    is_reached,
+    renamed_at,
+)
 from multibot_rewrite.steps.collect import Inventory
 
 # Kind and text of a name, and whether a ROS namespace reaches it.
-Key = tuple[str, str, bool]
+NameKey = tuple[str, str, bool]
 
 
 class RenameMap(NamedTuple):
@@ -23,7 +29,7 @@ class RenameMap(NamedTuple):
     """
 
     naming: Naming
-    affixes: Mapping[Key, Affix]
+    affixes: Mapping[NameKey, Affix]
     values: list[Spelling]
 
     def changes(self, kind: str, name: str) -> bool:
@@ -39,12 +45,12 @@ class RenameMap(NamedTuple):
 def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
     """Ask the naming once for every distinct name of a description."""
     declared = inventory.declared.items()
-    keys: set[Key] = {(kind, name, False) for kind, names in declared for name in names}
+    keys: set[NameKey] = {(kind, name, False) for kind, names in declared for name in names}
     pairs = list(zip(inventory.claims, inventory.names, strict=True))
     keys |= {(n.kind, n.text, claim.site.namespaced) for claim, names in pairs for n in names}
     asked = ((key, affix(naming, *key)) for key in keys)
     affixes = {key: there for key, there in asked if there is not None}
-    known: dict[tuple[tuple[Name, ...], bool], Spelling] = {}
+    known: dict[tuple[tuple[ResolvedName, ...], bool], Spelling] = {}
     values = []
     for claim, names in pairs:
         at = names, claim.site.namespaced
@@ -55,7 +61,7 @@ def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
 
 
 def _spelling(
-    names: tuple[Name, ...], namespaced: bool, affixes: Mapping[Key, Affix]
+    names: tuple[ResolvedName, ...], namespaced: bool, affixes: Mapping[NameKey, Affix]
 ) -> tuple[Renamed, ...]:
     found = ((name, affixes.get((name.kind, name.text, namespaced))) for name in names)
     return tuple(

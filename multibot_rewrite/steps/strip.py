@@ -5,7 +5,7 @@ from __future__ import annotations
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
-from multibot_rewrite.rewriters.spelling import Name, is_reached, unspelled
+from multibot_rewrite.rewriters.spelling import ResolvedName, is_reached, unspelled
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import emptied, value_places, value_slot
 from multibot_rewrite.steps.inserted import removals
@@ -15,9 +15,9 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     """Edits that undo ``make_plan`` for ``robot``, in source order."""
     document = inventory.document
     edits = removals(document, robot)
-    claims = outside_of(inventory.claims, edits)
+    claims = not_inserted(inventory.claims, edits)
     removed = list(edits)
-    known: dict[tuple[tuple[Name, ...], bool], list[tuple[int, int]]] = {}
+    known: dict[tuple[tuple[ResolvedName, ...], bool], list[tuple[int, int]]] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         key = names, claim.site.namespaced
         if key not in known:
@@ -35,8 +35,8 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     return sorted(edits, key=lambda edit: edit.start)
 
 
-def outside_of(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
-    """The claims that do not stand in inserted text."""
+def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
+    """The claims that are not in inserted elements."""
     return [claim for claim in claims if not _inside(claim, removed)] if removed else claims
 
 
@@ -45,7 +45,7 @@ def _inside(claim: Claim, removed: list[Edit]) -> bool:
 
 
 def _spans(
-    names: tuple[Name, ...], namespaced: bool, naming: Naming, robot: str
+    names: tuple[ResolvedName, ...], namespaced: bool, naming: Naming, robot: str
 ) -> list[tuple[int, int]]:
     """The parts of a value with these names that an affix put there."""
     spans = []

@@ -18,7 +18,7 @@ from multibot_rewrite.model import ERROR, Finding, Site
 from multibot_rewrite.naming import POSTFIX, Naming, make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.vocabulary import Rewriter, load_vocabulary
+from multibot_rewrite.rewriters.vocabulary import VocabularySection, load_vocabulary
 from multibot_rewrite.steps.apply import fill
 
 ROBOTS = ("robot1", "robot2")
@@ -30,10 +30,10 @@ REFUSED = [case for case in CASES if case.expect == "refused"]
 # An element that holds others and no name of its own has nothing to show.
 REWRITERS = [
     rewriter
-    for rewriter in load_vocabulary().rewriters("element", "plugin", "hardware", "sensor")
+    for rewriter in load_vocabulary().sections("element", "plugin", "hardware", "sensor")
     if rewriter.type != "element" or any(site.role != "keep" for site in rewriter.sites)
 ]
-BLOCKS = load_vocabulary().rewriters("block")
+BLOCKS = load_vocabulary().sections("block")
 LEAST_CASES = 1050
 LEAST_REFEREED = 980
 # Not a word of rewrite's naming policy.
@@ -191,25 +191,25 @@ def sizes(data: bytes) -> tuple[int, int] | None:
 @every
 def test_the_named_rewriter_is_at_work(case: Case) -> None:
     _, claims, hosts, *_ = run(case).template.inventory
-    served = {host.node.rewriter.name for host in hosts if host.node.rewriter is not None}
+    served = {host.node.section.name for host in hosts if host.node.section is not None}
     assert case.rewriter in served | {claim.site.section for claim in claims}
 
 
 @every_rewriter
-def test_every_rewriter_has_a_changed_and_a_same_case(rewriter: Rewriter) -> None:
+def test_every_rewriter_has_a_changed_and_a_same_case(rewriter: VocabularySection) -> None:
     renames = any(site.role != "keep" for site in rewriter.sites)
     wanted = {"changed", "same"} if renames else {"same"}
     assert wanted <= {case.expect for case in CASES if case.rewriter == rewriter.name}
 
 
 @every_rewriter
-def test_every_default_and_hard_wired_topic_is_inserted(rewriter: Rewriter) -> None:
+def test_every_default_and_hard_wired_topic_is_inserted(rewriter: VocabularySection) -> None:
     cases = [case for case in REWRITTEN if case.rewriter == rewriter.name]
     inserted = {item.old for case in cases for item in run(case).template.plan.insertions}
     assert not rewriter.inserts or literals(rewriter) <= inserted
 
 
-def literals(rewriter: Rewriter) -> set[str]:
+def literals(rewriter: VocabularySection) -> set[str]:
     """What the consumer falls back to or hard-wires, private topics aside."""
     stated = {site.default.rpartition("?")[2] for site in rewriter.sites}
     defaults = {default for default in stated if "/../" not in default}
@@ -223,7 +223,7 @@ def test_every_row_of_the_vocabulary_renames_something() -> None:
     assert left == UNEXERCISED
 
 
-def rows(rewriter: Rewriter) -> list[Site]:
+def rows(rewriter: VocabularySection) -> list[Site]:
     """The rows of its own section at which something may be renamed."""
     own = f"{rewriter.type} {rewriter.names[0]}"
     return [site for site in rewriter.sites if site.role != "keep" and site.section == own]

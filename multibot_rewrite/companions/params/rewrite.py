@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.params.inserted import (
     inserted,
@@ -36,6 +35,7 @@ from multibot_rewrite.companions.params.values import (
 )
 from multibot_rewrite.companions.template import GRAPH, SPELLED, Template, cut
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import Finding, InputError
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -58,7 +58,7 @@ def params(
     an error to have one of them in a name. Raises InputError for a file that is none or that rcl
     refuses.
     """
-    with uncollected():
+    with gc_paused():
         _check_holes(document)
         words = frozenset(robots)
         desk = Desk(document, context, known or built_in_params(), facts_by_name(facts), words)

@@ -11,7 +11,7 @@ from lxml import etree
 
 from multibot_rewrite.checks.audit import leftover_xacro, nearest, worlds
 from multibot_rewrite.checks.robots import already_rewritten
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.numbers import numbers
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
@@ -19,10 +19,10 @@ from multibot_rewrite.model import ERROR, WARNING, Edit, Finding
 from multibot_rewrite.steps.renames import make_renames
 
 BOM = b"\xef\xbb\xbf"
-_DECLARED = regex(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
-_ENCODED = regex(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
-_NAMESPACE = regex(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
-_ROOT = regex(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_DECLARED = lazy_compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
+_ENCODED = lazy_compile(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
+_NAMESPACE = lazy_compile(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ROOT = lazy_compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
 _LOOKS = ["visual", "link", "robot"]
 Look = tuple[tuple[float, ...] | str, str]
 

@@ -10,16 +10,16 @@ from urllib.parse import unquote
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.elements import Elements
 from multibot_rewrite.lint.packages import entries, find_in, package_folders
 from multibot_rewrite.lint.records import NOTE, Problem, Subject, rule
 from multibot_rewrite.lint.written import is_fixed, starts_of
 from multibot_rewrite.model import ERROR, WARNING
 
-_SCHEME = regex(r"([A-Za-z][A-Za-z0-9+.-]+)://")
+_SCHEME = lazy_compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 # A letter and a colon is a drive of Windows.
-_MACHINE = regex(r"/|[A-Za-z]:[/\\]")
+_MACHINE = lazy_compile(r"/|[A-Za-z]:[/\\]")
 READABLE = frozenset(("stl", "dae", "obj"))
 # Who cannot read the rest of what RViz reads through assimp.
 PARTLY = {

@@ -8,13 +8,13 @@ from lxml.etree import _Element
 
 from multibot_rewrite.checks import hazards, robots
 from multibot_rewrite.checks.remarks import Remark
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import NOTE, SRDF, XACRO, Problem, Subject, rule
 from multibot_rewrite.lint.written import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.model import ERROR, WARNING, Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, TF_TOPICS, make_naming, overlap
 from multibot_rewrite.rewriters.insert import insertions
-from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.rewriters.switches import switched_off
 from multibot_rewrite.rewriters.tree import library_key
 from multibot_rewrite.rosnames import split_remap
@@ -42,7 +42,7 @@ WORLD_SYSTEMS = {
     "gz-sim-scene-broadcaster-system": "every state of the world is sent once more for each copy",
 }
 DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
-DEVICE = regex(
+DEVICE = lazy_compile(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
 )
 
@@ -119,7 +119,7 @@ def _target(claim: Claim) -> str:
 
 def _process_wide(subject: Subject) -> set[_Element]:
     hosts = subject.inventory.hosts
-    return {it.element for it in hosts if it.node.rewriter and it.node.rewriter.process_wide}
+    return {it.element for it in hosts if it.node.section and it.node.section.process_wide}
 
 
 def _is_gz(claim: Claim) -> bool:
@@ -260,10 +260,10 @@ def _inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]
     """Kind, default and tag of what urdf-postfix would insert, but for namespaces."""
     declared = subject.inventory.declared
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is None or not any(map(_may_insert, rewriter.sites)):
+        section = host.node.section
+        if section is None or not any(map(_may_insert, section.sites)):
             continue
-        for it in insertions(host.element, rewriter, declared, APART):
+        for it in insertions(host.element, section, declared, APART):
             tag = it.xml[1:].partition(">")[0].partition(" ")[0]
             if it.kind != "namespace" and tag != "remapping":
                 yield host.element, (it.kind, it.old, tag)
@@ -326,12 +326,12 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
     if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:
         return
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is None or "/tf" not in rewriter.publishes or not rewriter.inserts:
+        section = host.node.section
+        if section is None or "/tf" not in section.publishes or not section.inserts:
             continue
-        if "/tf" in switched_off(host.element, rewriter) or _moves_tf(host.element):
+        if "/tf" in switched_off(host.element, section) or _moves_tf(host.element):
             continue
-        of = "the controllers it loads publish" if rewriter.process_wide else "it publishes"
+        of = "the controllers it loads publish" if section.process_wide else "it publishes"
         message = f"plugin {host.element.get('name', '')!r}: {of} on /tf, which no namespace moves"
         yield Problem(host.element, message, None, "<remapping>/tf:=tf</remapping>")
 
@@ -361,10 +361,10 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     declared = subject.inventory.declared
     bare = []
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is None or not any("namespace" in it.kinds for it in rewriter.sites):
+        section = host.node.section
+        if section is None or not any("namespace" in it.kinds for it in section.sites):
             continue
-        items = insertions(host.element, rewriter, declared, APART)
+        items = insertions(host.element, section, declared, APART)
         if any(it.kind == "namespace" for it in items):
             bare.append(host.element)
     if bare:
@@ -690,10 +690,10 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     renames = _renames(subject)
     first, last = (
         respell_collisions(document.root, claims, declared, respeller(renames, name))
-        for name in (HOLE, LAST)
+        for name in (ROBOT_SLOT, LAST)
     )
     for (claim, text), (_, other) in zip(first, last, strict=False):
-        if text != other.replace(LAST, HOLE):
+        if text != other.replace(LAST, ROBOT_SLOT):
             message = f"the number in {claim.value!r} would depend on how the robot's name sorts"
             yield Problem(claim.element, message, claim.attribute, "use affix prefix")
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import NOTE, SRDF, URDF, Problem, Subject, rule
 from multibot_rewrite.model import ERROR, WARNING, Claim, Edit
 from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN
@@ -18,10 +18,10 @@ WORLD = "world"
 SPOKEN = frozenset({"topic", "service", "namespace"})
 # What stands for other text is not looked at: its rule is MB105.
 SUBSTITUTION = "$"
-_BLANK = regex(r"\s")
-_TOKEN = regex(r"[A-Za-z_]\w*", re.ASCII)
+_BLANK = lazy_compile(r"\s")
+_TOKEN = lazy_compile(r"[A-Za-z_]\w*", re.ASCII)
 # ROS 1, ROS 2 and both Gazebos agree on these.
-_SPOKEN = regex(r"[\w/~]*", re.ASCII)
+_SPOKEN = lazy_compile(r"[\w/~]*", re.ASCII)
 
 
 def _named(subject: Subject) -> Iterator[tuple[str, str, _Element]]:
