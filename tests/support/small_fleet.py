@@ -53,7 +53,7 @@ def plan(layout: str = "L2") -> Expectation:
 
 def frames(layout: str) -> dict[str, list[str]]:
     naming = make_naming(layout)
-    return {robot: [spelled(link, robot, naming) for link in LINKS] for robot in ROBOTS}
+    return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
 
 
 def healthy(layout: str = "L2") -> Snapshot:

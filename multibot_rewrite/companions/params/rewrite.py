@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
@@ -43,6 +42,7 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import Finding
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -64,7 +64,7 @@ def rewrite_params(
     move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
     an error. Raises InputError for a file that is not a parameter file or that rcl rejects.
     """
-    with uncollected():
+    with gc_paused():
         check_no_slots(document.text, document.file)
         words = frozenset(robots)
         job = ParamsJob(document, context, known or built_in_nodes(), facts_by_name(facts), words)

@@ -25,7 +25,7 @@ from multibot_rewrite.companions.yaml_text import (
     replaced,
 )
 from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
-from multibot_rewrite.naming import affix
+from multibot_rewrite.naming import spelled
 from multibot_rewrite.rosnames import check_node_name
 
 PARAMETERS = "ros__parameters"
@@ -179,8 +179,8 @@ def _full(path: str, context: Context) -> str:
 
 def _full_wild(path: str, name: str, context: Context) -> str:
     """A pattern matches in any namespace; only the node's own name in it can change."""
-    there = None if name in _ANY else affix(context.topics.naming, "node", name)
-    return f"/{path[: len(path) - len(name)]}{there.spell(name, NAMESPACE_SLOT) if there else name}"
+    own = name if name in _ANY else spelled(context.topics.naming, NAMESPACE_SLOT, "node", name)
+    return f"/{path[: len(path) - len(name)]}{own}"
 
 
 def identify_node(

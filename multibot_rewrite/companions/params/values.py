@@ -30,6 +30,7 @@ from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, finding_at, pairs, replaced
 from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rosnames import check_topic_name
 
 # Kinds of names that must be declared in the description.
@@ -203,21 +204,14 @@ def _undeclared(job: ParamsJob, site: NameSite) -> _Draft | None:
             return None
         what = "frame" if site.param else "possible frame"
         message = f"{what} {value!r} is not in the description"
-        hint = _near(value, known) or "some node must publish it with the robot's name"
+        hint = did_you_mean(value, known) or "some node must publish it with the robot's name"
         return "MF112", WARNING, message, hint
     if "/" in value and site.kind == "joint" and value.rpartition("/")[2] in known:
         return None
     if site.param is None:
         return None
     message = f"{site.kind} {value!r} is not in the description"
-    return "MF111", WARNING, message, _near(value, known) or "it stays unchanged; correct it"
-
-
-def _near(value: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches  # only a message needs it
-
-    near = get_close_matches(value, list(known), 1, 0.6)
-    return f"did you mean {near[0]!r}?" if near else ""
+    return "MF111", WARNING, message, did_you_mean(value, known) or "it stays unchanged; correct it"
 
 
 def _invalid_topic(site: NameSite) -> _Draft | None:

@@ -45,7 +45,7 @@ def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]
     """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
     declared = subject.inventory.declared
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
+        rewriter = host.node.section
         if rewriter is None or not any(map(_may_insert, rewriter.sites)):
             continue
         for it in insertions(host.element, rewriter, declared, APART):
