@@ -710,7 +710,7 @@ def test_the_page_has_the_table_and_every_code() -> None:
     assert text.endswith(page(built_in_nodes()))
     source = "".join(
         (ROOT / "multibot_rewrite" / "companions" / "params" / name).read_text()
-        for name in ("sections.py", "values.py", "shared_defaults.py")
+        for name in ("sections.py", "section_findings.py", "values.py", "shared_defaults.py")
     )
     assert set(re.findall(r"MF1\d\d", text)) == set(re.findall(r'"(MF1\d\d)"', source))
 

@@ -61,7 +61,9 @@ def healthy(layout: str = "L2") -> Snapshot:
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        GraphFrame(robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ())
+        GraphFrame(
+            robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ()
+        )
         for robot in plan(layout).robots
     )
     return sent(graph._replace(frames=(*graph.frames, *odometry)))

@@ -13,6 +13,7 @@ from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
 from multibot_rewrite.companions.params.name_sites import SectionNames, find_names
+from multibot_rewrite.companions.params.section_findings import section_findings
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -20,7 +21,6 @@ from multibot_rewrite.companions.params.sections import (
     identify_sections,
     key_splices,
     raw_sections,
-    section_findings,
 )
 from multibot_rewrite.companions.params.shared_defaults import (
     default_lines,

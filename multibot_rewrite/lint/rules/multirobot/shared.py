@@ -38,7 +38,7 @@ def tag_of(claim: Claim) -> str:
 def process_wide_plugins(subject: Subject) -> set[_Element]:
     """The plugins that hand their remap rules to the whole Gazebo process."""
     hosts = subject.inventory.hosts
-    return {it.element for it in hosts if it.node.rewriter and it.node.rewriter.process_wide}
+    return {it.element for it in hosts if it.node.section and it.node.section.process_wide}
 
 
 def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
