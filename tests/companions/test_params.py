@@ -485,7 +485,7 @@ def test_a_node_without_any_section_is_reported() -> None:
         ("robot_state_publisher", "frame_prefix: a/", "MF115", "a second time"),
         ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "the same for all robots"),
         ("amcl", "scan_topic: $(var s)", "MF110", "a launch file must replace it"),
-        ("amcl", "scan_topic:", "MF109", "rcl refuses"),
+        ("amcl", "scan_topic:", "MF109", "rcl rejects"),
         ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
     ],
 )
