@@ -221,30 +221,25 @@ MIXED_KEY = declare(
     "MF101",
     "mixed-section-key",
     ERROR,
-    what="One key has the section of a node that serves all robots and the section of another node "
-    "below it.",
-    why="The first section keeps its name, the other gets the robot's namespace: one key cannot be "
-    "both. With either name, one of the two nodes gets no parameters.",
-    fix="Write each section under its own key, as in sensors/camera: ros__parameters:.",
+    what="The sections below one key need different names: a node of each robot is below it, and a "
+    "wildcard, a placeholder or a node that serves all robots.",
+    why="A node of each robot needs the robot's namespace in the key, the others need the key as it is. "
+    "With either key, one of the nodes has no section and runs with its defaults.",
+    fix="Write each section under its own key, as in sensors/camera:.",
     bad="""\
 sensors:
-  weather:
-    ros__parameters: {rate: 1}
   camera:
     ros__parameters: {rate: 30}
+  "**":
+    ros__parameters: {use_sim_time: true}
 """,
     good="""\
-sensors/weather:
-  ros__parameters: {rate: 1}
+/**:
+  ros__parameters: {use_sim_time: true}
 sensors/camera:
   ros__parameters: {rate: 30}
 """,
     formats=("params",),
-    beside={
-        "nodes.yaml": "nodes: {sensors/weather: {package: acme_weather}}\n"
-        "stacks: {own: {nodes: [{node: sensors/weather, shared: true}]}}\n"
-    },
-    options={"stack": "own", "nodes": "nodes.yaml"},
 )
 
 
