@@ -720,6 +720,10 @@ def test_the_27_codes_are_declared_in_the_room() -> None:
     ]
 
 
+def test_the_page_of_findings_colours_their_examples_as_yaml() -> None:
+    assert "```yaml\namcl:\n" in catalogue.findings_page()
+
+
 def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
     text = (ROOT / "docs" / "params.md").read_text()
     path = tmp_path / "more.yaml"
