@@ -1,4 +1,4 @@
-"""Sections and keys that rcl reads otherwise than they look: repeated, overridden, without a value."""
+"""Sections and parameters that are repeated, overridden, shared, wrongly named or without a value."""
 
 from __future__ import annotations
 
@@ -182,7 +182,7 @@ REPEATED_KEY = declare(
     "repeated-parameter",
     WARNING,
     what="A section sets a parameter twice.",
-    why="The later value counts, and nothing says so: who edits the first one changes nothing.",
+    why="The later value counts, and no message says so: a change of the first one has no effect.",
     fix="Remove one of them.",
     bad="""\
 amcl:

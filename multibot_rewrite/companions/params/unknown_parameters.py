@@ -1,4 +1,4 @@
-"""Parameters that nobody described: guessed to hold names, or holding a name of the description."""
+"""Parameters that are not known: guessed to hold names, or with a name of the description in them."""
 
 from __future__ import annotations
 
