@@ -19,11 +19,12 @@ from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
     anchors,
-    finding_at,
+    found_at,
     line_of,
     pairs,
     replaced,
 )
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import ERROR, Finding, InputError
 from multibot_rewrite.naming import spelled
 
@@ -216,6 +217,32 @@ def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
     return types
 
 
+MIXED_KEY = declare(
+    "MF101",
+    "mixed-section-key",
+    ERROR,
+    what="The sections below one key need different names: a node of each robot is below it, and a "
+    "wildcard, a placeholder or a node that serves all robots.",
+    why="A node of each robot needs the robot's namespace in the key, the others need it as it is. "
+    "With either key, one of the nodes has no section and runs with its defaults.",
+    fix="Write each section under its own key, as in sensors/camera:.",
+    bad="""\
+sensors:
+  camera:
+    ros__parameters: {rate: 30}
+  "**":
+    ros__parameters: {use_sim_time: true}
+""",
+    good="""\
+/**:
+  ros__parameters: {use_sim_time: true}
+sensors/camera:
+  ros__parameters: {rate: 30}
+""",
+    formats=("params",),
+)
+
+
 def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Splice | Finding]:
     """The new keys above the sections."""
     new: dict[int, tuple[yaml.ScalarNode, str]] = {}
@@ -228,7 +255,7 @@ def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Sp
             if other != text:
                 message = f"the sections below {key.value!r} need different names: {other}, {text}"
                 hint = "write each section under its own key, as in node: ros__parameters:"
-                made.append(finding_at(document, key, "MF101", ERROR, message, hint))
+                made.append(found_at(document, key, MIXED_KEY, message, hint))
     made += [_key_splice(key, text) for key, text in new.values() if text != key.value]
     return made
 
