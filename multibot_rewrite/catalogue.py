@@ -33,7 +33,20 @@ class Home(NamedTuple):
     modules: tuple[str, ...]
 
 
-HOMES: tuple[Home, ...] = ()
+HOMES: tuple[Home, ...] = (
+    Home(
+        "MG1",
+        "nodes, topics and services",
+        (
+            "graph.rules.nodes",
+            "graph.rules.endpoints",
+            "graph.rules.leaks",
+            "graph.rules.type_and_qos",
+            "graph.rules.publishers",
+        ),
+    ),
+    Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
+)
 
 
 @cache

@@ -23,8 +23,8 @@ from multibot_rewrite.graph.wording import shorten
     ERROR,
     what="Two robots send the same frames on one tf topic.",
     why="Both trees are mixed into one that is wrong for both.",
-    fix="With robot names in frames, load each robot's rewritten description. Without them, give each robot"
-    " its tf topic: `/tf:=tf` and `/tf_static:=tf_static`.",
+    fix="With robot names in frames, load each robot's rewritten description. Without them, give"
+    " each robot its tf topic: `/tf:=tf` and `/tf_static:=tf_static`.",
     bad="""\
 planned: frames of robot1 on /tf: base_link/robot1
 planned: frames of robot2 on /tf: base_link/robot2
@@ -72,7 +72,8 @@ def _why_colliding(view: View, tree: TfTree, robots: Sequence[str]) -> str:
     ERROR,
     absence=True,
     what="A frame does not have the robot's name, although the layout adds it.",
-    why="It is not connected to the rest of the tree, and the next robot's frame has the same name.",
+    why="It is not connected to the rest of the tree, and the next robot's frame has the same"
+    " name.",
     fix="Load the rewritten description, or set the frame parameters of the node.",
     bad="""\
 planned: frames of robot1 on /tf: base_link/robot1, laser/robot1
@@ -132,7 +133,8 @@ def _by_plain_name(view: View, robot: PlannedRobot) -> dict[str, str]:
     "MG204",
     "undeclared-frame",
     WARNING,
-    what="A frame with a robot's name, or a static one on the robot's tf topic, is not in its description.",
+    what="A frame with a robot's name, or a static one on the robot's tf topic, is not in its"
+    " description.",
     why="If a frame of the description was meant, its data cannot be placed.",
     fix="Correct the `frame_id`. Add a sensor's own frame to `other_frames` of the plan.",
     bad="""\

@@ -27,12 +27,12 @@ from multibot_rewrite.remap.records import SUBSCRIBES, TOPIC
     "leaked-name",
     ERROR,
     drawn="leak",
-    what="A robot's node uses a name that belongs to no robot and is not shared, or its tf listener"
-    " subscribes to the global `/tf`.",
-    why="The same node of another robot uses the name too: one command moves both robots, and their scans"
-    " are mixed.",
-    fix="Pass the remap rule of the hint; for a tf listener pass it to the whole process. If all robots"
-    " are to share the name, add it to `shared_topics` of the plan (`--shared-topics`).",
+    what="A robot's node uses a name that belongs to no robot and is not shared, or its tf"
+    " listener subscribes to the global `/tf`.",
+    why="The same node of another robot uses the name too: one command moves both robots, and"
+    " their scans are mixed.",
+    fix="Pass the remap rule of the hint; for a tf listener pass it to the whole process. If all"
+    " robots are to share the name, add it to `shared_topics` of the plan (`--shared-topics`).",
     bad="""\
 planned: /robot1/driver
 running: /robot1/driver subscribes /cmd_vel

@@ -18,11 +18,12 @@ from multibot_rewrite.graph.wording import shorten
     ERROR,
     absence=True,
     drawn="missing",
-    what="A node of the plan is not in the graph. For a node that serves all robots it is a warning.",
-    why="All its topics, services and actions are missing. Where it runs under another name, it works"
-    " for the wrong robot, or for all of them.",
-    fix="Start it, with its namespace. The hint has the node that runs in its place, or the line of the"
-    " description that starts it.",
+    what="A node of the plan is not in the graph. For a node that serves all robots it is a"
+    " warning.",
+    why="All its topics, services and actions are missing. Where it runs under another name, it"
+    " works for the wrong robot, or for all of them.",
+    fix="Start it, with its namespace. The hint has the node that runs in its place, or the line"
+    " of the description that starts it.",
     bad="""\
 planned: /robot1/driver
 as planned: /robot1/planner
@@ -74,7 +75,8 @@ def _not_started(view: View, node: str) -> Cause:
     ERROR,
     what="Two running nodes have the same name.",
     why="Parameters and services work for only one of them, and tools show only one.",
-    fix="Give each node its namespace or its own name. A node that was killed stays visible for 20 s.",
+    fix="Give each node its namespace or its own name. A node that was killed stays visible for 20"
+    " s.",
     bad="""\
 as planned: /robot1/driver
 running: /robot1/driver
@@ -106,8 +108,8 @@ def node_name_twice(view: View) -> Iterator[Finding]:
     drawn="unexpected",
     what="A running node is not in the plan.",
     why="It may be a second copy, a node without its namespace, or just missing in the plan.",
-    fix="Add it to the plan, or to `shared_nodes` if it serves all robots. For tools that come and go add"
-    " a pattern to `ignored_nodes`.",
+    fix="Add it to the plan, or to `shared_nodes` if it serves all robots. For tools that come and"
+    " go add a pattern to `ignored_nodes`.",
     bad="""\
 as planned: /robot1/driver
 running: /robot1/gripper

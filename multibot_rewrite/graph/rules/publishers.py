@@ -25,8 +25,8 @@ Publishers = dict[str, list[GraphEndpoint]]
     "topic-below-node-namespace",
     ERROR,
     absence=True,
-    what="A relative topic is resolved below the node's own namespace, where nothing publishes it, as"
-    " `/robot1/local_costmap/scan`.",
+    what="A relative topic is resolved below the node's own namespace, where nothing publishes it,"
+    " as `/robot1/local_costmap/scan`.",
     why="The costmap gets no data, without an error message.",
     fix="Write the absolute topic (`/robot1/scan`) in the node's parameters.",
     bad="""\
@@ -89,8 +89,8 @@ def _without_publisher(
     "no-publisher",
     WARNING,
     absence=True,
-    what="A planned subscription has no publisher, while the topic without the robot's name, or a similar"
-    " one, has.",
+    what="A planned subscription has no publisher, while the topic without the robot's name, or a"
+    " similar one, has.",
     why="The node waits for ever, as for `/robot1/cmd_vel` while `/cmd_vel` is published.",
     fix="Pass the remap rule of the hint to the publisher, or start it in the robot's namespace.",
     bad="""\

@@ -67,8 +67,8 @@ def _robot_of_frame(view: View, tree: TfTree, frame: str) -> str:
     absence=True,
     what="The tf tree of a robot has several roots.",
     why="There is no transform from one part of the robot to the other.",
-    fix="Send the transform that is missing: joint states, odometry or localization; or use the same name"
-    " for the frame on both sides.",
+    fix="Send the transform that is missing: joint states, odometry or localization; or use the"
+    " same name for the frame on both sides.",
     bad="""\
 planned: frames of robot1 on /tf: base_link/robot1, camera_link/robot1, lens/robot1
 running: transform odom/robot1 -> base_link/robot1 on /tf
@@ -142,7 +142,8 @@ def _name_variants(plain: str, frame: str, tag: str) -> Iterator[str]:
     ERROR,
     what="A robot's frame is on a tf topic that is not the one of the layout.",
     why="Listeners on the topic of the layout get no transforms.",
-    fix="Add or remove the remap rules `/tf:=tf` and `/tf_static:=tf_static` at the nodes of the hint.",
+    fix="Add or remove the remap rules `/tf:=tf` and `/tf_static:=tf_static` at the nodes of the"
+    " hint.",
     bad="""\
 planned: frames of robot1 on /robot1/tf: base_link
 running: transform odom -> base_link on /tf by /robot1/driver

@@ -30,11 +30,11 @@ STAMPED = "Stamped"
     "type-mismatch",
     ERROR,
     all_ends=True,
-    what="A topic, service or action has two types, two versions of one type, or another type than in the"
-    " plan.",
+    what="A topic, service or action has two types, two versions of one type, or another type than"
+    " in the plan.",
     why="No message arrives, and there is no error message.",
-    fix="Use the same type on both sides (stamped or not), and build both against one version. If the"
-    " running type is right, correct the plan.",
+    fix="Use the same type on both sides (stamped or not), and build both against one version. If"
+    " the running type is right, correct the plan.",
     bad="""\
 as planned: /robot1/planner publishes /robot1/cmd_vel geometry_msgs/msg/TwistStamped
 as planned: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
@@ -145,8 +145,8 @@ def _not_as_planned(view: View, planned: PlannedEndpoint, seen: str) -> Finding:
     "MG107",
     "qos-mismatch",
     ERROR,
-    what="A publisher offers less QoS than a subscription requests: reliability, durability, deadline,"
-    " liveliness or lease.",
+    what="A publisher offers less QoS than a subscription requests: reliability, durability,"
+    " deadline, liveliness or lease.",
     why="DDS does not connect them: both are in the graph, and no message arrives.",
     fix="Let the publisher offer more, or the subscription request less.",
     bad="""\
