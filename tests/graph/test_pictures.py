@@ -24,6 +24,7 @@ from lxml import html
 from paths import ROOT
 
 from multibot_rewrite.cli import multibot
+from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
@@ -42,7 +43,6 @@ from multibot_rewrite.graph.pictures.states import (
 )
 from multibot_rewrite.graph.pictures.text import clipped, columns, visible
 from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, GraphNode, Snapshot, to_json
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.remap.records import PUBLISHES
