@@ -262,6 +262,35 @@ def test_a_plugin_is_named_with_its_line() -> None:
         "see rover.urdf:120"
     )
     assert leak.hint == "plugin driver has no remap rule /cmd_vel:=cmd_vel, see rover.urdf:120"
+    assert {(it.file, it.line) for it in (missing, leak)} == {("rover.urdf", 120)}
+    assert str(leak).startswith("/robot1/driver: error: MG103 uses /cmd_vel, ")
+
+
+@pytest.mark.parametrize(
+    ("place", "expected"),
+    [
+        ("robots/rover.urdf:7", ("robots/rover.urdf", 7)),
+        ("C:/rover.urdf:7", ("C:/rover.urdf", 7)),
+        ("the launch file", ("", 0)),
+        ("rover.urdf", ("", 0)),
+        ("rover.urdf:" + "9" * 5000, ("", 0)),
+    ],
+)
+def test_the_place_of_a_plan_may_be_written_by_hand(place: str, expected: tuple[str, int]) -> None:
+    graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
+    _, leak = check(plan()._replace(sources=(("/robot1/driver", place),)), graph)
+    assert (leak.file, leak.line) == expected
+    assert leak.hint.endswith(f"see {place}")
+
+
+def test_a_finding_with_another_cause_has_no_line() -> None:
+    wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
+    found = check(wanted, moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
+    assert {it.file for it in found} == {""}
+    cut = Caveat("participants", True, "cut off")
+    graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")._replace(environment=environment(cut))
+    unsure, sure = check(wanted, graph)
+    assert (unsure.level, unsure.file, sure.file) == (INCONCLUSIVE, "", "rover.urdf")
 
 
 def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
@@ -269,8 +298,10 @@ def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
     wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
     (found,) = check(wanted, graph)
     assert found.hint == "/driver is running: plugin driver has no namespace, see rover.urdf:120"
+    assert (found.file, found.line) == ("rover.urdf", 120)
     (found,) = check(wanted, without_node(healthy(), "/robot1/driver"))
     assert "see rover.urdf:120" in found.hint
+    assert (found.file, found.line) == ("rover.urdf", 120)
 
 
 def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
@@ -281,6 +312,7 @@ def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
     (found,) = check(wanted, graph)
     assert (found.code, found.robot) == ("MG109", "robot1")
     assert "has no namespace, see rover.urdf:120; the same for 1 more of its nodes" in found.hint
+    assert (found.file, found.line) == ("rover.urdf", 120)
 
 
 def test_a_robot_of_conditions_only_is_never_silent() -> None:
