@@ -10,12 +10,12 @@ from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.watch import WORDS, follow
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.graph.watching import Verdict, final, judge
 from multibot_rewrite.sources.read import read_file
@@ -84,7 +84,7 @@ def conclude(options: argparse.Namespace, plan: Expectation, graph: Snapshot) ->
     return _sum_up(plan, found, judge(found, graph))
 
 
-def _sum_up(plan: Expectation, found: Sequence[GraphFinding], verdict: Verdict) -> int:
+def _sum_up(plan: Expectation, found: Sequence[Finding], verdict: Verdict) -> int:
     robots, findings = len(plan.robots), len(found)
     counted = f"{robots} robot{'s' * (robots != 1)}, {findings} finding{'s' * (findings != 1)}"
     say(f"{counted}: {WORDS[verdict]}", PROGRAM)

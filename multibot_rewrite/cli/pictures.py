@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Sequence
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.mermaid import to_mermaid
 from multibot_rewrite.graph.pictures.page import to_html
 from multibot_rewrite.graph.pictures.scene import Scene, make_scene
-from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.model import UsageError
 
@@ -37,7 +37,7 @@ def check(options: argparse.Namespace) -> None:
 
 
 def deliver(
-    options: argparse.Namespace, plan: Expectation, graph: Snapshot, found: Sequence[GraphFinding]
+    options: argparse.Namespace, plan: Expectation, graph: Snapshot, found: Sequence[Finding]
 ) -> None:
     """Write the pictures asked for, all or none; raises UsageError where one cannot be written."""
     wanted = list(_wanted(options))

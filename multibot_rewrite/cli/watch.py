@@ -8,8 +8,8 @@ from contextlib import ExitStack, closing, contextmanager
 
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, renderable
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.graph.watching import Verdict, WatchState, next_state
 
@@ -75,7 +75,7 @@ def _parts(state: WatchState) -> Iterator[str | Grid]:
     yield from _more(len(state.findings), "findings")
 
 
-def _worst_first(found: tuple[GraphFinding, ...]) -> list[GraphFinding]:
+def _worst_first(found: tuple[Finding, ...]) -> list[Finding]:
     return sorted(found, key=lambda finding: finding.level != "error")
 
 
