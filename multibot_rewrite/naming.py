@@ -7,7 +7,7 @@ where to insert, and what is put before and after the robot's name.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
@@ -70,6 +70,7 @@ LAYOUTS = (
     Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
     Layout("postfix", "L4", True, True, False, "everything renamed per robot, no namespaces"),
 )
+DEFAULT_LAYOUT = "postfix"
 
 
 class Affix(NamedTuple):
@@ -95,8 +96,20 @@ class Naming(NamedTuple):
     shared_topics: frozenset[str]
 
 
+class Policy(TypedDict, total=False):
+    """The options of ``make_naming`` as one value, for what is passed on to it."""
+
+    layout: str
+    affix: str
+    topics: str | None
+    separators: Mapping[str, str] | None
+    shared_frames: Iterable[str]
+    shared_topics: Iterable[str]
+    groups: str
+
+
 def make_naming(
-    layout: str = "postfix",
+    layout: str = DEFAULT_LAYOUT,
     affix: str = POSTFIX,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
@@ -131,7 +144,7 @@ def make_naming(
 
 
 def find_layout(word: str) -> Layout:
-    """The layout called ``word``; raises UsageError naming the four."""
+    """The layout called ``word``; raises UsageError naming all of them."""
     for layout in LAYOUTS:
         if word in (layout.name, layout.short):
             return layout

@@ -21,6 +21,8 @@ from paths import ROOT
 from multibot_rewrite.cli.lint_usage import check_use, parser
 from multibot_rewrite.cli.urdf_lint import main
 
+pytestmark = pytest.mark.slow
+
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 PAGE = (ROOT / "docs" / "lint-ci.md").read_text()
 HOME = "https://github.com/OWNER/multibot_rewrite"
