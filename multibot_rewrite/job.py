@@ -31,7 +31,7 @@ class Job(NamedTuple):
         return builtin_tree(self.vocabulary)
 
     @property
-    def outside(self) -> Declared:
+    def urdf_declarations(self) -> Declared:
         """What the URDF beside an SRDF declares; raises InputError."""
         return pipeline.declarations(*self.urdf, self.tree) if self.urdf else NOTHING
 

@@ -10,6 +10,7 @@ from multibot_rewrite.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.checks.robots import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import declare, rule
+from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.model import Finding
 from multibot_rewrite.steps.renames import make_renames

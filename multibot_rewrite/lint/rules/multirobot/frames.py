@@ -120,9 +120,9 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
         rewriter = host.node.section
         if rewriter is None or "/tf" not in rewriter.publishes or not rewriter.inserts:
             continue
-        if "/tf" in switched_off(host.element, rewriter) or _moves_tf(host.element):
+        if "/tf" in switched_off(host.element, section) or _moves_tf(host.element):
             continue
-        of = "the controllers it loads publish" if rewriter.process_wide else "it publishes"
+        of = "the controllers it loads publish" if section.process_wide else "it publishes"
         message = f"plugin {host.element.get('name', '')!r}: {of} on /tf, which no namespace moves"
         yield Problem(host.element, message, None, "<remapping>/tf:=tf</remapping>")
 

@@ -9,6 +9,7 @@ from multibot_rewrite.checks import hazards, robots
 from multibot_rewrite.checks.remarks import Remark
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
+from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, TWO
 from multibot_rewrite.lint.rules.shared import problems
@@ -37,6 +38,12 @@ def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
         yield from problems(hazard(subject.inventory, renames_of(subject)))
 
 
+def _if_renamed(hazard: NameHazard, subject: Subject) -> Iterator[Problem]:
+    """The same of a hazard that looks at what names become."""
+    if subject.settings.robots:
+        yield from problems(hazard(subject.inventory, rename_map(subject)))
+
+
 joints_reordered = rule(
     "MB405",
     "joints-reordered",
@@ -52,7 +59,7 @@ joints_reordered = rule(
     '<joint name="i" type="fixed"><parent link="a"/><child link="b"/></joint>'
     '<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint>',
     options={"robots": TWO},
-)(partial(_if_robots, hazards.reordered))
+)(partial(_if_renamed, hazards.reordered))
 
 
 @rule(
@@ -223,7 +230,7 @@ fixed_to_own_frame = rule(
     formats=(SRDF,),
     beside={"r.urdf": '<robot name="r"><link name="a"/></robot>'},
     options={"robots": TWO, "urdf": "r.urdf"},
-)(partial(_if_robots, hazards.outside_frames))
+)(partial(_if_renamed, hazards.outside_frames))
 
 hard_wired_name = rule(
     "MB428",
@@ -240,4 +247,4 @@ hard_wired_name = rule(
     '"a"/><child link="b"/></joint><gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/>'
     "</gazebo>",
     options={"robots": TWO},
-)(partial(_if_robots, hazards.hardwired))
+)(partial(_if_renamed, hazards.hardwired))

@@ -64,7 +64,7 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
         rewriter = host.node.section
         if rewriter is None or not any("namespace" in it.kinds for it in rewriter.sites):
             continue
-        items = insertions(host.element, rewriter, declared, APART)
+        items = insertions(host.element, section, declared, APART)
         if any(it.kind == "namespace" for it in items):
             bare.append(host.element)
     if bare:
