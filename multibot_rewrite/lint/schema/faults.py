@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.checks.audit import nearest
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.schema.sections import (
     ROBOT,

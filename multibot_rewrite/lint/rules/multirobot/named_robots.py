@@ -16,26 +16,16 @@ from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.renames import RenameMap, make_renames
+from multibot_rewrite.steps.renames import RenameMap
 
-Hazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
-ByNaming = Callable[[Inventory, Naming], Iterable[Remark]]
-
-
-def renames_of(subject: Subject) -> RenameMap:
-    """How each name of the description is spelled for the named robots."""
-    return make_renames(subject.inventory, subject.settings.naming)
-
-
-def _by_naming(hazard: ByNaming) -> Hazard:
-    """The same for what needs no spelled name."""
-    return lambda inventory, renames: hazard(inventory, renames.naming)
+Hazard = Callable[[Inventory, Naming], Iterable[Remark]]
+NameHazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
 
 
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the named robots warns about; nothing where none are named."""
     if subject.settings.robots:
-        yield from problems(hazard(subject.inventory, renames_of(subject)))
+        yield from problems(hazard(subject.inventory, subject.settings.naming))
 
 
 def _if_renamed(hazard: NameHazard, subject: Subject) -> Iterator[Problem]:
@@ -78,7 +68,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots refuses as MB420."""
     names = subject.settings.robots
     if names:
-        yield from problems(robots.taken_names(subject.inventory, renames_of(subject), names))
+        yield from problems(robots.taken_names(subject.inventory, rename_map(subject), names))
 
 
 @rule(
@@ -100,7 +90,7 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots refuses as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
-    for it in robots.meeting(subject.inventory, renames_of(subject), pairs):
+    for it in robots.meeting(subject.inventory, rename_map(subject), pairs):
         yield Problem(subject.document.root, it.message, None, it.hint)
 
 
@@ -118,7 +108,7 @@ prefix_only = rule(
     good='<ros2_control name="h" type="system"><hardware><plugin>'
     "mock_components/GenericSystem</plugin></hardware></ros2_control>",
     options={"robots": TWO},
-)(partial(_if_robots, _by_naming(hazards.prefix_only)))
+)(partial(_if_robots, hazards.prefix_only))
 
 off_the_shared_tf = rule(
     "MB423",
@@ -132,7 +122,7 @@ off_the_shared_tf = rule(
     "</remapping></ros></plugin></gazebo>",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
     options={"robots": TWO},
-)(partial(_if_robots, _by_naming(hazards.moved_tf)))
+)(partial(_if_robots, hazards.moved_tf))
 
 
 @rule(
@@ -165,7 +155,7 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     from multibot_rewrite.steps.renames import respeller
 
     document, claims, _, declared, *_ = subject.inventory
-    renames = renames_of(subject)
+    renames = rename_map(subject)
     first, last = (
         respell_collisions(document.root, claims, declared, respeller(renames, name))
         for name in (ROBOT_SLOT, LAST)
@@ -190,7 +180,7 @@ sensor_names_meet = rule(
     '</plugin></hardware><sensor name="imu"/></ros2_control>',
     good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
     options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_if_robots, _by_naming(hazards.bare_lookups)))
+)(partial(_if_robots, hazards.bare_lookups))
 
 
 @rule(
