@@ -210,7 +210,7 @@ def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
 
 def checked(more: Mapping[str, str], looks: int = 1) -> dict[str, list[Outcome]]:
     """All scenarios side by side: most of a check is waiting."""
-    with ThreadPoolExecutor(4) as pool:
+    with ThreadPoolExecutor(6) as pool:
         found = pool.map(lambda it: check(it[0], it[1], more, looks), enumerate(SCENARIOS))
         return {it.name: outcome for it, outcome in zip(SCENARIOS, found, strict=True)}
 
