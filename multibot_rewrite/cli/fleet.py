@@ -12,11 +12,11 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import ERROR, UsageError
-from multibot_rewrite.naming import LAYOUTS, SHARED_TOPICS
+from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, SHARED_TOPICS, Policy
 from multibot_rewrite.remap.records import Problem
 
 FLEET_FILES = (".yaml", ".yml")
-USUAL = {"layout": "postfix", "affix": "postfix", "shared_topics": ",".join(SHARED_TOPICS)}
+USUAL = {"layout": DEFAULT_LAYOUT, "affix": "postfix", "shared_topics": ",".join(SHARED_TOPICS)}
 
 
 def options(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +32,7 @@ def options(parser: argparse.ArgumentParser) -> None:
         "--stack", action="append", default=[], metavar="NAME", help="nodes that every robot runs"
     )
     parser.add_argument("--nodes", metavar="FILE", help="nodes and stacks of your own, as YAML")
-    parser.add_argument("--layout", default="postfix", metavar="NAME", help=f"one of {names}")
+    parser.add_argument("--layout", default=DEFAULT_LAYOUT, metavar="NAME", help=f"one of {names}")
     parser.add_argument("--affix", default="postfix", metavar="SIDE", help="postfix or prefix")
     parser.add_argument("--topics", metavar="HOW", help="postfix, prefix or namespace")
     parser.add_argument("-o", "--output", metavar="FILE", help="write it there")
@@ -58,14 +58,14 @@ def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
 
 def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     from multibot_rewrite.fleets.fleet_file import read_fleet  # one description needs none of it
-    from multibot_rewrite.fleets.plan import plan_fleet
-    from multibot_rewrite.fleets.started import started
+    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
     given = [name for name in ("robots", "stack", "nodes", "topics") if getattr(options, name)]
     given += [name for name, usual in USUAL.items() if getattr(options, name) != usual]
     if given:
         raise UsageError(f"{options.input} says which {given[0]} there are: leave that out")
-    return started(plan_fleet(read_fleet(options.input), also))
+    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also))
 
 
 def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
@@ -77,14 +77,20 @@ def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
         options.input,
         robots,
         [*options.stack, *also],
+        _policy(options),
         nodes=options.nodes,
         vocabulary=configured_vocabulary(options.input),
         xacro_args=dict(word.split(":=", 1) for word in arguments),
-        layout=options.layout,
-        affix=options.affix,
-        topics=options.topics,
-        shared_topics=options.shared_topics.split(","),
     )
+
+
+def _policy(options: argparse.Namespace) -> Policy:
+    return {
+        "layout": options.layout,
+        "affix": options.affix,
+        "topics": options.topics,
+        "shared_topics": options.shared_topics.split(","),
+    }
 
 
 def deliver(options: argparse.Namespace, text: str) -> None:

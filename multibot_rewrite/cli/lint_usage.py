@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite.cli.usage import Parser
+from multibot_rewrite.cli.usage import LAYOUT_HELP, Parser
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.version import __version__
@@ -29,7 +29,11 @@ VALUES = (
     ("--select", "CODES", "only these codes, or groups of them: MB2,MB501"),
     ("--ignore", "CODES", "not these"),
     ("--robots", "A,B", "what these robots would do to each other in one system"),
-    ("--layout", "NAME", "where tf lives, for --robots: L1 to L4 (default: frames-per-robot)"),
+    (
+        "--layout",
+        "NAME",
+        f"where tf lives, for --robots: {LAYOUT_HELP} (default: frames-per-robot)",
+    ),
     ("--affix", "SIDE", "postfix or prefix, for --robots"),
     ("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
     ("--roots", "A,B", "folders in which package://NAME and $(find NAME) are looked for"),

@@ -89,7 +89,7 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
         raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
     if not options.changed_since:
         return kept, refused
-    from multibot_rewrite.lint.changed import changed_since  # a plain run needs no git
+    from multibot_rewrite.lint.config.changed import changed_since  # a plain run needs no git
 
     return changed_since(options.changed_since, kept), refused
 
@@ -136,7 +136,7 @@ def _mended(options: argparse.Namespace, settings: Settings, findings: list[Find
 
 
 def _write_baseline(options: argparse.Namespace, findings: Sequence[Finding]) -> int:
-    from multibot_rewrite.lint.baseline import baseline_text
+    from multibot_rewrite.lint.config.baseline import baseline_text
 
     write_all([(options.write_baseline, baseline_text(findings, options.write_baseline))])
     if not options.quiet:
@@ -152,7 +152,7 @@ def _conclude(
 ) -> int:
     stale = 0
     if config.baseline:
-        from multibot_rewrite.lint.baseline import beyond, read_baseline
+        from multibot_rewrite.lint.config.baseline import beyond, read_baseline
 
         known = read_baseline(config.baseline)
         findings, stale = beyond(findings, known, config.baseline, paths)

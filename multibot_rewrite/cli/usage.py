@@ -5,10 +5,17 @@ from __future__ import annotations
 import argparse
 import os
 import re
-from typing import Any, NoReturn
+from typing import NoReturn
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import LAYOUTS, SEPARATORS, SHARED_FRAMES, SHARED_TOPICS
+from multibot_rewrite.naming import (
+    DEFAULT_LAYOUT,
+    LAYOUTS,
+    SEPARATORS,
+    SHARED_FRAMES,
+    SHARED_TOPICS,
+    Policy,
+)
 from multibot_rewrite.version import __version__
 
 UNUSABLE = 2
@@ -27,11 +34,16 @@ exit codes: 0 done; 1 findings that stop the job (any, with --strict); 2 wrong u
 """
 
 
-_LAYOUTS = "; ".join(f"{layout.name} ({layout.short}): {layout.about}" for layout in LAYOUTS)
+LAYOUT_HELP = "; ".join(f"{layout.name} ({layout.short}): {layout.about}" for layout in LAYOUTS)
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
 # Name, default, what stands for the value, help.
 VALUES = (
-    ("--layout", "postfix", "NAME", f"where tf lives. {_LAYOUTS} (default: postfix)"),
+    (
+        "--layout",
+        DEFAULT_LAYOUT,
+        "NAME",
+        f"where tf lives. {LAYOUT_HELP} (default: {DEFAULT_LAYOUT})",
+    ),
     ("--affix", "postfix", "SIDE", "postfix (default) or prefix"),
     ("--topics", None, "HOW", "postfix, prefix or namespace (default: what the layout implies)"),
     ("--groups", "keep", "HOW", "groups and end effectors of an SRDF: keep (default) or rename"),
@@ -187,7 +199,7 @@ def xacro_args(options: argparse.Namespace) -> dict[str, str]:
     return {name: value for name, _, value in pairs}
 
 
-def policy(options: argparse.Namespace) -> dict[str, Any]:
+def policy(options: argparse.Namespace) -> Policy:
     """The naming policy that the options ask for, as ``make_naming`` takes it."""
     return {
         "layout": options.layout,

@@ -1,21 +1,19 @@
-"""A description, its robots and the stacks they run -> their remap table and what to expect."""
+"""A description, its robots and their stacks -> the remap table and the expected graph."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
 from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import Rewrite, rewrite_all
-from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
+from multibot_rewrite.naming import Naming, Policy, make_naming
+from multibot_rewrite.remap.node_library import stack_of
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes, plugin_places
 from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table, joined
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
@@ -25,21 +23,21 @@ NOTHING: Mapping[str, str] = {}
 
 
 class Member(NamedTuple):
-    """A robot of a fleet: its name in the ROS graph, what stands for it in frames, and what its
-    rewritten description holds; ``places`` are where in the source (``file:line``) its plugins are.
+    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
+    holds; ``places`` are the places of its plugins in the source (``file:line``).
     """
 
     robot: str
-    spelled: str
+    tag: str
     inventory: Inventory
     places: tuple[str, ...]
 
 
 class Fleet(NamedTuple):
-    """A fleet's table, what each robot's rewritten description holds, and the transforms that each
-    robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
-    (``file:line``) a plugin's node comes from. ``words`` are what stands for a robot in its frames,
-    where that is not its name."""
+    """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
+    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
+    description (``file:line``) of each plugin's node. ``tags`` are the robots whose prefix or postfix
+    differs from their namespace, with it."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -47,56 +45,53 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
-    words: dict[str, str]
+    tags: dict[str, str]
 
 
 def make_fleet(
     source: Source,
     robots: Sequence[str],
     stacks: Sequence[str],
+    policy: Policy,
     *,
     nodes: str | None = None,
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
-    **policy: Any,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file of nodes and stacks beside the known ones; ``policy`` is that of
-    ``make_naming``. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    ``nodes`` is a file with more nodes and stacks. Raises as ``rewrite_all``, and
+    UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes)
-    more: dict[str, Any] = {"vocabulary": vocabulary, "xacro_args": xacro_args}
-    rewritten = list(rewrite_all(source, robots, **more, **policy))
-    tree = builtin_tree(tuple(vocabulary))
-    return assemble([member(it, it.data, it.robot, tree) for it in rewritten], facts, policy)
+    found = rewrite_all(source, robots, vocabulary=vocabulary, xacro_args=xacro_args, **policy)
+    members = [member(it, it.data, it.robot) for it in found]
+    return assemble(members, facts, make_naming(**policy))
 
 
 def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
-    """What is known of the nodes of these stacks, each once; UsageError for an unknown one."""
+    """The nodes of these stacks, each once; UsageError for an unknown stack."""
     library = user_stack(nodes) if nodes else built_in()
     return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
 
 
-def member(source: Rewrite, data: bytes, spelled: str, tree: Tree) -> Member:
-    """The robot of a rewrite; ``data`` is its description as it is in the end."""
-    document = source.template.inventory.document
-    # Lines of the source: those of a rewritten text are moved by what was inserted.
-    places = tuple(plugin_places(source.template.inventory))
-    return Member(source.robot, spelled, collect(read_document(data, document.file), tree), places)
+def member(source: Rewrite, data: bytes, tag: str) -> Member:
+    """The robot of a rewrite; ``data`` is its final description."""
+    inventory, tree = source.template.inventory, source.template.tree
+    # Lines of the source: inserted text moves those of the result.
+    places = tuple(plugin_places(inventory))
+    written = collect(read_document(data, inventory.document.file), tree)
+    return Member(source.robot, tag, written, places)
 
 
-def assemble(
-    members: Sequence[Member], facts: tuple[NodeFacts, ...], policy: Mapping[str, Any]
-) -> Fleet:
+def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
     """The fleet of robots that run the same nodes."""
-    naming = make_naming(**policy)
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.inventory, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
-        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.spelled)
+        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
     return Fleet(
         build_table([it.robot for it in members], facts, naming, plugins),
         inventories,
@@ -104,7 +99,7 @@ def assemble(
         edges,
         facts,
         _sources(members, plugins),
-        {it.robot: it.spelled for it in members if it.spelled != it.robot},
+        {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
 
@@ -117,7 +112,7 @@ def _sources(members: Sequence[Member], plugins: Plugins) -> dict[str, str]:
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
-    """Robots of different kinds as one fleet, whose names may not meet either."""
+    """Robots of different descriptions as one fleet; their names may not collide either."""
     first, *others = fleets
     for other in others:
         first = Fleet(
@@ -127,13 +122,13 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.sources, **other.sources},
-            {**first.words, **other.words},
+            {**first.tags, **other.tags},
         )
     return first
 
 
 def expected(fleet: Fleet) -> Expectation:
-    """What the graph of the fleet is to look like."""
+    """The graph that the fleet should have."""
     sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -142,4 +137,4 @@ def expected(fleet: Fleet) -> Expectation:
         for robot, found in fleet.inventories.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.words)
+    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.tags)

@@ -85,11 +85,11 @@ def actions(graph: Snapshot) -> set[str]:
     return {name for name in names if name.endswith("/_action/send_goal")}
 
 
-def test_without_rules_it_leaks_and_says_so() -> None:
+def test_without_rules_it_leaks_and_is_reported() -> None:
     words = [*PAIR, "--stack", "robot_state", "--layout", "tf-per-robot", "--without-rules"]
     done = rehearse(4, *words)
     assert done.returncode == 1, done.stderr
-    assert "/robot1/robot_state_publisher: error: MG103 /tf" in done.stdout
+    assert "/robot1/robot_state_publisher: error: MG103 uses /tf" in done.stdout
     assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
 
 
@@ -107,8 +107,8 @@ def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
     )
     done = rehearse(5, *PAIR, "--nodes", str(own), "--stack", "mine", "--layout", "L2")
     assert done.returncode == 1
-    assert "/robot1/siren: error: MG103 /alarm" in done.stdout
-    assert "/robot2/siren: error: MG103 /alarm" in done.stdout
+    assert "/robot1/siren: error: MG103 uses /alarm" in done.stdout
+    assert "/robot2/siren: error: MG103 uses /alarm" in done.stdout
     assert "robot_state_publisher" not in done.stdout
 
 
@@ -126,7 +126,7 @@ def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:
     words = [*PAIR, "--stack", "robot_state", "--layout", "L3"]
     done = rehearse(7, *words, **tf2)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
-    assert "stand-in" not in done.stderr
+    assert "replaced by others" not in done.stderr
 
 
 def test_a_missing_rclpy_is_one_line(tmp_path: Path) -> None:
