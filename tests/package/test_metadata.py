@@ -28,10 +28,12 @@ def assert_by_schema(name: str, file: str) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.slow
 def test_the_citation_is_by_its_schema() -> None:
     assert_by_schema("citation-file-format", "CITATION.cff")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_an_issue_form_is_by_its_schema(form: str) -> None:
     kind = "config" if form == "config.yml" else "forms"
