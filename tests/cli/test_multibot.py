@@ -144,6 +144,7 @@ def test_a_closed_pipe_is_one_line(folder: Path) -> None:
     assert err == "multibot: standard output was closed before everything was written\n"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("redirection", "code", "said"),
     [
@@ -376,6 +377,7 @@ def test_no_plugin_is_no_unknown_plugin(multibot: Multibot, folder: Path) -> Non
     assert multibot("coverage", "a.urdf", "--min-known", "100").code == 0
 
 
+@pytest.mark.slow
 def test_almost_all_is_not_shown_as_all(multibot: Multibot, folder: Path) -> None:
     write(folder / "a.urdf", robot(KNOWN * 2999 + plugin("libacme.so")))
     result = multibot("coverage", "a.urdf", "--min-known", "99.99")
@@ -458,6 +460,7 @@ def on_terminal(folder: Path, *words: str) -> tuple[int, str, str]:
     return process.returncode, out, heard.decode()
 
 
+@pytest.mark.slow
 def test_many_files_have_a_progress_bar_on_a_terminal_only(folder: Path) -> None:
     for number in range(30):
         write(folder / f"{number}.urdf", robot(""))
@@ -562,6 +565,7 @@ def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: 
     assert (row["default"], row["inserted"]) == ("go", False)
 
 
+@pytest.mark.slow
 def test_the_list_has_every_section(multibot: Multibot) -> None:
     sections = load_vocabulary().sections(*TYPES)
     listed = multibot("vocabulary").out.splitlines()

@@ -627,6 +627,7 @@ WORD = st.text(st.characters(codec="utf-8", exclude_categories=("Cs",)), min_siz
 ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a: b", "- a", "#"]))
 
 
+@pytest.mark.slow
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
     robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", frame_tag=other)

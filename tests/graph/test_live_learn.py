@@ -111,7 +111,7 @@ def test_names_are_written_as_they_were_seen(files: dict[str, Path]) -> None:
         pytest.param("root", "tf-per-robot", marks=pytest.mark.deep),
         pytest.param("root", "frames-per-robot", marks=pytest.mark.deep),
         ("root", "postfix"),
-        ("below", "frames-per-robot"),
+        pytest.param("below", "frames-per-robot", marks=pytest.mark.deep),
     ],
 )
 def test_started_with_the_rules_nothing_leaks(

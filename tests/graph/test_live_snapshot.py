@@ -279,3 +279,25 @@ def test_no_child_is_left(number: signal.Signals) -> None:
     finally:
         command.kill()
         command.wait()
+
+
+GONE = """
+import rclpy
+from multibot_rewrite.graph.live import ros
+rclpy.init()
+node = rclpy.create_node("looks")
+for query in (ros.action_servers, ros.action_clients):
+    assert query(node, "looks", "/") == []
+    try:
+        query(node, "left", "/robot1")
+    except ros.node_gone_error() as error:
+        print(error)
+"""
+
+
+def test_a_node_that_left_between_two_queries_is_no_failure() -> None:
+    """Where several look at once, each sees the others come and go."""
+    command = [sys.executable, "-c", GONE]
+    env = live_fleet.environ(domain(49))
+    done = subprocess.run(command, env=env, capture_output=True, text=True, check=False)
+    assert done.stdout == "/robot1/left left the graph\n" * 2, done.stderr

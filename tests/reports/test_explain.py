@@ -99,6 +99,7 @@ def test_an_srdf_is_explained_beside_its_urdf() -> None:
         explain(SRDF, 3)
 
 
+@pytest.mark.slow
 def test_every_claim_of_a_real_robot_is_explained_at_its_line() -> None:
     text = ROVER.read_text()
     for number in range(1, text.count("\n") + 1):
