@@ -11,7 +11,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.document import Document, read_document

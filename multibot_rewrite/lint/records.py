@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.findings.finding import Edit
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.schema.faults import Fault
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document

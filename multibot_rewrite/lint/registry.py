@@ -7,6 +7,7 @@ from types import ModuleType
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.rules import (
     files,
     meshes,
@@ -19,7 +20,6 @@ from multibot_rewrite.lint.rules import (
     srdf,
     structure,
 )
-from multibot_rewrite.lint.settings import Settings
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB0", "the lint itself", meta),

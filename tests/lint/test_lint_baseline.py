@@ -17,7 +17,7 @@ from multibot_rewrite.lint.config.baseline import (
     beyond,
     read_baseline,
 )
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 
 def finding(

@@ -12,8 +12,8 @@ from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 
 SAMPLE = 60

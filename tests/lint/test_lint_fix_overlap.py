@@ -12,7 +12,7 @@ from multibot_rewrite import rewrite
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import Edit
 
 # What is replaced in ``fixing``: how it lints a text.

@@ -26,9 +26,9 @@ from multibot_rewrite.findings.finding import LEVELS, NOTE, Finding
 from multibot_rewrite.findings.formats import FORMATS, Report, text
 from multibot_rewrite.findings.formats.markdown import ROOM
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.model import ERROR, WARNING, Edit
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.naming import make_naming
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'

@@ -11,7 +11,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 PLANTED = FIXTURES / "lint" / "planted"
 # File -> (code, line) of the defect, then of what follows from it.

@@ -25,9 +25,9 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.lint import run
 from multibot_rewrite.lint.check import lint_data, lint_file
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import FEW, lint_files
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.naming import make_naming
 
 pytestmark = pytest.mark.slow

@@ -11,10 +11,10 @@ from lxml import etree
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.facts.numbers import number, vector
 from multibot_rewrite.lint.facts.robot import loops, read_robot
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings
 
 GROUP = Settings(select=("MB5",))
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'

@@ -15,11 +15,11 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.directives import ALWAYS_TOLD, read_directives
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
+from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
-from multibot_rewrite.lint.suppress import unsuppressed
 
 PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
@@ -396,7 +396,7 @@ def test_files_without_the_word_are_not_read_for_it(monkeypatch: pytest.MonkeyPa
     def never(_: bytes) -> list[object]:
         raise AssertionError
 
-    monkeypatch.setattr("multibot_rewrite.lint.suppress.read_directives", never)
+    monkeypatch.setattr("multibot_rewrite.lint.config.suppress.read_directives", never)
     finding = Finding("MB501", "error", "m", "", "f", 1, 1)
     assert unsuppressed([finding], {"f": b"<robot/>"}, Settings()) == [finding]
 

@@ -10,8 +10,8 @@ import pytest
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 LOST = '<joint name="j" type="fixed"><parent link="gone"/><child link="a"/></joint>'

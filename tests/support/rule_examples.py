@@ -16,7 +16,7 @@ from multibot_rewrite.fleets.artefacts import make_artefacts
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\

@@ -15,8 +15,8 @@ from multibot_rewrite.config import (
     type_name,
 )
 from multibot_rewrite.findings.selection import OFF
-from multibot_rewrite.lint.settings import EVERY_FILE, ArgumentSet, Settings, matches
-from multibot_rewrite.lint.values import (
+from multibot_rewrite.lint.config.settings import EVERY_FILE, ArgumentSet, Settings, matches
+from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,
     Given,

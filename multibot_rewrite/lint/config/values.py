@@ -11,8 +11,8 @@ from multibot_rewrite.config import listed_files, type_name
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.selection import OFF
 from multibot_rewrite.lint.config.patterns import anchored, with_folders
+from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.lint.registry import GROUPS, RULES
-from multibot_rewrite.lint.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.rosnames.names import check_robot_name
 

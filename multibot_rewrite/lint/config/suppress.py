@@ -16,8 +16,8 @@ from multibot_rewrite.lint.config.directives import (
     Directive,
     read_directives,
 )
+from multibot_rewrite.lint.config.settings import Settings, is_silent
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings, is_silent
 from multibot_rewrite.model import Edit
 from multibot_rewrite.steps.document import locate
 
