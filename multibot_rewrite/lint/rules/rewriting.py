@@ -69,8 +69,13 @@ unknown_hardware_class = rule(
     why="One of its parameters may be a name, or a prefix that the driver puts in front of names: "
     "it stays as it is for every robot.",
     fix="Add a section for it to a vocabulary file.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin>'
-    '<param name="side">left</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin></hardware>'
-    "</ros2_control>",
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>my_company/Arm</plugin>\n"
+    '    <param name="side">left</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>my_company/Arm</plugin></hardware>\n"
+    "</ros2_control>\n",
 )(partial(_audit, unknown_hardware))

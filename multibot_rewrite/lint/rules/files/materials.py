@@ -27,10 +27,14 @@ Look = tuple[tuple[float, ...] | str, str]
     why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
     "viewers and Gazebo draw it in their default colour.",
     fix="Define it once as a child of <robot>, with a <color> or <texture>.",
-    bad='<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="m"/>'
-    "</visual></link>",
-    good='<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="m"/>'
-    '</visual></link><material name="m"><color rgba="1 0 0 1"/></material>',
+    bad='<link name="a">\n'
+    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
+    "</link>\n",
+    good='<link name="a">\n'
+    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
+    "</link>\n"
+    '<material name="m"><color rgba="1 0 0 1"/></material>\n',
+    line=2,
 )
 def undefined_material(subject: Subject) -> Iterator[Problem]:
     """Read in urdfdom's order: the robot's own materials first, then those of visuals."""
@@ -83,12 +87,21 @@ def _defines(material: etree._Element) -> bool:
     why="urdfdom keeps the first definition of a name for the whole robot: the visual is drawn in "
     "the other colour, not in its own.",
     fix="Give the material a name of its own.",
-    bad='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"><visual><geometry>'
-    '<sphere radius="1"/></geometry><material name="m"><color rgba="0 1 0 1"/></material></visual>'
-    "</link>",
-    good='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"><visual><geometry>'
-    '<sphere radius="1"/></geometry><material name="m"><color rgba="1.0 0 0 1"/></material>'
-    "</visual></link>",
+    bad='<material name="m"><color rgba="1 0 0 1"/></material>\n'
+    '<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><sphere radius="1"/></geometry>\n'
+    '    <material name="m"><color rgba="0 1 0 1"/></material>\n'
+    "  </visual>\n"
+    "</link>\n",
+    good='<material name="m"><color rgba="1 0 0 1"/></material>\n'
+    '<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><sphere radius="1"/></geometry>\n'
+    '    <material name="m"><color rgba="1.0 0 0 1"/></material>\n'
+    "  </visual>\n"
+    "</link>\n",
+    line=5,
 )
 def material_differs(subject: Subject) -> Iterator[Problem]:
     """Each visual whose own definition is ignored."""

@@ -34,9 +34,12 @@ unreadable = declare(
     what="The file, or one that it includes, is not there or may not be read.",
     why="xacro and robot_state_publisher stop with an error, and the launch with them.",
     fix="Mend the path; where it has $(find PACKAGE), source the workspace with that package.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:include filename="nowhere.xacro"/><link name="a"/></robot>',
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:include filename="nowhere.xacro"/>\n'
+    '  <link name="a"/>\n'
+    "</robot>\n",
     good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>',
+    line=2,
 )
 
 xacro_failed = declare(
@@ -48,10 +51,14 @@ xacro_failed = declare(
     why="There is no URDF: the Command substitution of the launch file fails and nothing starts.",
     fix="Give every <xacro:arg> a default, or the lint the arguments to expand with; for the rest "
     "see the finding.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<link name="$(arg side)_arm"/></robot>',
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:arg name="side" default="left"/><link name="$(arg side)_arm"/></robot>',
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <link name="$(arg side)_arm"/>\n'
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:arg name="side" default="left"/>\n'
+    '  <link name="$(arg side)_arm"/>\n'
+    "</robot>\n",
+    line=2,
 )
 
 

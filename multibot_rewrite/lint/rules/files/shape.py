@@ -41,8 +41,12 @@ misplaced_element = rule(
     "<inertial> of the robot is left out without a word.",
     fix="Move it to where it belongs; the hint names the places.",
     bad='<link name="a"><mass value="1"/></link>',
-    good='<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" '
-    'iyz="0" izz="1"/></inertial></link>',
+    good='<link name="a">\n'
+    "  <inertial>\n"
+    '    <mass value="1"/>\n'
+    '    <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>\n'
+    "  </inertial>\n"
+    "</link>\n",
 )(partial(faults, "misplaced-element"))
 
 misspelled_attribute = rule(
@@ -53,10 +57,13 @@ misspelled_attribute = rule(
     why="Loaders ask for attributes by name and take the default where there is none: "
     "xzy='0 0 1' is an origin of 0 0 0.",
     fix="Write the name that is meant.",
-    bad='<link name="a"><visual><origin xzy="0 0 1"/><geometry><sphere radius="1"/></geometry>'
-    "</visual></link>",
-    good='<link name="a"><visual><origin xyz="0 0 1"/><geometry><sphere radius="1"/></geometry>'
-    "</visual></link>",
+    bad='<link name="a">\n'
+    '  <visual><origin xzy="0 0 1"/><geometry><sphere radius="1"/></geometry></visual>\n'
+    "</link>\n",
+    good='<link name="a">\n'
+    '  <visual><origin xyz="0 0 1"/><geometry><sphere radius="1"/></geometry></visual>\n'
+    "</link>\n",
+    line=2,
 )(partial(faults, "misspelled-attribute"))
 
 ignored_attribute = rule(
@@ -66,10 +73,13 @@ ignored_attribute = rule(
     what="An attribute that no reader of URDF knows.",
     why="It has no effect: loaders ask for the attributes they know and for no others.",
     fix="Delete it, or move it to where your own program reads it.",
-    bad='<link name="a"><visual colour="red"><geometry><sphere radius="1"/></geometry></visual>'
-    "</link>",
-    good='<link name="a"><visual name="ball"><geometry><sphere radius="1"/></geometry></visual>'
-    "</link>",
+    bad='<link name="a">\n'
+    '  <visual colour="red"><geometry><sphere radius="1"/></geometry></visual>\n'
+    "</link>\n",
+    good='<link name="a">\n'
+    '  <visual name="ball"><geometry><sphere radius="1"/></geometry></visual>\n'
+    "</link>\n",
+    line=2,
 )(partial(faults, "ignored-attribute"))
 
 missing = rule(
@@ -82,8 +92,9 @@ missing = rule(
     "no hardware.",
     fix="Add what is missing.",
     bad='<link name="a"><visual><geometry><cylinder radius="1"/></geometry></visual></link>',
-    good='<link name="a"><visual><geometry><cylinder radius="1" length="1"/></geometry></visual>'
-    "</link>",
+    good='<link name="a">\n'
+    '  <visual><geometry><cylinder radius="1" length="1"/></geometry></visual>\n'
+    "</link>\n",
 )(partial(faults, "missing"))
 
 repeated_element = rule(
@@ -94,10 +105,22 @@ repeated_element = rule(
     why="urdfdom takes the first and never looks at the others: what the second says does not "
     "happen. Other readers may take the last.",
     fix="Keep the one that is meant.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/><origin xyz="0 0 1"/><origin xyz="0 0 2"/></joint>',
-    good='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/><origin xyz="0 0 1"/></joint>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="fixed">\n'
+    '  <parent link="a"/>\n'
+    '  <child link="b"/>\n'
+    '  <origin xyz="0 0 1"/>\n'
+    '  <origin xyz="0 0 2"/>\n'
+    "</joint>\n",
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="fixed">\n'
+    '  <parent link="a"/>\n'
+    '  <child link="b"/>\n'
+    '  <origin xyz="0 0 1"/>\n'
+    "</joint>\n",
+    line=7,
 )(partial(faults, "repeated-element"))
 
 unknown_component = rule(
@@ -108,10 +131,14 @@ unknown_component = rule(
     why='ros2_control\'s component parser throws "invalid tag name" for it, and the controller '
     "manager goes without any hardware.",
     fix="Write one of the components, or move a <param> into <hardware>.",
-    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<param name="port">1</param></ros2_control>',
-    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin>'
-    '<param name="port">1</param></hardware></ros2_control>',
+    bad='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <param name="port">1</param>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="c" type="system">\n'
+    '  <hardware><plugin>p/P</plugin><param name="port">1</param></hardware>\n'
+    "</ros2_control>\n",
+    line=3,
 )(partial(faults, "unknown-component"))
 
 stray_text = rule(

@@ -29,10 +29,17 @@ wrong_count = rule(
     why="urdfdom refuses the file if it is in a joint, and drops the rest of the link's shapes if "
     "it is in a link.",
     fix="Write all the numbers: three for xyz, rpy, size and scale, one for the rest.",
-    bad='<link name="a"><visual><geometry><mesh filename="file:///a.stl" scale="0.001"/></geometry>'
-    "</visual></link>",
-    good='<link name="a"><visual><geometry><mesh filename="file:///a.stl" scale="1 1 1"/>'
-    "</geometry></visual></link>",
+    bad='<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><mesh filename="file:///a.stl" scale="0.001"/></geometry>\n'
+    "  </visual>\n"
+    "</link>\n",
+    good='<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><mesh filename="file:///a.stl" scale="1 1 1"/></geometry>\n'
+    "  </visual>\n"
+    "</link>\n",
+    line=3,
 )(partial(faults, "wrong-count"))
 
 not_finite = rule(
@@ -68,10 +75,12 @@ bad_choice = rule(
     why="Hardware of an unknown type is loaded by nobody, and ros2_control's resource manager does "
     "not say so; urdfdom refuses a file of another version than 1.0.",
     fix="Write one of the values in the message, in lower case.",
-    bad='<ros2_control name="c" type="System"><hardware><plugin>p/P</plugin></hardware>'
-    "</ros2_control>",
-    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    "</ros2_control>",
+    bad='<ros2_control name="c" type="System">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    "</ros2_control>\n",
 )(partial(faults, "bad-choice"))
 
 bad_colour = rule(

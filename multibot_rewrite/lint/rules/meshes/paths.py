@@ -96,6 +96,7 @@ def _is_shape(mesh: _Element) -> bool:
     bad=(MESH % "package://arm/meshes/a.stl")
     + '<link name="b"><visual><geometry><mesh filename="meshes/b.stl"/></geometry></visual></link>',
     good=(MESH % "package://arm/meshes/a.stl"),
+    line=2,
 )
 def mixed_schemes(subject: Subject) -> Iterator[Problem]:
     """The first file that is named in another way than the first."""

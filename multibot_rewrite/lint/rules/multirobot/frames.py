@@ -25,10 +25,15 @@ from multibot_rewrite.rosnames import split_remap
     "the first one's frame and placed on it, and a rewrite cannot know what was meant.",
     fix="Write the link's own name and let frame_prefix or urdf-postfix spell it, or make the "
     "name in front a xacro argument.",
-    bad='<link name="laser"/><gazebo reference="laser"><sensor name="l" type="gpu_lidar">'
-    "<gz_frame_id>robot1/laser</gz_frame_id></sensor></gazebo>",
-    good='<link name="laser"/><gazebo reference="laser"><sensor name="l" type="gpu_lidar">'
-    "<gz_frame_id>laser</gz_frame_id></sensor></gazebo>",
+    bad='<link name="laser"/>\n'
+    '<gazebo reference="laser">\n'
+    '  <sensor name="l" type="gpu_lidar"><gz_frame_id>robot1/laser</gz_frame_id></sensor>\n'
+    "</gazebo>\n",
+    good='<link name="laser"/>\n'
+    '<gazebo reference="laser">\n'
+    '  <sensor name="l" type="gpu_lidar"><gz_frame_id>laser</gz_frame_id></sensor>\n'
+    "</gazebo>\n",
+    line=3,
 )
 def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that are a link with something and a slash in front."""
@@ -51,10 +56,18 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
     why="gazebo_ros_diff_drive and its like broadcast odom -> base_footprint without asking for a "
     "namespace or prefix: on one /tf two robots pull one base to two places.",
     fix="Say the frame and give each robot its own; urdf-postfix inserts it.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><robot_base_frame>base'
-    "</robot_base_frame></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><robot_base_frame>base'
-    "</robot_base_frame><odometry_frame>r1/odom</odometry_frame></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <robot_base_frame>base</robot_base_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <robot_base_frame>base</robot_base_frame>\n"
+    "    <odometry_frame>r1/odom</odometry_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
 )
 def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     """Frames that would have to be inserted for a robot."""
@@ -73,10 +86,20 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     "every look-up through it is wrong for one of them.",
     fix="Spell it for each robot: a xacro argument, or urdf-postfix; with a tf topic for each robot "
     "it may stay.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><odometry_frame>odom'
-    "</odometry_frame><robot_base_frame>b</robot_base_frame></plugin></gazebo>",
-    good='<link name="b"/><gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>'
-    "world</frame_name><body_name>b</body_name></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <odometry_frame>odom</odometry_frame>\n"
+    "    <robot_base_frame>b</robot_base_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="b"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_p3d.so">\n'
+    "    <frame_name>world</frame_name>\n"
+    "    <body_name>b</body_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
     """Literal odometry frames that are no links and hold no robot's name."""
@@ -107,10 +130,18 @@ def _words(claim: Claim) -> str:
     "for each robot this plugin's transforms are missing from it, and they meet on /tf.",
     fix="Add <remapping>/tf:=tf</remapping> to its <ros> block; urdf-postfix inserts it where each "
     "robot has its tf topic. Not needed where all share /tf and frames are spelled per robot.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><publish_odom_tf>true'
-    "</publish_odom_tf></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><publish_odom_tf>true'
-    "</publish_odom_tf><ros><remapping>/tf:=tf</remapping></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <publish_odom_tf>true</publish_odom_tf>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <publish_odom_tf>true</publish_odom_tf>\n"
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
 )
 def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
     """Plugins with tf switched on and no rule for it, unless the robots share one /tf."""

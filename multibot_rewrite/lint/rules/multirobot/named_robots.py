@@ -33,12 +33,17 @@ joints_reordered = rule(
     why="urdfdom keeps sibling joints sorted by name and pinocchio numbers its configuration vector "
     "so: the same code then moves other joints.",
     fix="Spell the robot's name in front: affix prefix.",
-    bad='<link name="a"/><link name="b"/><link name="c"/>'
-    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<joint name="j2" type="fixed"><parent link="a"/><child link="c"/></joint>',
-    good='<link name="a"/><link name="b"/><link name="c"/>'
-    '<joint name="i" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<link name="c"/>\n'
+    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<joint name="j2" type="fixed"><parent link="a"/><child link="c"/></joint>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<link name="c"/>\n'
+    '<joint name="i" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint>\n',
+    line=5,
     options={"robots": TWO},
 )(partial(_if_robots, hazards.reordered))
 
@@ -93,11 +98,16 @@ prefix_only = rule(
     why="The driver makes its joint, sensor and gpio names from that prefix: a postfix cannot reach "
     "them, so the second robot's interfaces are called as the first one's.",
     fix="Spell the robot's name in front: affix prefix.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>'
-    "ur_robot_driver/URPositionHardwareInterface</plugin>"
-    '<param name="tf_prefix">a_</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>'
-    "mock_components/GenericSystem</plugin></hardware></ros2_control>",
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>ur_robot_driver/URPositionHardwareInterface</plugin>\n"
+    '    <param name="tf_prefix">a_</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>\n"
+    "</ros2_control>\n",
+    line=4,
     options={"robots": TWO},
 )(partial(_if_robots, hazards.prefix_only))
 
@@ -109,9 +119,13 @@ off_the_shared_tf = rule(
     why="Its transforms are on a topic nobody hears: the robot's odometry frame is missing from the "
     "tree.",
     fix="Drop the rule, or use the layout both.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>/tf:=tf'
-    "</remapping></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
+    line=3,
     options={"robots": TWO},
 )(partial(_if_robots, hazards.moved_tf))
 
@@ -125,16 +139,31 @@ off_the_shared_tf = rule(
     "sensor would listen to another part than for the next.",
     fix="Spell the robot's name in front (affix prefix), or keep the fixed joints apart with "
     "preserveFixedJoint.",
-    bad='<link name="a"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<link name="b"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<link name="c"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<joint name="j_n" type="fixed"><parent link="a"/><child link="c"/></joint>'
-    '<gazebo reference="a"><sensor name="s" type="contact"><contact>'
-    "<collision>a_fixed_joint_lump__b_collision_1</collision></contact></sensor></gazebo>",
-    good='<link name="a"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<gazebo reference="a"><sensor name="s" type="contact"><contact>'
-    "<collision>a_collision</collision></contact></sensor></gazebo>",
+    bad='<link name="a">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<link name="b">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<link name="c">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<joint name="j_n" type="fixed"><parent link="a"/><child link="c"/></joint>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="contact">\n'
+    "    <contact><collision>a_fixed_joint_lump__b_collision_1</collision></contact>\n"
+    "  </sensor>\n"
+    "</gazebo>\n",
+    good='<link name="a">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="contact">\n'
+    "    <contact><collision>a_collision</collision></contact>\n"
+    "  </sensor>\n"
+    "</gazebo>\n",
+    line=14,
     options={"robots": TWO},
 )
 def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
@@ -166,10 +195,14 @@ sensor_names_meet = rule(
     why="gz_ros2_control takes the first IMU of that name, the realsense and kobuki plugins find "
     "none where two have it: the second robot reads the first one's data, or nothing.",
     fix="Use the layout both, which spells sensors for each robot.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>'
-    '<ros2_control name="h" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
-    '</plugin></hardware><sensor name="imu"/></ros2_control>',
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    '  <sensor name="imu"/>\n'
+    "</ros2_control>\n",
     good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
+    line=3,
     options={"robots": TWO, "naming": AS_WRITTEN},
 )(partial(_if_robots, hazards.bare_lookups))
 
@@ -184,10 +217,17 @@ sensor_names_meet = rule(
     "first robot's rule also moves the second robot's topic, to the first one's name.",
     fix="Write a relative target, it ends in each robot's own namespace; keep robots apart by "
     "namespaces.",
-    bad='<gazebo><plugin name="c" filename="gz_ros2_control-system"><ros><remapping>/tf:=/robot1/tf'
-    "</remapping></ros></plugin></gazebo>",
-    good='<gazebo><plugin name="c" filename="gz_ros2_control-system"><ros><remapping>/tf:=tf'
-    "</remapping></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    "    <ros><remapping>/tf:=/robot1/tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def process_wide_rule(subject: Subject) -> Iterator[Problem]:
     """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""
@@ -204,10 +244,13 @@ fixed_to_own_frame = rule(
     why="Each move_group then plans in a frame of its own that nothing publishes: the robots do not "
     "see one another's place, and look-ups from the world fail.",
     fix="Add the frame to the shared ones.",
-    bad='<robot name="r"><virtual_joint name="v" type="fixed" parent_frame="floor" child_link="a"/>'
-    "</robot>",
-    good='<robot name="r"><virtual_joint name="v" type="fixed" parent_frame="world" child_link="a"/>'
-    "</robot>",
+    bad='<robot name="r">\n'
+    '  <virtual_joint name="v" type="fixed" parent_frame="floor" child_link="a"/>\n'
+    "</robot>\n",
+    good='<robot name="r">\n'
+    '  <virtual_joint name="v" type="fixed" parent_frame="world" child_link="a"/>\n'
+    "</robot>\n",
+    line=2,
     formats=(SRDF,),
     beside={"r.urdf": '<robot name="r"><link name="a"/></robot>'},
     options={"robots": TWO, "urdf": "r.urdf"},
@@ -221,11 +264,17 @@ hard_wired_name = rule(
     why="It finds nothing under the new name and stops, or drives nothing: no element tells it "
     "another one.",
     fix="Keep names as they are and part the robots by tf topics: layout tf-per-robot.",
-    bad='<link name="a"/><link name="b"/><joint name="right_front" type="continuous"><parent link='
-    '"a"/><child link="b"/></joint><gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/>'
-    "</gazebo>",
-    good='<link name="a"/><link name="b"/><joint name="wheel" type="continuous"><parent link='
-    '"a"/><child link="b"/></joint><gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/>'
-    "</gazebo>",
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="right_front" type="continuous">\n'
+    '  <parent link="a"/>\n'
+    '  <child link="b"/>\n'
+    "</joint>\n"
+    '<gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/></gazebo>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="wheel" type="continuous"><parent link="a"/><child link="b"/></joint>\n'
+    '<gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/></gazebo>\n',
+    line=7,
     options={"robots": TWO},
 )(partial(_if_robots, hazards.hardwired))

@@ -26,9 +26,13 @@ DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
     "node of one name is refused (gazebo_ros node.hpp), in ROS 1 both answer on one topic.",
     fix="Make it a xacro argument, or let urdf-postfix put each robot's name in front; "
     "spawn_entity.py -robot_namespace overwrites it.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><namespace>/demo'
-    "</namespace></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><namespace>/demo</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
+    line=3,
 )
 def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     """Each literal namespace, at its first place."""
@@ -51,10 +55,17 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     "the second plugin no node at all, and parameters and services answer for one robot only.",
     fix="Spawn each robot with -robot_namespace, or give the plugins a <namespace>: a xacro argument, "
     "or urdf-postfix. ros_gz_sim's create has no such option.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_joint_state_publisher.so"><joint_name>j'
-    "</joint_name></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_joint_state_publisher.so"><ros>'
-    "<namespace>r1/</namespace></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_joint_state_publisher.so">\n'
+    "    <joint_name>j</joint_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_joint_state_publisher.so">\n'
+    "    <ros><namespace>r1/</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
 )
 def no_namespace(subject: Subject) -> Iterator[Problem]:
     """The first plugin without a namespace, and how many there are."""
@@ -81,10 +92,17 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     why="Every copy reads the first robot's description: its controllers then claim joints that the "
     "second robot, where it was renamed, does not have, and wait for a node outside their namespace.",
     fix="Name it relative to the plugin's namespace: robot_description, robot_state_publisher.",
-    bad='<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>'
-    "/robot_description</robotParam></plugin></gazebo>",
-    good='<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>'
-    "robot_description</robotParam></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="c" filename="libgazebo_ros_control.so">\n'
+    "    <robotParam>/robot_description</robotParam>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="c" filename="libgazebo_ros_control.so">\n'
+    "    <robotParam>robot_description</robotParam>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def one_robot_description(subject: Subject) -> Iterator[Problem]:
     """Absolute names of descriptions and of the nodes that hold them."""

@@ -40,14 +40,26 @@ _BUILTIN = frozenset(
     why="With an empty prefix nobody notices; with the second robot's the name is there twice, or "
     "refers to a link or joint that is called otherwise, and urdfdom refuses the robot.",
     fix="Put the prefix in front.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix"><link name="${prefix}base"/><link name="tool"/>'
-    '<joint name="${prefix}j" type="fixed"><parent link="${prefix}base"/><child link="${prefix}tip"'
-    "/></joint></xacro:macro></robot>",
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix parent"><link name="${prefix}base"/>'
-    '<joint name="${prefix}j" type="fixed"><parent link="${parent}"/><child link="${prefix}base"/>'
-    "</joint></xacro:macro></robot>",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix">\n'
+    '    <link name="${prefix}base"/>\n'
+    '    <link name="tool"/>\n'
+    '    <joint name="${prefix}j" type="fixed">\n'
+    '      <parent link="${prefix}base"/>\n'
+    '      <child link="${prefix}tip"/>\n'
+    "    </joint>\n"
+    "  </xacro:macro>\n"
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix parent">\n'
+    '    <link name="${prefix}base"/>\n'
+    '    <joint name="${prefix}j" type="fixed">\n'
+    '      <parent link="${parent}"/>\n'
+    '      <child link="${prefix}base"/>\n'
+    "    </joint>\n"
+    "  </xacro:macro>\n"
+    "</robot>\n",
+    line=4,
     formats=(XACRO,),
 )
 def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
@@ -73,10 +85,13 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     why="Whoever gives it believes that two copies differ: the second one brings every name again, "
     "and urdfdom refuses the robot for links that are not unique.",
     fix="Put it in front of the names, or take the parameter away.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro></robot>',
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix"><link name="${prefix}base"/></xacro:macro></robot>',
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro>\n'
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix"><link name="${prefix}base"/></xacro:macro>\n'
+    "</robot>\n",
+    line=2,
     formats=(XACRO,),
 )
 def prefix_unused(subject: Subject) -> Iterator[Problem]:

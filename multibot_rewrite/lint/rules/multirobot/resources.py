@@ -40,10 +40,15 @@ DEVICE = regex(
     "another namespace without /** no controller has a type, and its joints are the first robot's.",
     fix="Write the keys as /**/controller_manager, and where joints are renamed give each robot its "
     "own file through a xacro argument.",
-    bad='<gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
-    'filename="gz_ros2_control-system"><parameters>/opt/c.yaml</parameters></plugin></gazebo>',
-    good='<gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
-    'filename="gz_ros2_control-system"/></gazebo>',
+    bad="<gazebo>\n"
+    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">\n'
+    "    <parameters>/opt/c.yaml</parameters>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system"/>\n'
+    "</gazebo>\n",
+    line=3,
 )
 def one_controller_file(subject: Subject) -> Iterator[Problem]:
     """Literal ``<parameters>`` of plugins that load a controller manager."""
@@ -65,10 +70,13 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
     why="Two robots would open one device: the second driver fails to connect, or both command the "
     "same motors.",
     fix="Make it a xacro argument that each robot's launch sets.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>a/B</plugin>'
-    '<param name="device">/dev/ttyUSB0</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>a/B</plugin>'
-    '<param name="rate">100</param></hardware></ros2_control>',
+    bad='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="device">/dev/ttyUSB0</param></hardware>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="rate">100</param></hardware>\n'
+    "</ros2_control>\n",
+    line=2,
 )
 def one_device(subject: Subject) -> Iterator[Problem]:
     """Literal parameters that name a device or an address of another machine."""
@@ -91,11 +99,17 @@ def one_device(subject: Subject) -> Iterator[Problem]:
     "none where two have it: the second robot reads the first one's data, or nothing.",
     fix="Make sensor names differ between robots: a xacro prefix, or urdf-postfix with the layout "
     "both.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>'
-    '<ros2_control name="h" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
-    '</plugin></hardware><sensor name="imu"/></ros2_control>',
-    good='<link name="a"/><ros2_control name="h" type="system"><hardware><plugin>'
-    "gz_ros2_control/GazeboSimSystem</plugin></hardware></ros2_control>",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    '  <sensor name="imu"/>\n'
+    "</ros2_control>\n",
+    good='<link name="a"/>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    "</ros2_control>\n",
+    line=3,
 )
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
     """Only while no robots are named: then MB425 knows whether their names differ."""
@@ -118,10 +132,13 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     why="gz-sim loads it once more with every copy: two Sensors systems crash it (gz-sensors issue "
     "497), and two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
     fix="Load it in the world's SDF and take it out of the robot.",
-    bad='<gazebo><plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
-    "</gazebo>",
-    good='<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>'
-    "</gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>\n'
+    "</gazebo>\n",
+    line=2,
 )
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
     """Plugins whose library is one of the world's systems."""

@@ -37,10 +37,17 @@ GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
     "/cmd_vel and their sensors are mixed on one topic.",
     fix="Leave out the leading slash and start each robot in its namespace; urdf-postfix spells it "
     "for each robot.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>'
-    "cmd_vel:=/cmd_vel</remapping></ros></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>'
-    "cmd_vel:=drive</remapping></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><remapping>cmd_vel:=/cmd_vel</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><remapping>cmd_vel:=drive</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
     """Absolute ROS names that the settings do not call shared."""
@@ -81,9 +88,12 @@ def _target(claim: Claim) -> str:
     "drives both robots, both lidars publish on one topic and ros_gz_bridge cannot part them.",
     fix="Leave the element out, gz then puts the model's name into the topic, or give each robot its "
     "own through a xacro argument or urdf-postfix.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar">'
-    "<topic>scan</topic></sensor></gazebo>",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="l" type="gpu_lidar"><topic>scan</topic></sensor>\n'
+    "</gazebo>\n",
     good='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar"/></gazebo>',
+    line=3,
 )
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Literal gz topics."""
@@ -120,13 +130,19 @@ def _is_classic(subject: Subject) -> bool:
     why="All robots' components of that class talk on the one absolute topic: each joint command "
     "reaches every robot.",
     fix="Say the name and give each robot its own; urdf-postfix inserts it.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>'
-    "topic_based_ros2_control/TopicBasedSystem</plugin>"
-    '<param name="joint_states_topic">states</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>'
-    "topic_based_ros2_control/TopicBasedSystem</plugin>"
-    '<param name="joint_states_topic">states</param>'
-    '<param name="joint_commands_topic">commands</param></hardware></ros2_control>',
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"
+    '    <param name="joint_states_topic">states</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"
+    '    <param name="joint_states_topic">states</param>\n'
+    '    <param name="joint_commands_topic">commands</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
 )
 def default_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Topics, services and beginnings of names that would have to be inserted for a robot."""

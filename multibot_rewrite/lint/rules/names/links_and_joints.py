@@ -109,10 +109,12 @@ def _is_reserved(name: str) -> bool:
     why="A root called world is the simulation's own world: sdformat leaves its mass and shapes out. "
     "Elsewhere the name is reserved, and a world that moves with the robot breaks every tf tree.",
     fix="Give a link with content another name; fix the robot to an empty root called world.",
-    bad='<link name="world"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
-    '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
-    good='<link name="world"/>'
-    '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
+    bad='<link name="world"><visual><geometry><sphere radius="1"/></geometry></visual></link>\n'
+    '<link name="a"/>\n'
+    '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
+    good='<link name="world"/>\n'
+    '<link name="a"/>\n'
+    '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
 )
 def world_link(subject: Subject) -> Iterator[Problem]:
     """One finding, for the worst that is wrong with it."""
@@ -139,10 +141,13 @@ def world_link(subject: Subject) -> Iterator[Problem]:
     why="SDF has one set of names for them: sdformat says 'name collision' and refuses the model, "
     "so Gazebo does not spawn it.",
     fix="Rename the joint, to NAME_joint as a rule.",
-    bad='<link name="a"/><link name="b"/><joint name="b" type="continuous"><parent link="a"/>'
-    '<child link="b"/></joint>',
-    good='<link name="a"/><link name="b"/><joint name="b_joint" type="continuous">'
-    '<parent link="a"/><child link="b"/></joint>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b_joint" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
+    line=3,
 )
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
     """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""

@@ -28,10 +28,19 @@ _ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
     why="tf2 look-ups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
     "link's name as it is, so a link written like that is a frame that nobody can ask for.",
     fix="Drop the slash.",
-    bad='<link name="lidar"/><gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
-    "<frame_name>/lidar</frame_name></plugin></gazebo>",
-    good='<link name="lidar"/><gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
-    "<frame_name>lidar</frame_name></plugin></gazebo>",
+    bad='<link name="lidar"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <frame_name>/lidar</frame_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="lidar"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <frame_name>lidar</frame_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=4,
     formats=(URDF, SRDF),
 )
 def leading_slash(subject: Subject) -> Iterator[Problem]:
@@ -64,10 +73,15 @@ def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
     "first slash: arm/j1/position belongs to the controller 'arm' as soon as there is one.",
     fix="Write an underscore, in the URDF and in the controllers' parameters; or call no "
     "controller what stands before the slash.",
-    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="arm/j1"><state_interface name="position"/></joint></ros2_control>',
-    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="arm_j1"><state_interface name="position"/></joint></ros2_control>',
+    bad='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="arm/j1"><state_interface name="position"/></joint>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="arm_j1"><state_interface name="position"/></joint>\n'
+    "</ros2_control>\n",
+    line=3,
 )
 def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     """Every component that has interfaces."""
@@ -108,10 +122,17 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     why="rcl throws InvalidTopicNameError, or the node is not made: the plugin does not load, or "
     "publishes nothing.",
     fix="Use letters, digits, underscores and slashes, no digit in front.",
-    bad='<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><ros>'
-    "<namespace>my-robot</namespace></ros></plugin></gazebo>",
-    good='<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><ros>'
-    "<namespace>my_robot</namespace></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <ros><namespace>my-robot</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <ros><namespace>my_robot</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def no_ros_name(subject: Subject) -> Iterator[Problem]:
     """Values that are relative to a ROS namespace; those with a substitution are skipped."""
@@ -150,10 +171,15 @@ def _name_fault(name: str, section: str) -> str:
     why="Controllers ask for NAME/INTERFACE, spelled exactly: the parser strips blanks around a "
     "name, those within it stay, and an empty one can be asked for by nobody.",
     fix="Write the name without blanks.",
-    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="j"><state_interface name=""/></joint></ros2_control>',
-    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="j"><state_interface name="position"/></joint></ros2_control>',
+    bad='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="j"><state_interface name=""/></joint>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="j"><state_interface name="position"/></joint>\n'
+    "</ros2_control>\n",
+    line=3,
 )
 def odd_interface(subject: Subject) -> Iterator[Problem]:
     """Components and their interfaces; the name of a joint is reported at its declaration."""

@@ -43,6 +43,7 @@ LARGER, SMALLER, SMALL_SHAPE = 50.0, 0.01, 0.01
     fix="Write ixx, ixy, ixz, iyy, iyz and izz, or delete the <inertial>.",
     bad=one_link(an_inertial(inertia="")),
     good=one_link(an_inertial()),
+    line=2,
 )
 def inertia_missing(subject: Subject) -> Iterator[Problem]:
     """Inertials without <inertia>, or with a part of it."""
@@ -67,6 +68,7 @@ def inertia_missing(subject: Subject) -> Iterator[Problem]:
     fix="Write the inertia of a box or a cylinder of that mass and size.",
     bad=moving_link(an_inertial(inertia=diagonal("0", "0", "0"))),
     good=moving_link(an_inertial()),
+    line=10,
 )
 def inertia_zero(subject: Subject) -> Iterator[Problem]:
     """Bodies with mass and no inertia, also not from a link that is fixed to them."""
@@ -94,6 +96,7 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     "the sign of ixy, ixz and iyz.",
     bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.2"))),
     good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.02"))),
+    line=4,
 )
 def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     """Inertias of bodies with a negative principal moment."""
@@ -113,6 +116,7 @@ def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     fix="Take the values from the CAD program again: in kg m2, about the centre of mass.",
     bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))),
     good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.2"))),
+    line=4,
 )
 def inertia_triangle(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
@@ -131,6 +135,7 @@ def inertia_triangle(subject: Subject) -> Iterator[Problem]:
     fix="Write mass in kg and inertia in kg m2; 1 kg mm2 is 1e-6 kg m2.",
     bad=one_link(an_inertial(inertia=diagonal("1000", "1000", "1000"))),
     good=one_link(an_inertial(inertia=diagonal("0.001", "0.001", "0.001"))),
+    line=4,
 )
 def inertia_scale(subject: Subject) -> Iterator[Problem]:
     """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
@@ -165,6 +170,7 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         "continuous", "fixed"
     ),
     good=moving_link(an_inertial()).replace("continuous", "fixed"),
+    line=10,
 )
 def merged_inertia(subject: Subject) -> Iterator[Problem]:
     """Impossible inertias of links that simulators merge with others."""

@@ -8,6 +8,7 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import WORLD, Link, Robot, reached
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_joint, a_link, block
 from multibot_rewrite.lint.rules.physics.shared import (
     INERTIA,
     an_inertial,
@@ -29,8 +30,9 @@ TINY_MASS = 1e-6
     why="urdfdom says 'Inertial element must have a mass element' and reads no further: the link "
     "has no visual and no collision; MuJoCo refuses the file.",
     fix='Add <mass value="..."/>, or delete the <inertial>.',
-    bad=one_link(f"<inertial>{INERTIA}</inertial>"),
+    bad=one_link(block("<inertial>", INERTIA)),
     good=one_link(an_inertial()),
+    line=2,
 )
 def mass_missing(subject: Subject) -> Iterator[Problem]:
     """Inertials without <mass value>."""
@@ -52,6 +54,7 @@ def mass_missing(subject: Subject) -> Iterator[Problem]:
     fix="Write the mass in kg.",
     bad=one_link(an_inertial("-1")),
     good=one_link(an_inertial("1")),
+    line=3,
 )
 def mass_negative(subject: Subject) -> Iterator[Problem]:
     """Masses below 0."""
@@ -69,8 +72,9 @@ def mass_negative(subject: Subject) -> Iterator[Problem]:
     why="Gazebo leaves out the link and all that hangs on it (sdformat: 'is not modeled in sdf'; "
     "its joint and child joints are 'ignored'); MuJoCo refuses the file.",
     fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
-    bad=moving_link(""),
+    bad=moving_link(),
     good=moving_link(an_inertial()),
+    line=7,
 )
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
     """The uppermost bodies without mass, if the robot has several bodies and some mass."""
@@ -100,9 +104,8 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
     "root link with an inertia').",
     fix="Add a link without inertia above it, with a fixed joint.",
     bad=one_link(an_inertial()),
-    good='<link name="base"/><link name="a">'
-    + an_inertial()
-    + '</link><joint name="j" type="fixed"><parent link="base"/><child link="a"/></joint>',
+    good=a_link("base") + one_link(an_inertial()) + a_joint("j", "fixed", "base", "a"),
+    line=2,
 )
 def root_inertia(subject: Subject) -> Iterator[Problem]:
     """A root with <inertial>."""
@@ -120,8 +123,9 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     why="Gazebo spawns nothing of it; MuJoCo refuses a moving body without mass. RViz and MoveIt "
     "do not mind.",
     fix="Add <inertial> to the links, if the robot is to be simulated.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
-    '<child link="b"/></joint>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
     good=moving_link(an_inertial()),
 )
 def no_inertia(subject: Subject) -> Iterator[Problem]:
@@ -142,6 +146,7 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     fix="Write the real mass, or make the joint fixed.",
     bad=moving_link(an_inertial("1e-8")),
     good=moving_link(an_inertial("0.01")),
+    line=8,
 )
 def mass_tiny(subject: Subject) -> Iterator[Problem]:
     """Bodies of nearly no mass."""

@@ -37,8 +37,9 @@ OLD_VERSIONS = ("1.0", "1")
     "has any link that is fixed to it.",
     why="MoveIt plans through it, and in Gazebo it goes through everything.",
     fix="Add <collision>, with a simpler shape.",
-    bad=moving_link(f"{an_inertial()}<visual>{BOX}</visual>"),
-    good=moving_link(f"{an_inertial()}<visual>{BOX}</visual><collision>{BOX}</collision>"),
+    bad=moving_link(an_inertial(), f"<visual>{BOX}</visual>"),
+    good=moving_link(an_inertial(), f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"),
+    line=7,
 )
 def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     """Bodies; one finding for the robot where no link has a collision."""
@@ -72,6 +73,7 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     fix="Write the size in metres; delete a shape that is not there.",
     bad=visual('<box size="0 0 0"/>'),
     good=visual('<box size="0.1 0.1 0.1"/>'),
+    line=3,
 )
 def shape_size(subject: Subject) -> Iterator[Problem]:
     """Shapes with a size of 0 or less."""
@@ -91,6 +93,7 @@ def shape_size(subject: Subject) -> Iterator[Problem]:
     fix="Divide by 1000 what is in millimetres.",
     bad=visual('<box size="300 200 100"/>'),
     good=visual('<box size="0.3 0.2 0.1"/>'),
+    line=3,
 )
 def shape_units(subject: Subject) -> Iterator[Problem]:
     """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
@@ -111,6 +114,7 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
     fix="Add <geometry> with a box, cylinder, sphere or mesh, or delete the element.",
     bad=one_link("<visual/>"),
     good=one_link(f"<visual>{BOX}</visual>"),
+    line=2,
 )
 def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
@@ -144,6 +148,7 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
     fix="Write three scales that are not 0.",
     bad=visual('<mesh filename="a.stl" scale="1 1 0"/>'),
     good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
+    line=3,
 )
 def mesh_flat(subject: Subject) -> Iterator[Problem]:
     """Scales with a 0."""
@@ -163,6 +168,7 @@ def mesh_flat(subject: Subject) -> Iterator[Problem]:
     fix="Export the mirrored mesh, where that matters.",
     bad=visual('<mesh filename="a.stl" scale="1 -1 1"/>'),
     good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
+    line=3,
 )
 def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
     """An odd number of negative scales: two of them are a rotation."""
@@ -182,6 +188,7 @@ def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
     fix="Write the same scale three times: 0.001 for a mesh in millimetres.",
     bad=visual('<mesh filename="a.stl" scale="1000 1000 1000"/>'),
     good=visual('<mesh filename="a.stl" scale="0.001 0.001 0.001"/>'),
+    line=3,
 )
 def mesh_scale_units(subject: Subject) -> Iterator[Problem]:
     """Very large, very small, or very different scales."""

@@ -10,7 +10,8 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import Joint
 from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.references.shared import ARM, PAIR, SYSTEM, name_of
+from multibot_rewrite.lint.rules.examples import block
+from multibot_rewrite.lint.rules.references.shared import ARM, FIXED, a_pair, a_system, name_of
 from multibot_rewrite.model import Claim
 
 # Types that no motor moves.
@@ -26,7 +27,7 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
     "joints'): nothing drives what it was made for.",
     fix="Name the joint, or delete the transmission.",
     bad='<transmission name="t"><actuator name="m"/></transmission>',
-    good=f'{ARM}<transmission name="t"><joint name="j"/><actuator name="m"/></transmission>',
+    good=ARM + block('<transmission name="t">', '<joint name="j"/>', '<actuator name="m"/>'),
 )
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     """Transmissions of the robot; those of the PR2 name joints by other tags."""
@@ -44,9 +45,9 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     why="From Jazzy on the controller manager refuses the description ('Fixed joints do not make "
     "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
     fix="Take the joint out, or give it a type that moves.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint>' + SYSTEM.format('<joint name="j"/>'),
-    good=ARM + SYSTEM.format('<joint name="j"/>'),
+    bad=FIXED + a_system('<joint name="j"/>'),
+    good=ARM + a_system('<joint name="j"/>'),
+    line=7,
 )
 def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     """Joints that ros2_control is to move and that cannot."""
@@ -64,9 +65,9 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     why="Gazebo removes fixed joints, so gazebo_ros_control finds none of that name and loads no "
     "hardware at all.",
     fix="Delete the transmission, or give the joint a type that moves.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint><transmission name="t"><joint name="j"/></transmission>',
+    bad=FIXED + '<transmission name="t"><joint name="j"/></transmission>\n',
     good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
+    line=6,
 )
 def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     """Joints of transmissions that cannot move."""
@@ -85,12 +86,17 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     why="From Jazzy on the controller manager refuses the description ('Activated mimic joints "
     'cannot have command interfaces\'), unless the joint says mimic="false".',
     fix='Delete the command interface; mimic="false" if the hardware drives both.',
-    bad=PAIR.format('<mimic joint="j"/>')
-    + SYSTEM.format(
-        '<joint name="j"/><joint name="k"><command_interface name="position"/></joint>'
+    bad=a_pair('<mimic joint="j"/>')
+    + a_system(
+        '<joint name="j"/>',
+        block('<joint name="k">', '<command_interface name="position"/>'),
     ),
-    good=PAIR.format('<mimic joint="j"/>')
-    + SYSTEM.format('<joint name="j"/><joint name="k"><state_interface name="position"/></joint>'),
+    good=a_pair('<mimic joint="j"/>')
+    + a_system(
+        '<joint name="j"/>',
+        block('<joint name="k">', '<state_interface name="position"/>'),
+    ),
+    line=13,
 )
 def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints with a command interface of their own."""
@@ -108,8 +114,9 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     why="From Jazzy on the controller manager refuses the description ('Mimic joint ... not found "
     "in <ros2_control> tag').",
     fix='Put both joints in one <ros2_control>, or say mimic="false".',
-    bad=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="k"/>'),
-    good=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
+    bad=a_pair('<mimic joint="j"/>') + a_system('<joint name="k"/>'),
+    good=a_pair('<mimic joint="j"/>') + a_system('<joint name="j"/>', '<joint name="k"/>'),
+    line=12,
 )
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints whose leader is not in the same <ros2_control>."""
@@ -132,8 +139,9 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     why="Nothing moves it; unless somebody publishes its state all the same, "
     "robot_state_publisher does not send its transform and tf has no link behind it.",
     fix="Add it to <ros2_control>; if it is passive, let somebody publish its state.",
-    bad=PAIR.format("") + SYSTEM.format('<joint name="j"/>'),
-    good=PAIR.format("") + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
+    bad=a_pair() + a_system('<joint name="j"/>'),
+    good=a_pair() + a_system('<joint name="j"/>', '<joint name="k"/>'),
+    line=7,
 )
 def undriven_joint(subject: Subject) -> Iterator[Problem]:
     """One finding a robot: the joints that were forgotten, or are passive."""

@@ -13,7 +13,8 @@ from multibot_rewrite.checks.references import repeated
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.references.shared import ARM, IMU, PLUGIN, SYSTEM, name_of
+from multibot_rewrite.lint.rules.examples import a_link
+from multibot_rewrite.lint.rules.references.shared import ARM, IMU, a_plugin, a_system, name_of
 from multibot_rewrite.model import Claim
 from multibot_rewrite.steps.document import locate
 
@@ -76,8 +77,9 @@ def _origin(subject: Subject, start: int) -> Origin | None:
     why="The hardware exports one set of interfaces a name: those of the second are mixed up with "
     "the first, or loading ends with 'Tried to insert StateInterface with already existing key'.",
     fix="Put all interfaces of the joint in one element.",
-    bad=ARM + SYSTEM.format('<joint name="j"/><joint name="j"/>'),
-    good=ARM + SYSTEM.format('<joint name="j"/>'),
+    bad=ARM + a_system('<joint name="j"/>', '<joint name="j"/>'),
+    good=ARM + a_system('<joint name="j"/>'),
+    line=8,
 )
 def repeated_joint(subject: Subject) -> Iterator[Problem]:
     """Components of one kind and name in one system."""
@@ -97,8 +99,9 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
     why="ros2_control's resource manager refuses the second ('Hardware name ... is duplicated'): "
     "the controller manager does not come up.",
     fix="Give each system, sensor and actuator its own name.",
-    bad=ARM + SYSTEM.format('<joint name="j"/>') + SYSTEM.format(""),
-    good=ARM + SYSTEM.format('<joint name="j"/>'),
+    bad=ARM + a_system('<joint name="j"/>') + a_system(),
+    good=ARM + a_system('<joint name="j"/>'),
+    line=9,
 )
 def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
     """Every name that was there before."""
@@ -115,8 +118,9 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
     why="libsdformat refuses the model ('sensor with name[...] already exists'), so gz-sim does "
     "not load the robot.",
     fix="Give each sensor of a link its own name.",
-    bad='<link name="a"/>' + IMU.format("a", "imu") * 2,
-    good='<link name="a"/>' + IMU.format("a", "imu") + IMU.format("a", "imu2"),
+    bad=a_link("a") + IMU.format("imu") * 2,
+    good=a_link("a") + IMU.format("imu") + IMU.format("imu2"),
+    line=6,
 )
 def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     """Sensors in blocks for one link."""
@@ -141,8 +145,9 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     what="Two <material> elements of the robot have one name.",
     why="urdfdom refuses the file ('material ... is not unique'), the same colour or not.",
     fix="Define each material once; links refer to it by name.",
-    bad='<link name="a"/>' + '<material name="m"><color rgba="1 0 0 1"/></material>' * 2,
+    bad=a_link("a") + '<material name="m"><color rgba="1 0 0 1"/></material>\n' * 2,
     good='<link name="a"/><material name="m"><color rgba="1 0 0 1"/></material>',
+    line=3,
 )
 def duplicate_material(subject: Subject) -> Iterator[Problem]:
     """Materials right below the root; a link may repeat one."""
@@ -160,10 +165,11 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
     why="gazebo_ros makes no node for the second ('Found multiple nodes with same name') but gives "
     "it a null pointer; plugins such as gazebo_ros_imu_sensor use it at once, and gzserver dies.",
     fix="Give each plugin its own name.",
-    bad='<link name="a"/>' + PLUGIN.format("gazebo_ros_imu_sensor", "imu", "<ros/>") * 2,
-    good='<link name="a"/>'
-    + PLUGIN.format("gazebo_ros_imu_sensor", "imu", "<ros/>")
-    + PLUGIN.format("gazebo_ros_imu_sensor", "imu2", "<ros/>"),
+    bad=a_link("a") + a_plugin("gazebo_ros_imu_sensor", "imu", "<ros/>") * 2,
+    good=a_link("a")
+    + a_plugin("gazebo_ros_imu_sensor", "imu", "<ros/>")
+    + a_plugin("gazebo_ros_imu_sensor", "imu2", "<ros/>"),
+    line=8,
 )
 def one_node_twice(subject: Subject) -> Iterator[Problem]:
     """Plugins whose name is that of a node."""
@@ -186,8 +192,9 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
     why="Tools and messages cannot tell them apart; it is what a copy looks like whose name was "
     "forgotten, and its joint often was as well.",
     fix="Rename one, and see whether its joint is the right one.",
-    bad=ARM + '<transmission name="t"><joint name="j"/></transmission>' * 2,
+    bad=ARM + '<transmission name="t"><joint name="j"/></transmission>\n' * 2,
     good=ARM + '<transmission name="t"><joint name="j"/></transmission>',
+    line=7,
 )
 def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
     """Transmissions of the robot, not those of a <ros2_control>."""

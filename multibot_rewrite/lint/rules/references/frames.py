@@ -8,8 +8,9 @@ from multibot_rewrite.checks.references import COMPARED, HINTED, fold, where
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.lookup import references
-from multibot_rewrite.lint.rules.references.shared import PLUGIN
+from multibot_rewrite.lint.rules.references.shared import a_plugin
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
@@ -26,10 +27,11 @@ AT_RUN_TIME = ("odom", "map", "world")
     why="The data is stamped with a frame that tf does not have: every consumer drops it "
     "('frame does not exist').",
     fix="Correct the name; if another node publishes that frame, silence the finding.",
-    bad='<link name="base_link"/>'
-    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_lnik</frame_name>"),
-    good='<link name="base_link"/>'
-    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_link</frame_name>"),
+    bad=a_link("base_link")
+    + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_lnik</frame_name>"),
+    good=a_link("base_link")
+    + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_link</frame_name>"),
+    line=5,
 )
 def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that differ from a link by one typing mistake."""
@@ -47,10 +49,15 @@ def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     why="Unless another node publishes that frame, tf does not have it and every consumer drops "
     "the data.",
     fix="Name a link, or be sure that somebody publishes the frame.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="s" type="imu"><frame_id>imu_frame'
-    "</frame_id></sensor></gazebo>",
-    good='<link name="a"/><gazebo reference="a"><sensor name="s" type="imu"><frame_id>a</frame_id>'
-    "</sensor></gazebo>",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>imu_frame</frame_id></sensor>\n'
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>a</frame_id></sensor>\n'
+    "</gazebo>\n",
+    line=3,
 )
 def foreign_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have, and that no localisation publishes."""

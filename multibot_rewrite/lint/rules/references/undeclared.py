@@ -9,8 +9,9 @@ from multibot_rewrite.checks.references import where
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_joint, a_link
 from multibot_rewrite.lint.rules.references.lookup import references, undeclared
-from multibot_rewrite.lint.rules.references.shared import ARM, JOINT, PAIR, PLUGIN, SYSTEM
+from multibot_rewrite.lint.rules.references.shared import ARM, LINKS, a_pair, a_plugin, a_system
 
 undeclared_link = rule(
     "MB202",
@@ -20,8 +21,9 @@ undeclared_link = rule(
     why="urdfdom refuses the file ('parent link ... not found'): no robot_state_publisher, no tf.",
     fix="Correct the name, or declare the link.",
     bad='<link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>',
-    good='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint>',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n',
 )(partial(undeclared, "MB202"))
 
 undeclared_mimic = rule(
@@ -32,8 +34,9 @@ undeclared_mimic = rule(
     why="robot_state_publisher never sends the transform of the joint, so tf has no link behind "
     "it; joint_state_publisher stops with a KeyError, MoveIt ignores the mimic.",
     fix="Correct the name.",
-    bad=f'{JOINT}<mimic joint="k"/></joint>',
-    good=PAIR.format('<mimic joint="j"/>'),
+    bad=LINKS + a_joint("j", "continuous", "a", "b", '<mimic joint="k"/>'),
+    good=a_pair('<mimic joint="j"/>'),
+    line=5,
 )(partial(undeclared, "MB211"))
 
 undeclared_reference = rule(
@@ -57,6 +60,7 @@ undeclared_transmission_joint = rule(
     fix="Correct the name, or delete the transmission.",
     bad=f'{ARM}<transmission name="t"><joint name="jj"/></transmission>',
     good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
+    line=6,
 )(partial(undeclared, "MB213"))
 
 undeclared_ros2_control_joint = rule(
@@ -67,8 +71,9 @@ undeclared_ros2_control_joint = rule(
     why="From Jazzy on the controller manager refuses the description ('Joint ... not found in "
     "URDF'); before, gz_ros2_control left the joint out and its controllers could not start.",
     fix="Correct the name; a quantity that is no joint belongs in a <gpio>.",
-    bad=ARM + SYSTEM.format('<joint name="jj"/>'),
-    good=ARM + SYSTEM.format('<joint name="j"/>'),
+    bad=ARM + a_system('<joint name="jj"/>'),
+    good=ARM + a_system('<joint name="j"/>'),
+    line=7,
 )(partial(undeclared, "MB214"))
 
 undeclared_joint_parameter = rule(
@@ -79,8 +84,9 @@ undeclared_joint_parameter = rule(
     why="The plugin looks the joint up, finds nothing and does not run, or leaves the joint out: "
     "gazebo_ros_diff_drive says 'Joint ... not found, plugin will not work'.",
     fix="Correct the name.",
-    bad=ARM + PLUGIN.format("gazebo_ros_diff_drive", "d", "<left_joint>k</left_joint>"),
-    good=ARM + PLUGIN.format("gazebo_ros_diff_drive", "d", "<left_joint>j</left_joint>"),
+    bad=ARM + a_plugin("gazebo_ros_diff_drive", "d", "<left_joint>k</left_joint>"),
+    good=ARM + a_plugin("gazebo_ros_diff_drive", "d", "<left_joint>j</left_joint>"),
+    line=8,
 )(partial(undeclared, "MB215"))
 
 undeclared_link_parameter = rule(
@@ -91,9 +97,9 @@ undeclared_link_parameter = rule(
     why="The plugin looks the link up, finds nothing and does not run: gazebo_ros_p3d says "
     "'body_name: ... does not exist' and publishes nothing.",
     fix="Correct the name.",
-    bad='<link name="a"/>' + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><body_name>b</body_name>"),
-    good='<link name="a"/>'
-    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><body_name>a</body_name>"),
+    bad=a_link("a") + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<body_name>b</body_name>"),
+    good=a_link("a") + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<body_name>a</body_name>"),
+    line=5,
 )(partial(undeclared, "MB216"))
 
 undeclared_sdf_name = rule(
@@ -132,10 +138,13 @@ undeclared_name = rule(
     why="No reader strips attributes: urdfdom looks for 'base ' with the space, finds nothing and "
     "refuses the file; ros2_control does not find the joint.",
     fix="Delete the white space.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a "/>'
-    '<child link="b"/></joint>',
-    good='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="fixed"><parent link="a "/><child link="b"/></joint>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n',
+    line=3,
 )
 def padded_reference(subject: Subject) -> Iterator[Problem]:
     """Attributes that are the name of a link or joint."""

@@ -22,6 +22,7 @@ from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, ELEMENTS, TOP, s
     fix="Give the attribute.",
     bad=ARM + '<end_effector name="e" group="arm"/>',
     good=ARM + '<end_effector name="e" group="arm" parent_link="b"/>',
+    line=2,
 )
 def srdf_incomplete(subject: Subject) -> Iterator[Problem]:
     """Every attribute that srdfdom asks for."""
@@ -41,6 +42,7 @@ def srdf_incomplete(subject: Subject) -> Iterator[Problem]:
     fix="Correct the name.",
     bad=ARM + '<disable_collision link1="a" link2="b"/>',
     good=ARM + APART,
+    line=2,
 )
 def srdf_misspelled(subject: Subject) -> Iterator[Problem]:
     """Elements and attributes almost like a known one; all others belong to other tools."""

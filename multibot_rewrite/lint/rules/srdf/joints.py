@@ -25,6 +25,7 @@ PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_dist
     fix="Name the root link.",
     bad=ARM + VIRTUAL.format("fixed", "b"),
     good=ARM + VIRTUAL.format("fixed", "a"),
+    line=2,
 )
 def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     """Virtual joints; a fixed one is right where the root link is ``world``, as Gazebo wants it."""
@@ -47,6 +48,7 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     fix="Use angular_distance_weight, motion_model or min_translational_distance.",
     bad=ARM + '<joint_property joint_name="j" property_name="motion" value="holonomic"/>',
     good=ARM + '<joint_property joint_name="j" property_name="motion_model" value="holonomic"/>',
+    line=2,
 )
 def joint_property(subject: Subject) -> Iterator[Problem]:
     """Names of properties that MoveIt does not know."""
@@ -67,6 +69,7 @@ def joint_property(subject: Subject) -> Iterator[Problem]:
     fix="Write fixed, planar or floating.",
     bad=ARM + VIRTUAL.format("planer", "a"),
     good=ARM + VIRTUAL.format("planar", "a"),
+    line=2,
 )
 def virtual_joint_type(subject: Subject) -> Iterator[Problem]:
     """Types that are unknown in upper and lower case."""

@@ -66,6 +66,7 @@ srdf_joint = srdf_rule(
     fix="Correct the name.",
     bad=ARM + '<passive_joint name="jj"/>',
     good=ARM + '<passive_joint name="j"/>',
+    line=2,
 )(partial(undeclared, "MB804"))
 
 srdf_group = srdf_rule(
@@ -78,6 +79,7 @@ srdf_group = srdf_rule(
     fix="Correct the name.",
     bad=ARM + '<group name="all"><group name="amr"/></group>',
     good=ARM + '<group name="all"><group name="arm"/></group>',
+    line=2,
 )(partial(undeclared, "MB805"))
 
 
@@ -91,6 +93,7 @@ srdf_group = srdf_rule(
     fix="Rename one, or put both into one.",
     bad=ARM * 2,
     good=ARM,
+    line=2,
 )
 def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
     """Every declaration but the first."""

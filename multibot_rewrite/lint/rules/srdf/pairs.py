@@ -25,6 +25,7 @@ from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, SHOWN, srdf_rule
     fix="Delete the line, or correct the name.",
     bad=ARM + '<disable_collisions link1="a" link2="bb" reason="Adjacent"/>',
     good=ARM + APART,
+    line=2,
 )
 def stale_pair(subject: Subject) -> Iterator[Problem]:
     """One finding a name, at its first pair."""
@@ -50,6 +51,7 @@ def _link(problem: Problem) -> str:
     fix="Delete the second line.",
     bad=APART + '<disable_collisions link1="b" link2="a" reason="Never"/>',
     good=APART,
+    line=2,
 )
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
     """One finding a file; the order of the two does not matter."""
@@ -95,6 +97,7 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
     fix="Give the links a <collision>, or delete the lines.",
     bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',
     good=ARM + APART,
+    line=2,
 )
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     """One finding a link, at its first pair."""
@@ -124,6 +127,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     fix="Disable the pair with the reason Adjacent, if it may touch.",
     bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',
     good=ARM + APART,
+    line=2,
 )
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
     """One finding a file, if it disables any pair."""

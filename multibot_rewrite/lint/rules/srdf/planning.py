@@ -60,10 +60,13 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
     why="MoveIt says so and takes another group that has the link, or none: grasps are planned for "
     "the wrong arm.",
     fix="Name the group whose link carries the end effector.",
-    bad=ARM + '<group name="hand"><link name="c"/></group><end_effector name="e" group="hand" '
-    'parent_link="a" parent_group="arm"/>',
-    good=ARM + '<group name="hand"><link name="c"/></group><end_effector name="e" group="hand" '
-    'parent_link="b" parent_group="arm"/>',
+    bad=ARM
+    + '<group name="hand"><link name="c"/></group>\n'
+    + '<end_effector name="e" group="hand" parent_link="a" parent_group="arm"/>\n',
+    good=ARM
+    + '<group name="hand"><link name="c"/></group>\n'
+    + '<end_effector name="e" group="hand" parent_link="b" parent_group="arm"/>\n',
+    line=3,
 )
 def end_effector_parent(subject: Subject) -> Iterator[Problem]:
     """End effectors that name their parent group."""

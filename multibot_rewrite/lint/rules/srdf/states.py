@@ -29,6 +29,7 @@ ROUNDING = 1e-4
     fix="Rename one.",
     bad=STATE.format("") + '<group_state name="home" group="arm"/>',
     good=STATE.format("") + '<group_state name="up" group="arm"/>',
+    line=3,
 )
 def duplicate_state(subject: Subject) -> Iterator[Problem]:
     """Every state but the first of its name."""
@@ -51,6 +52,7 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     fix="Take the joint out, or put it into the group.",
     bad=STATE.format('<joint name="k" value="0"/>'),
     good=STATE.format('<joint name="j" value="0"/>'),
+    line=2,
 )
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
     """Joints of states that exist and are not in the group."""
@@ -77,6 +79,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
     fix="Correct the value or the limit.",
     bad=STATE.format('<joint name="j" value="1.5"/>'),
     good=STATE.format('<joint name="j" value="1"/>'),
+    line=2,
 )
 def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Joints of one value that have limits."""
@@ -103,6 +106,7 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     fix="Give one number; three for a planar joint (x y theta), seven for a floating one.",
     bad=STATE.format('<joint name="j" value="half"/>'),
     good=STATE.format('<joint name="j" value="0.5"/>'),
+    line=2,
 )
 def state_value(subject: Subject) -> Iterator[Problem]:
     """Values of joints in states."""

@@ -36,6 +36,7 @@ FAR = 50.0
     fix="Write one of the six types.",
     bad=one_joint("Fixed"),
     good=one_joint("fixed"),
+    line=3,
 )
 def joint_type(subject: Subject) -> Iterator[Problem]:
     """Types that are not exactly one of the six."""
@@ -60,8 +61,9 @@ def joint_type(subject: Subject) -> Iterator[Problem]:
     why="sdformat refuses the file ('The norm of the xyz vector cannot be zero') and MuJoCo, too; "
     "KDL divides by the length, so robot_state_publisher sends nan, which tf2 ignores.",
     fix='Write the axis: <axis xyz="0 0 1"/>; without <axis> it is 1 0 0.',
-    bad=one_joint("revolute", '<axis xyz="0 0 0"/>' + LIMIT),
-    good=one_joint("revolute", '<axis xyz="0 0 1"/>' + LIMIT),
+    bad=one_joint("revolute", '<axis xyz="0 0 0"/>', LIMIT),
+    good=one_joint("revolute", '<axis xyz="0 0 1"/>', LIMIT),
+    line=5,
 )
 def zero_axis(subject: Subject) -> Iterator[Problem]:
     """Axes of length 0."""
@@ -87,8 +89,9 @@ prismatic_axis_length = rule(
     why="KDL (robot_state_publisher), sdformat and pinocchio make it 1, MoveIt and yourdfpy go as "
     "many times as far: the planner's robot is not the one in tf.",
     fix="Divide the axis by its length.",
-    bad=one_joint("prismatic", '<axis xyz="0 0 2"/>' + LIMIT),
-    good=one_joint("prismatic", '<axis xyz="0 0 1"/>' + LIMIT),
+    bad=one_joint("prismatic", '<axis xyz="0 0 2"/>', LIMIT),
+    good=one_joint("prismatic", '<axis xyz="0 0 1"/>', LIMIT),
+    line=5,
 )(partial(_not_unit, types=("prismatic",)))
 
 axis_length = rule(
@@ -99,8 +102,9 @@ axis_length = rule(
     why="KDL, sdformat, MoveIt and pinocchio make it 1; a reader that takes it as it is turns the "
     "joint by another angle.",
     fix="Divide the axis by its length.",
-    bad=one_joint("revolute", '<axis xyz="0 1 1"/>' + LIMIT),
-    good=one_joint("revolute", '<axis xyz="0 0.7071 0.7071"/>' + LIMIT),
+    bad=one_joint("revolute", '<axis xyz="0 1 1"/>', LIMIT),
+    good=one_joint("revolute", '<axis xyz="0 0.7071 0.7071"/>', LIMIT),
+    line=5,
 )(partial(_not_unit, types=("revolute", "continuous")))
 
 
@@ -122,6 +126,7 @@ def _axes(robot: Robot) -> Iterator[tuple[Joint, _Element, float]]:
     fix="Delete them, or give the joint the type that was meant.",
     bad=one_joint("fixed", LIMIT),
     good=one_joint("fixed"),
+    line=5,
 )
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
     """One finding a joint; exporters write <axis> and <dynamics> everywhere."""
@@ -147,6 +152,7 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
     "<virtual_joint> of the SRDF.",
     bad=one_joint("floating"),
     good=one_joint("fixed"),
+    line=3,
 )
 def floating_or_planar(subject: Subject) -> Iterator[Problem]:
     """Joints of these two types."""
@@ -165,6 +171,7 @@ def floating_or_planar(subject: Subject) -> Iterator[Problem]:
     fix="Divide by 1000 what is in millimetres.",
     bad=one_joint("fixed", '<origin xyz="0 0 120"/>'),
     good=one_joint("fixed", '<origin xyz="0 0 0.12"/>'),
+    line=5,
 )
 def joint_origin_units(subject: Subject) -> Iterator[Problem]:
     """Origins that are farther away than any robot is long."""

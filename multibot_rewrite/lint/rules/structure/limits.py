@@ -37,6 +37,7 @@ LONG_WAY = 25.0
     fix="Add <limit> with lower, upper, effort and velocity; a wheel's joint is continuous.",
     bad=one_joint("revolute"),
     good=one_joint("revolute", LIMIT),
+    line=3,
 )
 def limit_missing(subject: Subject) -> Iterator[Problem]:
     """Joints that need a <limit>."""
@@ -54,6 +55,7 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
     fix="Add the attribute, or delete a <limit> that the type does not need.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     """Limits without the attributes that urdfdom requires."""
@@ -75,6 +77,7 @@ def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     fix="Swap them, or mend the sign.",
     bad=one_joint("revolute", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
     """Lower limits above the upper one."""
@@ -95,6 +98,7 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
     "Gazebo).",
     bad=one_joint("revolute", '<limit lower="0" upper="0" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
@@ -116,6 +120,7 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     fix="Write both.",
     bad=one_joint("revolute", '<limit upper="1" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     """Missing bounds, which are read as 0."""
@@ -139,6 +144,7 @@ def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     fix="Write the greatest absolute value.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="-5" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def negative_limit(subject: Subject) -> Iterator[Problem]:
     """Each such attribute."""
@@ -159,6 +165,7 @@ def negative_limit(subject: Subject) -> Iterator[Problem]:
     fix="Write what the motor can do.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="0" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def zero_limit(subject: Subject) -> Iterator[Problem]:
     """One finding a joint; joints that mimic another one or cannot move need no effort."""
@@ -182,6 +189,7 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
     fix="Make it revolute, or prismatic if it slides; delete lower and upper if it does turn on.",
     bad=one_joint("continuous", LIMIT),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def continuous_limits(subject: Subject) -> Iterator[Problem]:
     """Bounds of less than a turn: a whole turn means the same as continuous."""
@@ -203,6 +211,7 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
     fix="Divide by 1000.",
     bad=one_joint("prismatic", '<limit lower="0" upper="40" effort="1" velocity="1"/>'),
     good=one_joint("prismatic", '<limit lower="0" upper="0.04" effort="1" velocity="1"/>'),
+    line=5,
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
     """Long ways; the same to both sides is mostly a virtual joint without real limits."""
@@ -223,6 +232,7 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
     fix="Multiply by pi/180; xacro has radians().",
     bad=one_joint("revolute", '<limit lower="-90" upper="90" effort="1" velocity="1"/>'),
     good=one_joint("revolute", '<limit lower="-1.5708" upper="1.5708" effort="1" velocity="1"/>'),
+    line=5,
 )
 def revolute_degrees(subject: Subject) -> Iterator[Problem]:
     """Round numbers that are many turns in radians, and an angle in degrees."""

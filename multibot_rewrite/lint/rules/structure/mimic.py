@@ -9,6 +9,7 @@ from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import value_of
 from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_joint, a_link
 from multibot_rewrite.lint.rules.structure.shared import (
     LIMIT,
     ONE_AXIS,
@@ -28,6 +29,7 @@ from multibot_rewrite.lint.rules.structure.shared import (
     fix='Add joint="...".',
     bad=two_joints("<mimic/>"),
     good=two_joints('<mimic joint="j"/>'),
+    line=11,
 )
 def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     """Mimics that name no joint."""
@@ -46,6 +48,7 @@ def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     fix="Name the joint that it follows.",
     bad=two_joints('<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
+    line=11,
 )
 def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
     """Mimics of the joint they are in."""
@@ -64,6 +67,7 @@ def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
     fix="Delete the <mimic> of the joint that is driven.",
     bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
+    line=6,
 )
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
     """Each circle, at its first mimic."""
@@ -85,10 +89,10 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     "joint_states has the leader.",
     fix="Name the first joint of the chain, and multiply the multipliers.",
     bad=two_joints('<mimic joint="j"/>')
-    + '<link name="d"/><joint name="l" type="revolute"><parent link="c"/><child link="d"/>'
-    + LIMIT
-    + '<mimic joint="k"/></joint>',
+    + a_link("d")
+    + a_joint("l", "revolute", "c", "d", LIMIT, '<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
+    line=17,
 )
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
     """Mimics of mimics; a circle is MB527."""
@@ -112,6 +116,7 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
     fix="Name a joint that moves, or make this one fixed.",
     bad=two_joints('<mimic joint="j"/>').replace("revolute", "fixed", 1),
     good=two_joints('<mimic joint="j"/>'),
+    line=11,
 )
 def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
@@ -136,6 +141,7 @@ def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     fix="Write the ratio, or make the joint fixed.",
     bad=two_joints('<mimic joint="j" multiplier="0"/>'),
     good=two_joints('<mimic joint="j" multiplier="0.5"/>'),
+    line=11,
 )
 def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
     """Mimics whose joint never moves."""

@@ -30,12 +30,14 @@ Range = tuple[float, float]
     why="urdfdom refuses the file ('joint safety: no k_velocity').",
     fix="Add it, or delete the element.",
     bad=one_joint(
-        "revolute", LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/>'
+        "revolute", LIMIT, '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/>'
     ),
     good=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
     ),
+    line=6,
 )
 def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     """Safety controllers without the attribute that urdfdom requires."""
@@ -53,11 +55,13 @@ def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     why="A missing soft limit is 0. MoveIt takes what is inside both kinds of limits: it cannot "
     "plan for a joint that may only stand at 0.",
     fix="Write soft_lower_limit and soft_upper_limit, or delete the element.",
-    bad=one_joint("revolute", LIMIT + '<safety_controller k_velocity="10"/>'),
+    bad=one_joint("revolute", LIMIT, '<safety_controller k_velocity="10"/>'),
     good=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
     ),
+    line=6,
 )
 def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     """Soft limits that leave no range where the hard ones do."""
@@ -79,12 +83,15 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     fix="Put the soft limits inside of the hard ones.",
     bad=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-2" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-2" soft_upper_limit="1" k_velocity="10"/>',
     ),
     good=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
     ),
+    line=6,
 )
 def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
     """One finding a joint."""
@@ -107,6 +114,7 @@ def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
     fix="Add one of them, or delete the element.",
     bad=one_joint("continuous", "<dynamics/>"),
     good=one_joint("continuous", '<dynamics damping="0.1"/>'),
+    line=5,
 )
 def dynamics_empty(subject: Subject) -> Iterator[Problem]:
     """Dynamics without a value."""

@@ -11,6 +11,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import loops, reached, roots
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.structure.shared import (
     SHOWN,
     TWO_LINKS,
@@ -34,6 +35,7 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
     fix="Add the joint that holds the pieces together.",
     bad=TWO_LINKS,
     good=one_joint("fixed"),
+    line=2,
 )
 def several_roots(subject: Subject) -> Iterator[Problem]:
     """Every root but the one with most links below it; a misspelled child link is MB202."""
@@ -81,12 +83,17 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     why="urdfdom accepts a loop beside the tree: nothing of it gets a frame in tf, and pinocchio "
     "leaves it out; where all links are on loops it refuses the file ('No root link found').",
     fix="Turn round or delete one joint; close a real loop in the simulator.",
-    bad='<link name="a"/><link name="b"/><link name="c"/>'
+    bad=a_link("a")
+    + a_link("b")
+    + a_link("c")
     + fixed_joint("j", "b", "c")
     + fixed_joint("k", "c", "b"),
-    good='<link name="a"/><link name="b"/><link name="c"/>'
+    good=a_link("a")
+    + a_link("b")
+    + a_link("c")
     + fixed_joint("j", "a", "b")
     + fixed_joint("k", "b", "c"),
+    line=7,
 )
 def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     """Each loop, at the last of its joints in the file."""
@@ -112,12 +119,13 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     why="urdfdom keeps one of the joints, by name; sdformat refuses the file (two links of one "
     "name) and MuJoCo, too ('body has multiple parents').",
     fix="Delete one of the joints, or add a link of its own for it.",
-    bad='<link name="a"/><link name="b"/>'
-    + fixed_joint("j", "a", "b")
-    + fixed_joint("k", "a", "b"),
-    good='<link name="a"/><link name="b"/><link name="c"/>'
+    bad=a_link("a") + a_link("b") + fixed_joint("j", "a", "b") + fixed_joint("k", "a", "b"),
+    good=a_link("a")
+    + a_link("b")
+    + a_link("c")
     + fixed_joint("j", "a", "b")
     + fixed_joint("k", "a", "c"),
+    line=7,
 )
 def several_parents(subject: Subject) -> Iterator[Problem]:
     """Every joint but the first that has the link as its child; copies of a joint are MB201."""
@@ -142,11 +150,15 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
     why="urdfdom accepts the file and nobody sees the links: they get no frame in tf, and Gazebo "
     "and pinocchio leave them out.",
     fix="Mend the loop that they hang on.",
-    bad='<link name="a"/><link name="b"/><link name="c"/><link name="d"/>'
+    bad=a_link("a")
+    + a_link("b")
+    + a_link("c")
+    + a_link("d")
     + fixed_joint("j", "b", "c")
     + fixed_joint("k", "c", "b")
     + fixed_joint("l", "c", "d"),
-    good='<link name="a"/><link name="b"/>' + fixed_joint("j", "a", "b"),
+    good=a_link("a") + a_link("b") + fixed_joint("j", "a", "b"),
+    line=4,
 )
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
     """One finding, at the first link; links in the loop itself are MB503."""
@@ -171,8 +183,9 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     why="For urdfdom the link has a parent and is no root: with the root it refuses the file ('No "
     "root link found'), any other link is left out of tf and Gazebo.",
     fix="Name the link that the joint hangs on as its parent.",
-    bad='<link name="a"/>' + fixed_joint("j", "a", "a"),
+    bad=a_link("a") + fixed_joint("j", "a", "a"),
     good=one_joint("fixed"),
+    line=3,
 )
 def joint_to_itself(subject: Subject) -> Iterator[Problem]:
     """Joints from a link to itself."""
