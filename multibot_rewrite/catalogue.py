@@ -33,7 +33,9 @@ class Home(NamedTuple):
     modules: tuple[str, ...]
 
 
-HOMES: tuple[Home, ...] = ()
+HOMES: tuple[Home, ...] = (
+    Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),
+)
 
 
 @cache

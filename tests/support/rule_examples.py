@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from multibot_rewrite import RewriteRefused, rewrite_all
+from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
 from multibot_rewrite.fleets.artefacts import make_artefacts
@@ -83,13 +83,21 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example rewritten for ``robots`` of the rule's options; the others are those of the call."""
+    """The example rewritten for ``robots`` of the rule's options, or with ``strip`` taken back for
+    that robot; the other options are those of the call."""
+    file = folder / f"example.{'srdf' if SRDF in rule.formats else 'urdf'}"
+    file.write_text(whole(example))
     options: dict[str, Any] = {"robots": ["robot1"], **rule.options}
+    if "urdf" in options:
+        options["urdf"] = folder / options["urdf"]
+    robots, stripped = options.pop("robots"), options.pop("strip", "")
     try:
-        rewrites = list(rewrite_all(whole(example), options.pop("robots"), **options))
+        if stripped:
+            strip(file, stripped, **options)
+            return []
+        return list(next(iter(rewrite_all(file, robots, **options))).findings)
     except RewriteRefused as refused:
         return list(refused.findings)
-    return list(rewrites[0].findings)
 
 
 def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:

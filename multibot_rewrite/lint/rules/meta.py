@@ -32,6 +32,7 @@ unused_suppression = declare(
     bad='<link name="a"/>\n<!-- urdf-lint: ignore MB501 - bolted on by the launch file -->\n',
     good='\n<!-- urdf-lint: ignore MB501 - bolted on by the launch file -->\n<link name="a"/>\n',
     line=2,
+    fixed='<link name="a"/>\n',
     formats=(),
 )
 

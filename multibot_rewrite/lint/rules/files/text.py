@@ -26,6 +26,7 @@ _ROOT = regex(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
     fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
     bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
     good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',
+    fixed='<?xml version="1.0" encoding="UTF-8"?><robot name="r"><link name="a"/></robot>',
 )
 def xml_declaration(subject: Subject) -> Iterator[Problem]:
     """With a fix: a file of another encoding that was read at all is plain ASCII."""
@@ -54,6 +55,7 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
     fix="Save the file as UTF-8 without it.",
     bad='\ufeff<robot name="r"><link name="a"/></robot>',
     good='<robot name="r"><link name="a"/></robot>',
+    fixed='<robot name="r"><link name="a"/></robot>',
 )
 def byte_order_mark(subject: Subject) -> Iterator[Problem]:
     """With a fix."""
@@ -73,6 +75,7 @@ def byte_order_mark(subject: Subject) -> Iterator[Problem]:
     fix="Delete the declaration.",
     bad='<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/></robot>',
     good='<robot name="r" xmlns:drake="http://drake.mit.edu"><drake:joint name="j"/></robot>',
+    fixed='<robot name="r"><link name="a"/></robot>',
 )
 def unused_namespace(subject: Subject) -> Iterator[Problem]:
     """Prefixes of the root that are written nowhere else in the file."""

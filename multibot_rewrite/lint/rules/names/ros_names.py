@@ -41,6 +41,12 @@ _ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
     "  </plugin>\n"
     "</gazebo>\n",
     line=4,
+    fixed='<link name="lidar"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <frame_name>lidar</frame_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
     formats=(URDF, SRDF),
 )
 def leading_slash(subject: Subject) -> Iterator[Problem]:
