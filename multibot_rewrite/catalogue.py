@@ -33,9 +33,7 @@ class Home(NamedTuple):
     modules: tuple[str, ...]
 
 
-HOMES: tuple[Home, ...] = (
-    Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),
-)
+HOMES: tuple[Home, ...] = (Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),)
 
 
 @cache

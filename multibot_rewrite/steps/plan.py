@@ -35,10 +35,7 @@ not_editable = declare(
     "<gazebo>\n"
     "  <canonicalBody><![CDATA[base]]></canonicalBody>\n"
     "</gazebo>\n",
-    good='<link name="base"/>\n'
-    "<gazebo>\n"
-    "  <canonicalBody>base</canonicalBody>\n"
-    "</gazebo>\n",
+    good='<link name="base"/>\n<gazebo>\n  <canonicalBody>base</canonicalBody>\n</gazebo>\n',
     line=3,
     formats=("rewrite",),
 )

@@ -21,11 +21,11 @@ from multibot_rewrite.steps.document import slot_values
     "MB901",
     "unclaimed-mention",
     WARNING,
-    what="A value holds the name of a link or joint, and nothing in the vocabulary says what it "
-    "means.",
-    why="Where links and joints are renamed for each robot this value keeps the old name: the "
-    "plugin that reads it looks for a link or joint that is not there any more.",
-    fix="Add a line to a vocabulary file that says it is a name, or that it is to be kept.",
+    what="A value holds the name of a link or joint, and the vocabulary does not say what the "
+    "value means.",
+    why="Where links and joints are renamed for each robot, this value keeps the old name: the "
+    "plugin that reads it looks for a link or joint that no longer exists.",
+    fix="Add a line to a vocabulary file that says it is a name, or that it must stay as it is.",
     bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
     good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
     formats=(URDF, SRDF),
@@ -54,8 +54,8 @@ unknown_plugin = rule(
     "unknown-plugin",
     NOTE,
     what="A plugin is not in the vocabulary.",
-    why="Its parameters that name links, joints, frames or topics stay as they are for every robot, "
-    "unless they are called as other plugins call them.",
+    why="Its parameters that name links, joints, frames or topics stay as they are for every "
+    "robot, unless other plugins have parameters with the same names.",
     fix="Add a section for it to a vocabulary file.",
     bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
     good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',

@@ -22,8 +22,8 @@ Look = tuple[tuple[float, ...] | str, str]
     "MB131",
     "undefined-material",
     WARNING,
-    what="A visual names a material that neither the robot nor an earlier visual defines, or a "
-    "material of the robot has neither colour nor texture.",
+    what="A visual refers to a material that neither the robot nor an earlier visual defines, or a "
+    "material of the robot has neither a color nor a texture.",
     why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
     "viewers and Gazebo draw it in their default colour.",
     fix="Define it once as a child of <robot>, with a <color> or <texture>.",
@@ -83,10 +83,11 @@ def _defines(material: etree._Element) -> bool:
     "MB132",
     "material-differs",
     WARNING,
-    what="A visual defines a material that is there already under that name, and differently.",
-    why="urdfdom keeps the first definition of a name for the whole robot: the visual is drawn in "
-    "the other colour, not in its own.",
-    fix="Give the material a name of its own.",
+    what="A visual defines a material whose name is already defined with another colour or "
+    "texture.",
+    why="urdfdom keeps the first definition of a name for the whole robot: the visual gets that "
+    "colour, not its own.",
+    fix="Give the material its own name.",
     bad='<material name="m"><color rgba="1 0 0 1"/></material>\n'
     '<link name="a">\n'
     "  <visual>\n"

@@ -21,8 +21,8 @@ _ROOT = regex(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
     "xml-declaration",
     WARNING,
     what="The XML declaration names a version other than 1.0, or an encoding other than UTF-8.",
-    why="urdfdom and Gazebo read UTF-8 whatever it says; expat (xacro, Python launch files) "
-    "refuses encodings of several bytes such as gb2312, and reads letters as the others do not.",
+    why="urdfdom and Gazebo read the file as UTF-8 whatever the declaration; expat (xacro, Python "
+    "launch files) rejects multi-byte encodings such as gb2312, and decodes letters differently.",
     fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
     bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
     good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',
@@ -50,8 +50,8 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
     "byte-order-mark",
     NOTE,
     what="The file starts with a byte order mark.",
-    why="UTF-8 needs none. XML readers skip it at the start of a file, and refuse it as text before "
-    "the root where a script or template puts the description behind other text.",
+    why="UTF-8 needs none. XML parsers skip it at the start of a file, but reject it where a "
+    "script or template puts the description after other text.",
     fix="Save the file as UTF-8 without it.",
     bad='\ufeff<robot name="r"><link name="a"/></robot>',
     good='<robot name="r"><link name="a"/></robot>',
@@ -70,8 +70,8 @@ def byte_order_mark(subject: Subject) -> Iterator[Problem]:
     "unused-namespace",
     NOTE,
     what="The root element declares a namespace prefix that the file does not use.",
-    why="It has no effect. A xacro prefix in a plain URDF makes readers look for macros that are "
-    "not there.",
+    why="It has no effect. A xacro prefix in a plain URDF makes programs look for macros that do "
+    "not exist.",
     fix="Delete the declaration.",
     bad='<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/></robot>',
     good='<robot name="r" xmlns:drake="http://drake.mit.edu"><drake:joint name="j"/></robot>',

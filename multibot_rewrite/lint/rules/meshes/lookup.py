@@ -67,10 +67,10 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
     "MB701",
     "mesh-missing",
     ERROR,
-    what="A mesh or texture file is not there, though its package is.",
+    what="A mesh or texture file does not exist, though its package does.",
     why="RViz shows the link without a shape and marks the robot as faulty; Gazebo spawns it "
     "without that visual or collision, so a wheel falls through the ground.",
-    fix="Correct the path, or add the file to the package and to what it installs.",
+    fix="Correct the path, or add the file to the package and to its install rules.",
     bad=MESH % "package://arm_description/meshes/base.stl",
     good=MESH % "package://arm_description/meshes/link.stl",
     beside={
@@ -98,10 +98,10 @@ def _nearest(it: Lookup) -> str:
     "MB702",
     "package-not-found",
     NOTE,
-    what="A package that holds meshes is not below the folders that were searched.",
-    why="Whether its files are there was not checked; at run time they are looked for in the "
-    "packages of the sourced workspace.",
-    fix="Name the folder of the workspace's sources as a root, or source the workspace.",
+    what="A package that holds meshes was not found in the searched folders.",
+    why="Its files were not checked; at run time they are looked up in the packages of the sourced "
+    "workspace.",
+    fix="Give the source folder of the workspace as a root (--roots), or source the workspace.",
     bad=MESH % "package://arm_description/meshes/base.stl",
     good=MESH % "package://hand_description/meshes/base.stl",
     beside={
@@ -126,10 +126,10 @@ def _package(it: Lookup) -> str:
     "MB703",
     "mesh-name-case",
     ERROR,
-    what="A mesh file has another spelling on the disk: capitals where there are none.",
-    why="macOS and Windows find it all the same, Linux does not: on the robot and in CI the link has "
-    "no shape.",
-    fix="Write it as the file is called.",
+    what="The name of a mesh file differs from the file on the disk in upper and lower case.",
+    why="macOS and Windows find it anyway, Linux does not: on the robot and in CI the link has no "
+    "shape.",
+    fix="Use the name of the file as it is on the disk.",
     bad=MESH % "package://arm_description/meshes/base.stl",
     good=MESH % "package://arm_description/meshes/Base.STL",
     beside={

@@ -20,11 +20,11 @@ from multibot_rewrite.rosnames import split_remap
     "MB404",
     "robot-name-in-frame",
     WARNING,
-    what="A frame is the name of a link with a robot's name in front, which the links do not have.",
-    why="Only with that frame_prefix does the frame exist: the second robot's data is stamped with "
-    "the first one's frame and placed on it, and a rewrite cannot know what was meant.",
-    fix="Write the link's own name and let frame_prefix or urdf-postfix spell it, or make the "
-    "name in front a xacro argument.",
+    what="A frame has a robot's name in front of the name of a link, but the link itself has not.",
+    why="The frame exists only with that frame_prefix: the second robot's data gets the first "
+    "one's frame and appears on it, and a rewrite cannot know what was intended.",
+    fix="Use the link's own name and let frame_prefix or urdf-postfix add the robot's name, or "
+    "make the name in front a xacro argument.",
     bad='<link name="laser"/>\n'
     '<gazebo reference="laser">\n'
     '  <sensor name="l" type="gpu_lidar"><gz_frame_id>robot1/laser</gz_frame_id></sensor>\n'
@@ -52,10 +52,10 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
     "MB406",
     "default-frame-shared",
     NOTE,
-    what="A plugin publishes a frame by its default, which is the same for every robot.",
-    why="gazebo_ros_diff_drive and its like broadcast odom -> base_footprint without asking for a "
-    "namespace or prefix: on one /tf two robots pull one base to two places.",
-    fix="Say the frame and give each robot its own; urdf-postfix inserts it.",
+    what="A plugin publishes its default frame, which is the same for every robot.",
+    why="gazebo_ros_diff_drive and similar plugins broadcast odom -> base_footprint without a "
+    "namespace or prefix: on a shared /tf two robots move one base to two places.",
+    fix="Set the frame, a different one for each robot; urdf-postfix inserts it.",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
     "    <robot_base_frame>base</robot_base_frame>\n"
@@ -81,11 +81,11 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     "MB407",
     "fixed-odometry-frame",
     NOTE,
-    what="An odometry frame is written out, so that every copy of the robot has it.",
-    why="Two robots on one /tf then have one frame odom between them: the trees grow together and "
-    "every look-up through it is wrong for one of them.",
-    fix="Spell it for each robot: a xacro argument, or urdf-postfix; with a tf topic for each robot "
-    "it may stay.",
+    what="An odometry frame has a fixed name, which is the same for every copy of the robot.",
+    why="On one /tf two robots then share the frame odom: their trees are connected, and every "
+    "lookup through it is wrong for one of them.",
+    fix="Use a different name for each robot: a xacro argument, or urdf-postfix. With a tf topic "
+    "for each robot it may stay.",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
     "    <odometry_frame>odom</odometry_frame>\n"
@@ -125,11 +125,12 @@ def _words(claim: Claim) -> str:
     "MB408",
     "tf-not-remapped",
     NOTE,
-    what="A plugin publishes tf, and no rule takes it off the one /tf.",
-    why="tf2's broadcaster publishes on the absolute /tf, which no namespace moves: with a tf topic "
-    "for each robot this plugin's transforms are missing from it, and they meet on /tf.",
+    what="A plugin publishes on /tf, and no remap rule moves it to the robot's own tf topic.",
+    why="tf2's broadcaster publishes on the absolute topic /tf, which a namespace does not move: "
+    "with a tf topic for each robot this plugin's transforms are missing there, and those of all "
+    "robots are mixed on /tf.",
     fix="Add <remapping>/tf:=tf</remapping> to its <ros> block; urdf-postfix inserts it where each "
-    "robot has its tf topic. Not needed where all share /tf and frames are spelled per robot.",
+    "robot has its tf topic. Not needed where all robots share /tf and have different frames.",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
     "    <publish_odom_tf>true</publish_odom_tf>\n"

@@ -29,10 +29,10 @@ joints_reordered = rule(
     "MB405",
     "joints-reordered",
     WARNING,
-    what="With the robot's name behind them, the joints below one link sort in another order.",
-    why="urdfdom keeps sibling joints sorted by name and pinocchio numbers its configuration vector "
-    "so: the same code then moves other joints.",
-    fix="Spell the robot's name in front: affix prefix.",
+    what="With the robot's name at the end, the joints below one link sort in another order.",
+    why="urdfdom sorts sibling joints by name, and pinocchio numbers its configuration vector in "
+    "that order: the same code then moves other joints.",
+    fix="Put the robot's name in front: affix prefix.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
     '<link name="c"/>\n'
@@ -52,9 +52,9 @@ joints_reordered = rule(
     "MB420",
     "name-taken",
     ERROR,
-    what="A name becomes, for one of the robots, what another name of the file is already.",
-    why="The rewritten file would hold two links or joints of one name, or give a dangling "
-    "reference another meaning: urdf-postfix refuses it.",
+    what="For one of the robots a name becomes the same as another name in the file.",
+    why="The rewritten file would have two links or joints with one name, or an undeclared "
+    "reference would get another meaning: urdf-postfix rejects it.",
     fix="Choose another separator or another robot name.",
     bad='<link name="a"/><gazebo reference="a/robot1"/>',
     good='<link name="a"/><gazebo reference="a"/>',
@@ -71,9 +71,9 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     "MB421",
     "robots-share-a-name",
     ERROR,
-    what="Two different names of the file come out alike for two of the robots.",
-    why="Both robots then publish one tf frame or obey one topic of that name: each is moved by "
-    "the other, and no namespace shows it.",
+    what="Two different names in the file become the same name for two of the robots.",
+    why="Both robots then publish one tf frame or subscribe to one topic of that name: each is "
+    "moved by the other, and no namespace shows it.",
     fix="Rename a robot or choose another separator.",
     bad='<link name="arm"/><link name="arm_left"/>',
     good='<link name="arm"/><link name="tool"/>',
@@ -94,10 +94,11 @@ prefix_only = rule(
     "MB422",
     "prefix-only",
     WARNING,
-    what="A parameter is put in front of names in code, where the robots' names stand behind.",
-    why="The driver makes its joint, sensor and gpio names from that prefix: a postfix cannot reach "
-    "them, so the second robot's interfaces are called as the first one's.",
-    fix="Spell the robot's name in front: affix prefix.",
+    what="The driver's code puts a parameter in front of names, but the robot's name goes at the "
+    "end of names.",
+    why="The driver makes its joint, sensor and gpio names from that prefix. A postfix cannot be "
+    "added to them, so the second robot's interfaces have the same names as the first one's.",
+    fix="Put the robot's name in front: affix prefix.",
     bad='<ros2_control name="h" type="system">\n'
     "  <hardware>\n"
     "    <plugin>ur_robot_driver/URPositionHardwareInterface</plugin>\n"
@@ -115,10 +116,10 @@ off_the_shared_tf = rule(
     "MB423",
     "off-the-shared-tf",
     WARNING,
-    what="A remap rule takes a plugin off the one /tf that the robots share.",
-    why="Its transforms are on a topic nobody hears: the robot's odometry frame is missing from the "
-    "tree.",
-    fix="Drop the rule, or use the layout both.",
+    what="A remap rule moves a plugin off the /tf topic that the robots share.",
+    why="Its transforms are on a topic without a subscriber: the robot's odometry frame is missing "
+    "from the tree.",
+    fix="Delete the rule, or use the layout both.",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
     "    <ros><remapping>/tf:=tf</remapping></ros>\n"
@@ -134,10 +135,11 @@ off_the_shared_tf = rule(
     "MB424",
     "collision-number-unstable",
     ERROR,
-    what="The number in a contact sensor's collision depends on how the robot's name sorts.",
-    why="sdformat numbers lumped collisions in the order of the joints' names: for one robot the "
-    "sensor would listen to another part than for the next.",
-    fix="Spell the robot's name in front (affix prefix), or keep the fixed joints apart with "
+    what="The number in the name of a contact sensor's collision depends on how the robot's name "
+    "sorts.",
+    why="sdformat numbers merged collisions in the order of the joints' names: the sensor would "
+    "listen to different parts for different robots.",
+    fix="Put the robot's name in front (affix prefix), or keep the fixed joints separate with "
     "preserveFixedJoint.",
     bad='<link name="a">\n'
     '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
@@ -190,10 +192,10 @@ sensor_names_meet = rule(
     "MB425",
     "sensor-names-meet",
     WARNING,
-    what="Sensors are looked up by bare name in the whole world, and the robots' names for them do "
-    "not differ.",
-    why="gz_ros2_control takes the first IMU of that name, the realsense and kobuki plugins find "
-    "none where two have it: the second robot reads the first one's data, or nothing.",
+    what="A plugin looks sensors up by bare name in the whole world, and the sensors have the same "
+    "names for all robots.",
+    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
+    "none if two have it: the second robot reads the first one's data, or nothing.",
     fix="Use the layout both, which spells sensors for each robot.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
@@ -211,11 +213,11 @@ sensor_names_meet = rule(
     "MB426",
     "process-wide-rule",
     WARNING,
-    what="A remap rule of a control plugin leads to an absolute name, or the robots' topics differ "
-    "by such rules only.",
-    why="gazebo_ros2_control and gz_ros2_control hand their rules to the whole Gazebo process: the "
-    "first robot's rule also moves the second robot's topic, to the first one's name.",
-    fix="Write a relative target, it ends in each robot's own namespace; keep robots apart by "
+    what="A remap rule of a control plugin has an absolute target, or the robots' topics differ "
+    "only by such rules.",
+    why="gazebo_ros2_control and gz_ros2_control apply their remap rules to the whole Gazebo "
+    "process: the first robot's rule also moves the second robot's topic, to the first one's name.",
+    fix="Use a relative target, which ends in each robot's own namespace; separate the robots by "
     "namespaces.",
     bad="<gazebo>\n"
     '  <plugin name="c" filename="gz_ros2_control-system">\n'
@@ -240,10 +242,10 @@ fixed_to_own_frame = rule(
     "MB427",
     "fixed-to-own-frame",
     WARNING,
-    what="An SRDF fixes the robot to a frame that becomes another one for each robot.",
-    why="Each move_group then plans in a frame of its own that nothing publishes: the robots do not "
-    "see one another's place, and look-ups from the world fail.",
-    fix="Add the frame to the shared ones.",
+    what="An SRDF fixes the robot to a frame that is renamed for each robot.",
+    why="Each move_group then plans in its own frame, which no node publishes: the robots do not "
+    "know each other's pose, and lookups from the world fail.",
+    fix="Add the frame to the shared frames.",
     bad='<robot name="r">\n'
     '  <virtual_joint name="v" type="fixed" parent_frame="floor" child_link="a"/>\n'
     "</robot>\n",
@@ -260,10 +262,10 @@ hard_wired_name = rule(
     "MB428",
     "hard-wired-name",
     WARNING,
-    what="A plugin's code looks for a literal name that the robots' naming changes.",
-    why="It finds nothing under the new name and stops, or drives nothing: no element tells it "
-    "another one.",
-    fix="Keep names as they are and part the robots by tf topics: layout tf-per-robot.",
+    what="A plugin's code looks for a fixed name, which is renamed for each robot.",
+    why="It does not find the new name and stops, or moves nothing: it has no parameter for "
+    "another name.",
+    fix="Keep the names as they are and separate the robots by tf topics: layout tf-per-robot.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
     '<joint name="right_front" type="continuous">\n'

@@ -21,11 +21,12 @@ DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
     "MB403",
     "hard-coded-namespace",
     NOTE,
-    what="A plugin's namespace is written out in the description.",
-    why="Both copies put their nodes and topics under it: in Gazebo Classic of ROS 2 the second "
-    "node of one name is refused (gazebo_ros node.hpp), in ROS 1 both answer on one topic.",
+    what="A plugin's namespace is fixed in the description.",
+    why="All copies of the robot put their nodes and topics in it: in Gazebo Classic of ROS 2 the "
+    "second node with the same name is rejected (gazebo_ros node.hpp), in ROS 1 both respond on "
+    "one topic.",
     fix="Make it a xacro argument, or let urdf-postfix put each robot's name in front; "
-    "spawn_entity.py -robot_namespace overwrites it.",
+    "spawn_entity.py -robot_namespace overrides it.",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
     "    <ros><namespace>/demo</namespace></ros>\n"
@@ -50,9 +51,10 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     "MB409",
     "no-namespace",
     NOTE,
-    what="Plugins that make ROS nodes stand in no namespace.",
-    why="The second robot's nodes have the same full names and topics: Gazebo Classic of ROS 2 gives "
-    "the second plugin no node at all, and parameters and services answer for one robot only.",
+    what="Plugins with ROS nodes have no namespace.",
+    why="The second robot's nodes have the same full names and topics: Gazebo Classic of ROS 2 "
+    "creates no node for the second plugin, and parameters and services respond for one robot "
+    "only.",
     fix="Spawn each robot with -robot_namespace, or give the plugins a <namespace>: a xacro argument, "
     "or urdf-postfix. ros_gz_sim's create has no such option.",
     bad="<gazebo>\n"
@@ -89,9 +91,10 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     "one-robot-description",
     NOTE,
     what="A plugin reads the robot description from an absolute name.",
-    why="Every copy reads the first robot's description: its controllers then claim joints that the "
-    "second robot, where it was renamed, does not have, and wait for a node outside their namespace.",
-    fix="Name it relative to the plugin's namespace: robot_description, robot_state_publisher.",
+    why="Every copy reads the first robot's description: its controllers then claim joints that "
+    "the second robot does not have if it was renamed, and wait for a node outside their "
+    "namespace.",
+    fix="Use a name relative to the plugin's namespace: robot_description, robot_state_publisher.",
     bad="<gazebo>\n"
     '  <plugin name="c" filename="libgazebo_ros_control.so">\n'
     "    <robotParam>/robot_description</robotParam>\n"

@@ -37,9 +37,9 @@ _BUILTIN = frozenset(
     "prefix-forgotten",
     WARNING,
     what="A name lacks the prefix that the other names of its macro or file have.",
-    why="With an empty prefix nobody notices; with the second robot's the name is there twice, or "
-    "refers to a link or joint that is called otherwise, and urdfdom refuses the robot.",
-    fix="Put the prefix in front.",
+    why="With an empty prefix there is no problem; with the second robot's prefix the name exists "
+    "twice, or refers to a link or joint that has another name, and urdfdom rejects the robot.",
+    fix="Put the prefix in front of the name.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <xacro:macro name="arm" params="prefix">\n'
     '    <link name="${prefix}base"/>\n'
@@ -81,10 +81,10 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     "MB418",
     "prefix-unused",
     WARNING,
-    what="A macro or file takes a prefix and uses it nowhere.",
-    why="Whoever gives it believes that two copies differ: the second one brings every name again, "
-    "and urdfdom refuses the robot for links that are not unique.",
-    fix="Put it in front of the names, or take the parameter away.",
+    what="A macro or file takes a prefix and does not use it.",
+    why="Two copies are expected to differ, but the second one has the same names again, and "
+    "urdfdom rejects the robot because its links are not unique.",
+    fix="Put it in front of the names, or remove the parameter.",
     bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
     '  <xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro>\n'
     "</robot>\n",

@@ -35,10 +35,11 @@ DEVICE = regex(
     "MB411",
     "one-controller-file",
     NOTE,
-    what="The file of the controllers' parameters is fixed in a control plugin.",
-    why="Both robots' controller managers read it: its keys fit only nodes of the names in it, so in "
-    "another namespace without /** no controller has a type, and its joints are the first robot's.",
-    fix="Write the keys as /**/controller_manager, and where joints are renamed give each robot its "
+    what="A control plugin has a fixed file of controller parameters.",
+    why="Every robot's controller manager reads it. Its keys match only nodes with the names in "
+    "it: in another namespace, without /**, no controller has a type, and its joints are the first "
+    "robot's.",
+    fix="Write the keys as /**/controller_manager; where joints are renamed, give each robot its "
     "own file through a xacro argument.",
     bad="<gazebo>\n"
     '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">\n'
@@ -94,9 +95,9 @@ def one_device(subject: Subject) -> Iterator[Problem]:
     "MB415",
     "sensor-found-by-bare-name",
     NOTE,
-    what="Something in the file looks sensors up by their bare name in the whole world.",
-    why="gz_ros2_control takes the first IMU of that name, the realsense and kobuki plugins find "
-    "none where two have it: the second robot reads the first one's data, or nothing.",
+    what="A plugin looks sensors up by their bare name in the whole world.",
+    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
+    "none if two have it: the second robot reads the first one's data, or nothing.",
     fix="Make sensor names differ between robots: a xacro prefix, or urdf-postfix with the layout "
     "both.",
     bad='<link name="a"/>\n'
@@ -128,10 +129,10 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     "MB416",
     "world-system-in-robot",
     WARNING,
-    what="The robot brings a gz system along that serves the whole world.",
-    why="gz-sim loads it once more with every copy: two Sensors systems crash it (gz-sensors issue "
+    what="The robot loads a gz system that acts on the whole world.",
+    why="gz-sim loads it again with every copy: two Sensors systems crash it (gz-sensors issue "
     "497), and two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
-    fix="Load it in the world's SDF and take it out of the robot.",
+    fix="Load it in the world's SDF and remove it from the robot.",
     bad="<gazebo>\n"
     '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
     "</gazebo>\n",

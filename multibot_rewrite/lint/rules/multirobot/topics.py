@@ -32,11 +32,11 @@ GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
     "MB401",
     "absolute-topic",
     NOTE,
-    what="A plugin's topic or service is absolute, or its remap rule leads to an absolute one.",
-    why="A ROS namespace moves relative names only (rcl expand_topic_name.c): both robots obey one "
-    "/cmd_vel and their sensors are mixed on one topic.",
-    fix="Leave out the leading slash and start each robot in its namespace; urdf-postfix spells it "
-    "for each robot.",
+    what="A plugin's topic or service is absolute, or its remap rule has an absolute target.",
+    why="A ROS namespace moves relative names only (rcl expand_topic_name.c): both robots "
+    "subscribe to one /cmd_vel, and their sensor data is mixed on one topic.",
+    fix="Leave out the leading slash and start each robot in its namespace, or rename it for each "
+    "robot with urdf-postfix.",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
     "    <ros><remapping>cmd_vel:=/cmd_vel</remapping></ros>\n"
@@ -84,10 +84,11 @@ def _target(claim: Claim) -> str:
     "gz-topic-shared",
     NOTE,
     what="A sensor or system of gz-sim has a topic that is the same for every copy of the robot.",
-    why="gz topics are global in their partition and no ROS namespace reaches them: one command "
-    "drives both robots, both lidars publish on one topic and ros_gz_bridge cannot part them.",
-    fix="Leave the element out, gz then puts the model's name into the topic, or give each robot its "
-    "own through a xacro argument or urdf-postfix.",
+    why="gz topics are global in their partition and a ROS namespace does not move them: one "
+    "command drives both robots, both lidars publish on one topic and ros_gz_bridge cannot "
+    "separate them.",
+    fix="Leave the element out, then gz puts the model's name into the topic, or give each robot "
+    "its own topic through a xacro argument or urdf-postfix.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a">\n'
     '  <sensor name="l" type="gpu_lidar"><topic>scan</topic></sensor>\n'
@@ -125,11 +126,10 @@ def _is_classic(subject: Subject) -> bool:
     "MB413",
     "default-topic-shared",
     NOTE,
-    what="A plugin or hardware class uses a topic or name by its default, which a namespace does "
-    "not move.",
-    why="All robots' components of that class talk on the one absolute topic: each joint command "
+    what="A plugin or hardware class uses a default topic or name that a namespace does not move.",
+    why="All robots' components of that class use the same absolute topic: each joint command "
     "reaches every robot.",
-    fix="Say the name and give each robot its own; urdf-postfix inserts it.",
+    fix="Set the name, a different one for each robot; urdf-postfix inserts it.",
     bad='<ros2_control name="h" type="system">\n'
     "  <hardware>\n"
     "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"

@@ -24,10 +24,10 @@ _ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
     "MB301",
     "leading-slash",
     WARNING,
-    what="A frame is written with a slash in front.",
-    why="tf2 look-ups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
-    "link's name as it is, so a link written like that is a frame that nobody can ask for.",
-    fix="Drop the slash.",
+    what="A frame starts with a slash.",
+    why="tf2 lookups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
+    "link's name as it is, so a link with a leading slash is a frame that cannot be looked up.",
+    fix="Delete the slash.",
     bad='<link name="lidar"/>\n'
     "<gazebo>\n"
     '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
@@ -74,11 +74,11 @@ def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
     "MB304",
     "slash-in-joint",
     NOTE,
-    what="The name of a joint, sensor or gpio in <ros2_control> holds a slash.",
-    why="Its interfaces are called NAME/INTERFACE, and the controller manager cuts that at the "
-    "first slash: arm/j1/position belongs to the controller 'arm' as soon as there is one.",
-    fix="Write an underscore, in the URDF and in the controllers' parameters; or call no "
-    "controller what stands before the slash.",
+    what="The name of a joint, sensor or gpio in <ros2_control> contains a slash.",
+    why="Its interfaces are called NAME/INTERFACE, and the controller manager splits that at the "
+    "first slash: arm/j1/position belongs to the controller 'arm' if there is one.",
+    fix="Use an underscore, in the URDF and in the controllers' parameters; or give no controller "
+    "the name before the slash.",
     bad='<ros2_control name="c" type="system">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     '  <joint name="arm/j1"><state_interface name="position"/></joint>\n'
@@ -104,9 +104,10 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     "MB311",
     "robot-name",
     NOTE,
-    what="The robot's name is no ROS name: empty, or with blanks, hyphens, dots or a digit in front.",
-    why="Spawners take it for the model, and Gazebo puts it into topics like /model/NAME/odometry: "
-    "bridged to ROS these are refused, and as a namespace or node name it is, too.",
+    what="The robot's name is not a valid ROS name: empty, or with spaces, hyphens, dots or a "
+    "leading digit.",
+    why="Spawners use it for the model, and Gazebo puts it into topics like /model/NAME/odometry: "
+    "ROS rejects these when they are bridged, and also a namespace or node name made from it.",
     fix="Use letters, digits and underscores.",
     bad='<robot name="my-robot"><link name="a"/></robot>',
     good='<robot name="my_robot"><link name="a"/></robot>',
@@ -124,10 +125,10 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     "MB312",
     "no-ros-name",
     WARNING,
-    what="A topic, service, namespace or node name of a plugin is no name that ROS takes.",
-    why="rcl throws InvalidTopicNameError, or the node is not made: the plugin does not load, or "
-    "publishes nothing.",
-    fix="Use letters, digits, underscores and slashes, no digit in front.",
+    what="A topic, service, namespace or node name of a plugin is not a valid ROS name.",
+    why="rcl throws InvalidTopicNameError, or the node is not created: the plugin does not load, "
+    "or publishes nothing.",
+    fix="Use letters, digits, underscores and slashes, without a leading digit.",
     bad="<gazebo>\n"
     '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
     "    <ros><namespace>my-robot</namespace></ros>\n"
@@ -173,10 +174,10 @@ def _name_fault(name: str, section: str) -> str:
     "MB313",
     "odd-interface-name",
     WARNING,
-    what="A <ros2_control> component or interface has an empty name, or one with white space.",
-    why="Controllers ask for NAME/INTERFACE, spelled exactly: the parser strips blanks around a "
-    "name, those within it stay, and an empty one can be asked for by nobody.",
-    fix="Write the name without blanks.",
+    what="A <ros2_control> component or interface has an empty name, or a name with white space.",
+    why="Controllers ask for NAME/INTERFACE exactly: the parser strips white space around a name "
+    "but not inside it, and an empty name cannot be requested.",
+    fix="Write the name without spaces.",
     bad='<ros2_control name="c" type="system">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"
     '  <joint name="j"><state_interface name=""/></joint>\n'

@@ -15,10 +15,11 @@ from multibot_rewrite.lint.rules.names.shared import TOKEN, named
     "MB320",
     "no-usd-name",
     WARNING,
-    what="A name is no USD identifier (asked with the target usd).",
-    why="A prim is called by letters, digits and underscores, no digit in front: converters to USD "
-    "replace the rest, and what looks for the URDF's name in the stage finds nothing.",
-    fix="Write underscores for what is not a letter or digit.",
+    what="A name is not a valid USD identifier (checked with the target usd).",
+    why="The names of USD prims have letters, digits and underscores, without a leading digit: "
+    "converters to USD replace the rest, and a program that looks for the URDF name in the stage "
+    "finds nothing.",
+    fix="Use underscores in place of other characters.",
     bad='<link name="left/wheel"/>',
     good='<link name="left_wheel"/>',
     options={"targets": ("usd",)},
@@ -41,10 +42,10 @@ def no_usd_name(subject: Subject) -> Iterator[Problem]:
     "MB321",
     "slash-for-mjcf",
     WARNING,
-    what="The name of a link or joint holds a slash (asked with the target mjcf).",
-    why="MuJoCo takes it; dm_control's mjcf does not: it keeps '/' for the names of attached models, "
-    "and raises ValueError when the model is loaded.",
-    fix="Write an underscore.",
+    what="The name of a link or joint contains a slash (checked with the target mjcf).",
+    why="MuJoCo accepts it; dm_control's mjcf does not: it reserves '/' for the names of attached "
+    "models, and raises ValueError when the model is loaded.",
+    fix="Use an underscore.",
     bad='<link name="left/wheel"/>',
     good='<link name="left_wheel"/>',
     options={"targets": ("mjcf",)},

@@ -27,8 +27,8 @@ TINY_MASS = 1e-6
     "mass-missing",
     ERROR,
     what="An <inertial> has no mass.",
-    why="urdfdom says 'Inertial element must have a mass element' and reads no further: the link "
-    "has no visual and no collision; MuJoCo refuses the file.",
+    why="urdfdom reports 'Inertial element must have a mass element' and stops reading the link: "
+    "it has no visual and no collision; MuJoCo rejects the file.",
     fix='Add <mass value="..."/>, or delete the <inertial>.',
     bad=one_link(block("<inertial>", INERTIA)),
     good=one_link(an_inertial()),
@@ -49,8 +49,8 @@ def mass_missing(subject: Subject) -> Iterator[Problem]:
     "MB602",
     "mass-negative",
     ERROR,
-    what="A mass is below 0.",
-    why="sdformat refuses the file ('has invalid inertia'); MuJoCo refuses a moving body.",
+    what="A mass is negative.",
+    why="sdformat rejects the file ('has invalid inertia'); MuJoCo rejects a moving body.",
     fix="Write the mass in kg.",
     bad=one_link(an_inertial("-1")),
     good=one_link(an_inertial("1")),
@@ -68,9 +68,10 @@ def mass_negative(subject: Subject) -> Iterator[Problem]:
     "MB603",
     "link-without-mass",
     WARNING,
-    what="A link has no mass, nor has any link that is fixed to it, but the robot has.",
-    why="Gazebo leaves out the link and all that hangs on it (sdformat: 'is not modeled in sdf'; "
-    "its joint and child joints are 'ignored'); MuJoCo refuses the file.",
+    what="A link has no mass, and neither has any link that is fixed to it, but other links of the "
+    "robot have.",
+    why="Gazebo leaves out the link and everything below it (sdformat: 'is not modeled in sdf'; "
+    "its joint and child joints are 'ignored'); MuJoCo rejects the file.",
     fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
     bad=moving_link(),
     good=moving_link(an_inertial()),
@@ -100,9 +101,9 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
     "root-inertia",
     NOTE,
     what="The root link has an inertia.",
-    why="KDL drops it, and robot_state_publisher says so at every start ('KDL does not support a "
+    why="KDL drops it, and robot_state_publisher warns at every start ('KDL does not support a "
     "root link with an inertia').",
-    fix="Add a link without inertia above it, with a fixed joint.",
+    fix="Add a link without inertia above it, connected by a fixed joint.",
     bad=one_link(an_inertial()),
     good=a_link("base") + one_link(an_inertial()) + a_joint("j", "fixed", "base", "a"),
     line=2,
@@ -120,8 +121,8 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "no-inertia",
     NOTE,
     what="No link has a mass: the robot cannot be simulated.",
-    why="Gazebo spawns nothing of it; MuJoCo refuses a moving body without mass. RViz and MoveIt "
-    "do not mind.",
+    why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
+    "do not need it.",
     fix="Add <inertial> to the links, if the robot is to be simulated.",
     bad='<link name="a"/>\n'
     '<link name="b"/>\n'
@@ -141,8 +142,8 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     "mass-tiny",
     NOTE,
     what="A link that moves on its own weighs less than a milligram.",
-    why="Iterative solvers need many more steps where such a link carries or drives kilograms; MuJoCo "
-    "refuses a body below 1e-15 kg.",
+    why="Iterative solvers need many more steps if such a link carries or drives kilograms; MuJoCo "
+    "rejects a body below 1e-15 kg.",
     fix="Write the real mass, or make the joint fixed.",
     bad=moving_link(an_inertial("1e-8")),
     good=moving_link(an_inertial("0.01")),

@@ -23,9 +23,9 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
     "transmission-without-joint",
     WARNING,
     what="A <transmission> has no joint.",
-    why="transmission_interface and gazebo_ros_control of ROS 1 leave it out ('has no associated "
-    "joints'): nothing drives what it was made for.",
-    fix="Name the joint, or delete the transmission.",
+    why="transmission_interface and gazebo_ros_control of ROS 1 skip it ('has no associated "
+    "joints'), so it has no effect.",
+    fix="Add the joint, or delete the transmission.",
     bad='<transmission name="t"><actuator name="m"/></transmission>',
     good=ARM + block('<transmission name="t">', '<joint name="j"/>', '<actuator name="m"/>'),
 )
@@ -41,10 +41,10 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     "MB224",
     "driven-fixed-joint",
     ERROR,
-    what="A joint of a <ros2_control> is fixed.",
-    why="From Jazzy on the controller manager refuses the description ('Fixed joints do not make "
+    what="A joint in a <ros2_control> is fixed.",
+    why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
     "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
-    fix="Take the joint out, or give it a type that moves.",
+    fix="Remove the joint, or give it a type that moves.",
     bad=FIXED + a_system('<joint name="j"/>'),
     good=ARM + a_system('<joint name="j"/>'),
     line=7,
@@ -62,7 +62,7 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     "fixed-transmission",
     WARNING,
     what="A transmission drives a fixed joint.",
-    why="Gazebo removes fixed joints, so gazebo_ros_control finds none of that name and loads no "
+    why="Gazebo removes fixed joints, so gazebo_ros_control does not find the joint and loads no "
     "hardware at all.",
     fix="Delete the transmission, or give the joint a type that moves.",
     bad=FIXED + '<transmission name="t"><joint name="j"/></transmission>\n',
@@ -83,9 +83,9 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     "commanded-mimic",
     WARNING,
     what="A joint that mimics another one has a command interface in <ros2_control>.",
-    why="From Jazzy on the controller manager refuses the description ('Activated mimic joints "
-    'cannot have command interfaces\'), unless the joint says mimic="false".',
-    fix='Delete the command interface; mimic="false" if the hardware drives both.',
+    why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
+    "cannot have command interfaces'), unless the joint has mimic=\"false\".",
+    fix='Delete the command interface; set mimic="false" if the hardware drives both.',
     bad=a_pair('<mimic joint="j"/>')
     + a_system(
         '<joint name="j"/>',
@@ -111,9 +111,9 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     "mimic-without-its-joint",
     WARNING,
     what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>.",
-    why="From Jazzy on the controller manager refuses the description ('Mimic joint ... not found "
+    why="From Jazzy on the controller manager rejects the description ('Mimic joint ... not found "
     "in <ros2_control> tag').",
-    fix='Put both joints in one <ros2_control>, or say mimic="false".',
+    fix='Put both joints in one <ros2_control>, or set mimic="false".',
     bad=a_pair('<mimic joint="j"/>') + a_system('<joint name="k"/>'),
     good=a_pair('<mimic joint="j"/>') + a_system('<joint name="j"/>', '<joint name="k"/>'),
     line=12,
@@ -135,10 +135,11 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     "MB228",
     "undriven-joint",
     NOTE,
-    what="Other joints are driven by <ros2_control>, transmissions or plugins, and this one is not.",
-    why="Nothing moves it; unless somebody publishes its state all the same, "
-    "robot_state_publisher does not send its transform and tf has no link behind it.",
-    fix="Add it to <ros2_control>; if it is passive, let somebody publish its state.",
+    what="Other joints are driven by <ros2_control>, transmissions or plugins, but this one is "
+    "not.",
+    why="Nothing moves it. Unless a node publishes its state, robot_state_publisher does not send "
+    "its transform and the links below it have no frame in tf.",
+    fix="Add it to <ros2_control>; if it is passive, publish its state in joint_states.",
     bad=a_pair() + a_system('<joint name="j"/>'),
     good=a_pair() + a_system('<joint name="j"/>', '<joint name="k"/>'),
     line=7,

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     "duplicate-name",
     ERROR,
     what="Two links or two joints of one model have the same name.",
-    why="urdfdom refuses the file ('link ... is not unique'), and with it robot_state_publisher, "
-    "MoveIt and Gazebo; libsdformat refuses an SDF model.",
+    why="urdfdom rejects the file ('link ... is not unique'), and with it robot_state_publisher, "
+    "MoveIt and Gazebo; libsdformat rejects an SDF model.",
     fix="Rename one of the two and what refers to it, or delete the copy.",
     bad='<link name="a"/><link name="a"/>',
     good='<link name="a"/>',
@@ -73,9 +73,10 @@ def _origin(subject: Subject, start: int) -> Origin | None:
     "MB204",
     "repeated-joint",
     WARNING,
-    what="One <ros2_control> has a joint, sensor or gpio of the same name twice.",
-    why="The hardware exports one set of interfaces a name: those of the second are mixed up with "
-    "the first, or loading ends with 'Tried to insert StateInterface with already existing key'.",
+    what="One <ros2_control> has two joints, sensors or gpios with the same name.",
+    why="The hardware exports one set of interfaces per name: those of the second are mixed up "
+    "with the first, or loading fails with 'Tried to insert StateInterface with already existing "
+    "key'.",
     fix="Put all interfaces of the joint in one element.",
     bad=ARM + a_system('<joint name="j"/>', '<joint name="j"/>'),
     good=ARM + a_system('<joint name="j"/>'),
@@ -95,9 +96,9 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
     "MB205",
     "duplicate-hardware",
     ERROR,
-    what="Two <ros2_control> elements have one name.",
-    why="ros2_control's resource manager refuses the second ('Hardware name ... is duplicated'): "
-    "the controller manager does not come up.",
+    what="Two <ros2_control> elements have the same name.",
+    why="ros2_control's resource manager rejects the second ('Hardware name ... is duplicated'): "
+    "the controller manager does not start.",
     fix="Give each system, sensor and actuator its own name.",
     bad=ARM + a_system('<joint name="j"/>') + a_system(),
     good=ARM + a_system('<joint name="j"/>'),
@@ -115,7 +116,7 @@ def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
     "duplicate-sensor",
     ERROR,
     what="Two simulated sensors of one link have the same name.",
-    why="libsdformat refuses the model ('sensor with name[...] already exists'), so gz-sim does "
+    why="libsdformat rejects the model ('sensor with name[...] already exists'), so gz-sim does "
     "not load the robot.",
     fix="Give each sensor of a link its own name.",
     bad=a_link("a") + IMU.format("imu") * 2,
@@ -142,8 +143,8 @@ def duplicate_sensor(subject: Subject) -> Iterator[Problem]:
     "MB207",
     "duplicate-material",
     ERROR,
-    what="Two <material> elements of the robot have one name.",
-    why="urdfdom refuses the file ('material ... is not unique'), the same colour or not.",
+    what="Two <material> elements of the robot have the same name.",
+    why="urdfdom rejects the file ('material ... is not unique'), even if the colour is the same.",
     fix="Define each material once; links refer to it by name.",
     bad=a_link("a") + '<material name="m"><color rgba="1 0 0 1"/></material>\n' * 2,
     good='<link name="a"/><material name="m"><color rgba="1 0 0 1"/></material>',
@@ -161,9 +162,10 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
     "MB208",
     "one-node-twice",
     ERROR,
-    what="Two plugins of Gazebo Classic have one name and one namespace, and both are ROS nodes.",
-    why="gazebo_ros makes no node for the second ('Found multiple nodes with same name') but gives "
-    "it a null pointer; plugins such as gazebo_ros_imu_sensor use it at once, and gzserver dies.",
+    what="Two plugins of Gazebo Classic have the same name and namespace, and both are ROS nodes.",
+    why="gazebo_ros creates no node for the second ('Found multiple nodes with same name') and "
+    "gives it a null pointer; plugins such as gazebo_ros_imu_sensor use it at once, and gzserver "
+    "crashes.",
     fix="Give each plugin its own name.",
     bad=a_link("a") + a_plugin("gazebo_ros_imu_sensor", "imu", "<ros/>") * 2,
     good=a_link("a")
@@ -188,10 +190,10 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
     "MB209",
     "duplicate-transmission",
     WARNING,
-    what="Two transmissions have one name.",
-    why="Tools and messages cannot tell them apart; it is what a copy looks like whose name was "
-    "forgotten, and its joint often was as well.",
-    fix="Rename one, and see whether its joint is the right one.",
+    what="Two transmissions have the same name.",
+    why="Tools and messages cannot distinguish them. Usually one was copied and not renamed, and "
+    "its joint may be wrong as well.",
+    fix="Rename one, and check whether its joint is the right one.",
     bad=ARM + '<transmission name="t"><joint name="j"/></transmission>\n' * 2,
     good=ARM + '<transmission name="t"><joint name="j"/></transmission>',
     line=7,

@@ -24,9 +24,9 @@ AT_RUN_TIME = ("odom", "map", "world")
     "misspelled-frame",
     WARNING,
     what="A frame is not declared, and a link has almost the same name.",
-    why="The data is stamped with a frame that tf does not have: every consumer drops it "
-    "('frame does not exist').",
-    fix="Correct the name; if another node publishes that frame, silence the finding.",
+    why="The messages have a frame_id that tf does not have: every subscriber drops them ('frame "
+    "does not exist').",
+    fix="Correct the name; if another node publishes that frame, suppress the finding.",
     bad=a_link("base_link")
     + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_lnik</frame_name>"),
     good=a_link("base_link")
@@ -45,10 +45,10 @@ def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     "MB218",
     "foreign-frame",
     NOTE,
-    what="A sensor or plugin stamps its data with a frame that is no link of the robot.",
-    why="Unless another node publishes that frame, tf does not have it and every consumer drops "
-    "the data.",
-    fix="Name a link, or be sure that somebody publishes the frame.",
+    what="The frame of a sensor or plugin is not a link of the robot.",
+    why="Unless another node publishes that frame, tf does not have it and every subscriber drops "
+    "the messages.",
+    fix="Use the name of a link, or make sure that another node publishes the frame.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a">\n'
     '  <sensor name="s" type="imu"><frame_id>imu_frame</frame_id></sensor>\n'

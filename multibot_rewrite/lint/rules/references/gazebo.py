@@ -46,8 +46,8 @@ SINGLE = {
     "MB203",
     "link-and-joint",
     WARNING,
-    what="A <gazebo reference> is the name of a link and of a joint.",
-    why="Both get the block where they can use it, and libsdformat refuses a model in which a link "
+    what="A <gazebo reference> is the name of both a link and a joint.",
+    why="Both get the block where they can use it, and libsdformat rejects a model in which a link "
     "and a joint share a name: Gazebo does not spawn the robot.",
     fix="Rename the joint.",
     bad='<link name="a"/>\n'
@@ -71,10 +71,10 @@ def link_and_joint(subject: Subject) -> Iterator[Problem]:
     "MB210",
     "contradicting-blocks",
     NOTE,
-    what="Two <gazebo> blocks for one link or joint give one property two values.",
-    why="Gazebo takes the later one, with a warning at most: which that is hangs on the order of "
-    "the blocks.",
-    fix="Keep the one that is meant.",
+    what="Two <gazebo> blocks for one link or joint give a property different values.",
+    why="Gazebo uses the later one, with a warning at most: the result depends on the order of the "
+    "blocks.",
+    fix="Keep the right one.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
     '<gazebo reference="a"><mu1>0.2</mu1></gazebo>\n',

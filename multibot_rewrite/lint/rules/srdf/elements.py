@@ -16,10 +16,10 @@ from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, ELEMENTS, TOP, s
     "MB817",
     "srdf-incomplete",
     ERROR,
-    what="An element lacks an attribute without which it means nothing.",
-    why="srdfdom leaves the element out with an error; a joint_property without a joint_name ends "
+    what="A required attribute is missing.",
+    why="srdfdom skips the element with an error; a joint_property without a joint_name stops "
     "move_group.",
-    fix="Give the attribute.",
+    fix="Add the attribute.",
     bad=ARM + '<end_effector name="e" group="arm"/>',
     good=ARM + '<end_effector name="e" group="arm" parent_link="b"/>',
     line=2,
@@ -36,9 +36,8 @@ def srdf_incomplete(subject: Subject) -> Iterator[Problem]:
     "MB821",
     "srdf-misspelled",
     WARNING,
-    what="An element or attribute is not known, and one that is has almost the same name.",
-    why="srdfdom does not look at what it does not know, without a word: the group, pair or state "
-    "is not there.",
+    what="An unknown element or attribute whose name is almost that of a known one.",
+    why="srdfdom silently skips what it does not know: the group, pair or state does not exist.",
     fix="Correct the name.",
     bad=ARM + '<disable_collision link1="a" link2="b"/>',
     good=ARM + APART,

@@ -14,10 +14,10 @@ from multibot_rewrite.lint.rules.srdf.shared import ARM, ELEMENTS, srdf_rule
     "MB810",
     "broken-chain",
     ERROR,
-    what="The base and tip of a chain are not connected, or are one link.",
-    why="srdfdom leaves the chain out ('do not form a chain'), or it has no joint: the group cannot "
-    "be planned for.",
-    fix="Name two links of one tree.",
+    what="The base and tip of a chain are not connected, or are the same link.",
+    why="srdfdom ignores the chain ('do not form a chain'), or it has no joint: MoveIt cannot plan "
+    "for the group.",
+    fix="Use two links of one tree.",
     bad='<group name="arm"><chain base_link="b" tip_link="b"/></group>',
     good='<group name="arm"><chain base_link="a" tip_link="b"/></group>',
 )
@@ -39,9 +39,9 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
     "empty-group",
     WARNING,
     what="A group has no joint.",
-    why="MoveIt does not add it ('must have at least one valid joint'): planning for it and its "
-    "states and end effectors are not there.",
-    fix="Give it a joint, link, chain or group, or delete it.",
+    why="MoveIt does not add it ('must have at least one valid joint'): there is no planning for "
+    "it, and its states and end effectors are lost.",
+    fix="Add a joint, link, chain or group, or delete it.",
     bad='<group name="arm"/>',
     good=ARM,
 )
@@ -57,9 +57,9 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
     "end-effector-parent",
     WARNING,
     what="The parent group of an end effector is its own group, or does not have its parent link.",
-    why="MoveIt says so and takes another group that has the link, or none: grasps are planned for "
+    why="MoveIt warns and uses another group that has the link, or none: grasps are planned for "
     "the wrong arm.",
-    fix="Name the group whose link carries the end effector.",
+    fix="Use the group that has the parent link.",
     bad=ARM
     + '<group name="hand"><link name="c"/></group>\n'
     + '<end_effector name="e" group="hand" parent_link="a" parent_group="arm"/>\n',

@@ -24,8 +24,8 @@ from multibot_rewrite.lint.rules.structure.shared import (
     "MB525",
     "mimic-without-joint",
     ERROR,
-    what="A <mimic> does not say which joint it follows.",
-    why="urdfdom refuses the file ('joint mimic: no mimic joint specified').",
+    what="A <mimic> does not name the joint that it follows.",
+    why="urdfdom rejects the file ('joint mimic: no mimic joint specified').",
     fix='Add joint="...".',
     bad=two_joints("<mimic/>"),
     good=two_joints('<mimic joint="j"/>'),
@@ -43,9 +43,9 @@ def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     "mimic-of-itself",
     ERROR,
     what="A joint mimics itself.",
-    why="Current sdformat refuses the joint ('cannot mimic itself'), MoveIt ignores every mimic of the "
-    "robot, joint_state_publisher ends ('Found an infinite recursive mimic chain').",
-    fix="Name the joint that it follows.",
+    why="Current sdformat rejects the joint ('cannot mimic itself'), MoveIt ignores every mimic of "
+    "the robot, joint_state_publisher stops ('Found an infinite recursive mimic chain').",
+    fix="Use the joint that it follows.",
     bad=two_joints('<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
     line=11,
@@ -61,9 +61,9 @@ def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
     "MB527",
     "mimic-loop",
     ERROR,
-    what="Joints mimic each other in a circle.",
+    what="Joints mimic each other in a loop.",
     why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other') "
-    "and joint_state_publisher ends ('Found an infinite recursive mimic chain').",
+    "and joint_state_publisher stops ('Found an infinite recursive mimic chain').",
     fix="Delete the <mimic> of the joint that is driven.",
     bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
@@ -83,11 +83,11 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     "MB528",
     "mimic-chain",
     NOTE,
-    what="A joint mimics a joint that is a mimic, too.",
+    what="A joint mimics a joint that mimics another one.",
     why="MoveIt and joint_state_publisher follow the chain. robot_state_publisher goes through the "
-    "mimics once, by name: it sends no transform for one whose leader has the later name, unless "
-    "joint_states has the leader.",
-    fix="Name the first joint of the chain, and multiply the multipliers.",
+    "mimics once, by name: it sends no transform for one whose leader comes later in the alphabet, "
+    "unless joint_states has the leader.",
+    fix="Use the first joint of the chain, and multiply the multipliers.",
     bad=two_joints('<mimic joint="j"/>')
     + a_link("d")
     + a_joint("l", "revolute", "c", "d", LIMIT, '<mimic joint="k"/>'),
@@ -110,10 +110,10 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
     "MB529",
     "mimic-of-fixed",
     ERROR,
-    what="A joint mimics one that has not one position: fixed, floating or planar.",
-    why="joint_state_publisher ends with a KeyError, MoveIt ignores the mimic ('different number "
+    what="A joint mimics one that does not have a single position: fixed, floating or planar.",
+    why="joint_state_publisher stops with a KeyError, MoveIt ignores the mimic ('different number "
     "of DOF'), and no joint_states message ever has the leader.",
-    fix="Name a joint that moves, or make this one fixed.",
+    fix="Use a joint that moves, or make this one fixed.",
     bad=two_joints('<mimic joint="j"/>').replace("revolute", "fixed", 1),
     good=two_joints('<mimic joint="j"/>'),
     line=11,
@@ -137,7 +137,7 @@ def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     "mimic-multiplier-zero",
     WARNING,
     what="The multiplier of a <mimic> is 0.",
-    why="The joint stands still, whatever the other one does.",
+    why="The joint does not move, whatever the other one does.",
     fix="Write the ratio, or make the joint fixed.",
     bad=two_joints('<mimic joint="j" multiplier="0"/>'),
     good=two_joints('<mimic joint="j" multiplier="0.5"/>'),

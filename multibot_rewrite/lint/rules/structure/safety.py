@@ -27,7 +27,7 @@ Range = tuple[float, float]
     "safety-without-k-velocity",
     ERROR,
     what="A <safety_controller> has no k_velocity.",
-    why="urdfdom refuses the file ('joint safety: no k_velocity').",
+    why="urdfdom rejects the file ('joint safety: no k_velocity').",
     fix="Add it, or delete the element.",
     bad=one_joint(
         "revolute", LIMIT, '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/>'
@@ -51,9 +51,9 @@ def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     "MB532",
     "soft-limits-empty",
     WARNING,
-    what="The soft limits of a <safety_controller> leave the joint no way to go.",
-    why="A missing soft limit is 0. MoveIt takes what is inside both kinds of limits: it cannot "
-    "plan for a joint that may only stand at 0.",
+    what="The soft limits of a <safety_controller> leave the joint no range.",
+    why="A missing soft limit is 0. MoveIt uses the range that is inside both kinds of limits: it "
+    "cannot plan for a joint that can only be at 0.",
     fix="Write soft_lower_limit and soft_upper_limit, or delete the element.",
     bad=one_joint("revolute", LIMIT, '<safety_controller k_velocity="10"/>'),
     good=one_joint(
@@ -78,9 +78,9 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     "MB533",
     "soft-limits-outside",
     NOTE,
-    what="A soft limit of a <safety_controller> is outside of the hard one.",
-    why="It has no effect: MoveIt, ros2_control and joint_state_publisher take the narrower one.",
-    fix="Put the soft limits inside of the hard ones.",
+    what="A soft limit of a <safety_controller> is outside of the joint's limits.",
+    why="It has no effect: MoveIt, ros2_control and joint_state_publisher use the narrower one.",
+    fix="Put the soft limits inside of lower and upper.",
     bad=one_joint(
         "revolute",
         LIMIT,
@@ -109,7 +109,7 @@ def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
     "dynamics-empty",
     ERROR,
     what="A <dynamics> has neither damping nor friction.",
-    why="urdfdom refuses the file ('joint dynamics element specified with no damping and no "
+    why="urdfdom rejects the file ('joint dynamics element specified with no damping and no "
     "friction').",
     fix="Add one of them, or delete the element.",
     bad=one_joint("continuous", "<dynamics/>"),

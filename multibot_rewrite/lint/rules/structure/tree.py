@@ -31,8 +31,8 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
     "several-roots",
     ERROR,
     what="More than one link has no parent: the robot is in several pieces.",
-    why="urdfdom refuses the file ('Two root links found'): no robot_state_publisher, no tf.",
-    fix="Add the joint that holds the pieces together.",
+    why="urdfdom rejects the file ('Two root links found'): no robot_state_publisher, no tf.",
+    fix="Add the joint that connects the pieces.",
     bad=TWO_LINKS,
     good=one_joint("fixed"),
     line=2,
@@ -59,8 +59,8 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     "MB502",
     "no-link",
     WARNING,
-    what="The robot has no link. Files of materials alone or for Webots need none.",
-    why="urdfdom refuses the file ('No link elements found in urdf file').",
+    what="The robot has no link. Files with only materials, or for Webots, need none.",
+    why="urdfdom rejects the file ('No link elements found in urdf file').",
     fix="Add the links, directly below <robot>.",
     bad='<robot name="r"/>',
     good='<link name="a"/>',
@@ -80,9 +80,9 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     "kinematic-loop",
     ERROR,
     what="Joints close a loop: a link is below itself.",
-    why="urdfdom accepts a loop beside the tree: nothing of it gets a frame in tf, and pinocchio "
-    "leaves it out; where all links are on loops it refuses the file ('No root link found').",
-    fix="Turn round or delete one joint; close a real loop in the simulator.",
+    why="urdfdom accepts a loop beside the tree: its links get no frame in tf, and pinocchio "
+    "leaves them out; if all links are in loops it rejects the file ('No root link found').",
+    fix="Reverse or delete one joint; close a real loop in the simulator.",
     bad=a_link("a")
     + a_link("b")
     + a_link("c")
@@ -116,9 +116,9 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     "several-parents",
     ERROR,
     what="A link is the child of two joints.",
-    why="urdfdom keeps one of the joints, by name; sdformat refuses the file (two links of one "
-    "name) and MuJoCo, too ('body has multiple parents').",
-    fix="Delete one of the joints, or add a link of its own for it.",
+    why="urdfdom keeps one of the joints, by name; sdformat rejects the file (two links with one "
+    "name), and so does MuJoCo ('body has multiple parents').",
+    fix="Delete one of the joints, or add another link for it.",
     bad=a_link("a") + a_link("b") + fixed_joint("j", "a", "b") + fixed_joint("k", "a", "b"),
     good=a_link("a")
     + a_link("b")
@@ -145,11 +145,11 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
     "MB505",
     "unreachable-link",
     ERROR,
-    what="Links hang on a loop, or on a joint from a link to itself: no way leads to them from the "
-    "root.",
-    why="urdfdom accepts the file and nobody sees the links: they get no frame in tf, and Gazebo "
-    "and pinocchio leave them out.",
-    fix="Mend the loop that they hang on.",
+    what="Links are below a loop, or below a joint from a link to itself: they are not connected "
+    "to the root.",
+    why="urdfdom accepts the file, but the links are lost: they get no frame in tf, and Gazebo and "
+    "pinocchio leave them out.",
+    fix="Correct the loop above them.",
     bad=a_link("a")
     + a_link("b")
     + a_link("c")
@@ -179,10 +179,10 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     "MB506",
     "joint-to-itself",
     ERROR,
-    what="A joint's parent is its child.",
-    why="For urdfdom the link has a parent and is no root: with the root it refuses the file ('No "
-    "root link found'), any other link is left out of tf and Gazebo.",
-    fix="Name the link that the joint hangs on as its parent.",
+    what="A joint's parent and child are the same link.",
+    why="For urdfdom the link has a parent and is not a root: if it should be the root, urdfdom "
+    "rejects the file ('No root link found'); any other link is left out of tf and Gazebo.",
+    fix="Correct the parent link.",
     bad=a_link("a") + fixed_joint("j", "a", "a"),
     good=one_joint("fixed"),
     line=3,
@@ -199,8 +199,8 @@ def joint_to_itself(subject: Subject) -> Iterator[Problem]:
     "MB507",
     "joint-without-ends",
     ERROR,
-    what="A joint does not say its parent or its child link.",
-    why="urdfdom refuses the file ('missing a parent and/or child link specification').",
+    what="A joint has no parent link or no child link.",
+    why="urdfdom rejects the file ('missing a parent and/or child link specification').",
     fix='Add <parent link="..."/> and <child link="..."/>.',
     bad='<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>',
     good=one_joint("fixed"),
