@@ -24,9 +24,9 @@ class Subject(NamedTuple):
     """One document to lint.
 
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
-    robot that an SRDF belongs to, if it was found. Where the document was expanded, ``origins``
+    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
-    ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's shape.
+    ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's structure.
     ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
     """
 

@@ -1,11 +1,11 @@
-"""MB0: the lint itself: rules that crash, files that take too long, comments that keep it silent."""
+"""MB0: the lint itself: rules that crash, files that take too long, comments that suppress findings."""
 
 from __future__ import annotations
 
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import declare
 
-# Reported where rules are asked: see ``failures``.
+# Reported where rules are run: see ``failures``.
 rule_crashed = declare(
     "MB001",
     "rule-crashed",
@@ -18,7 +18,7 @@ rule_crashed = declare(
     formats=(),
 )
 
-# Reported when all rules were asked: see ``suppress``.
+# Reported after all rules have run: see ``config.suppress``.
 unused_suppression = declare(
     "MB002",
     "unused-suppression",
@@ -50,7 +50,7 @@ broken_suppression = declare(
     formats=(),
 )
 
-# Reported by the clock: see ``failures``.
+# Reported when the time is over: see ``failures``.
 took_too_long = declare(
     "MB004",
     "took-too-long",

@@ -1,4 +1,4 @@
-"""MB9: what a rewrite for several robots would leave as it is, because nothing says what it means."""
+"""MB9: what a rewrite for several robots leaves as it is, because its meaning is not known."""
 
 from __future__ import annotations
 

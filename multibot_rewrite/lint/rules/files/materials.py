@@ -112,7 +112,7 @@ def material_differs(subject: Subject) -> Iterator[Problem]:
     for material in looks:
         name, look = material.get("name", ""), _look(material)
         if first.setdefault(name, look) != look:
-            hint = "the first definition of the name counts"
+            hint = "the first definition of the name is used"
             message = f"material {name!r} has another colour or texture than its first definition"
             yield Problem(material, message, "name", hint)
 

@@ -1,4 +1,4 @@
-"""Files that cannot be read, or are no robot description as they are."""
+"""Files that cannot be read, or are not a robot description as they are."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ xacro_failed = declare(
     good='<link name="a"/><link name="b"/>',
 )
 def leftover(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, at the first of them."""
+    """One finding per file, at the first of them."""
     found = list(leftover_xacro(subject.inventory))
     return _placed(subject, found) if found else iter(())
 
@@ -94,7 +94,7 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     options={"robots": ("robot1", "robot2")},
 )
 def already(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, for the first robot whose name is in it."""
+    """One finding per file, for the first robot whose name is in it."""
     settings = subject.settings
     found = already_rewritten(subject.inventory, settings.naming, settings.robots, False)
     for it in islice(found, 1):

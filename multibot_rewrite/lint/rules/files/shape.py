@@ -1,4 +1,4 @@
-"""Elements and attributes that readers of URDF do not expect, or miss."""
+"""Elements and attributes that URDF parsers do not expect, or miss."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ unknown_component = rule(
     ERROR,
     what="A child of <ros2_control> is not a component: hardware, joint, sensor, gpio or "
     "transmission.",
-    why="ros2_control's component parser throws \"invalid tag name\" for it, and the controller "
+    why='ros2_control\'s component parser throws "invalid tag name" for it, and the controller '
     "manager has no hardware.",
     fix="Use one of the components, or move a <param> into <hardware>.",
     bad='<ros2_control name="c" type="system">\n'

@@ -39,9 +39,9 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
     ):
         found = pattern.match(source, source.index(b"<?xml"))
         if found and found[1].lower() not in allowed:
-            said = found[1].decode("utf-8", "replace")
+            value = found[1].decode("utf-8", "replace")
             edit = Edit(found.start(1), found.end(1), right, None)
-            message = f"the XML declaration says {said!r}"
+            message = f"the XML declaration says {value!r}"
             yield Problem(subject.document.root, message, None, f"write {right.decode()}", (edit,))
 
 

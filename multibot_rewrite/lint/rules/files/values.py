@@ -1,4 +1,4 @@
-"""Values of attributes that readers of URDF cannot take."""
+"""Values of attributes that URDF parsers reject."""
 
 from __future__ import annotations
 
@@ -55,9 +55,9 @@ not_finite = rule(
     good='<link name="a"><visual><geometry><sphere radius="1e9"/></geometry></visual></link>',
 )(partial(faults, "not-finite"))
 
-blank_behind_number = rule(
+space_after_number = rule(
     "MB123",
-    "blank-behind-number",
+    "space-after-number",
     ERROR,
     what="A single number has a space after it, or a number is followed by a tab or a line break.",
     why="urdfdom splits values at single spaces and expects every part to be a number: it rejects "
@@ -65,7 +65,7 @@ blank_behind_number = rule(
     fix="Delete the space; separate numbers by spaces.",
     bad='<link name="a"><visual><geometry><sphere radius="1 "/></geometry></visual></link>',
     good='<link name="a"><visual><geometry><box size="1  1 1 "/></geometry></visual></link>',
-)(partial(faults, "blank-behind-number"))
+)(partial(faults, "space-after-number"))
 
 bad_choice = rule(
     "MB124",

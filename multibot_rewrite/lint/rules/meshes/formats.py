@@ -32,12 +32,12 @@ PARTLY = {
     good=MESH % "package://arm/meshes/base.stl",
 )
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
-    """Endings of meshes that no program knows."""
+    """Extensions of meshes that no program knows."""
     for it in _meshes(subject):
         ending = _ending(it)
         if ending not in READABLE and ending not in PARTLY:
-            said = f"ends in .{ending}, which" if ending else "has no ending, so that"
-            yield problem(it, f"{it.name!r} {said} no program can load", "use .stl, .dae or .obj")
+            fault = f"no program can load .{ending}" if ending else "it has no extension"
+            yield problem(it, f"{it.name!r}: {fault}", "use .stl, .dae or .obj")
 
 
 def _meshes(subject: Subject) -> list[Used]:

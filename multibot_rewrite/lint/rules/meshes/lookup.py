@@ -1,4 +1,4 @@
-"""Files and packages that are not there."""
+"""Files and packages that do not exist."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_
 
 class Lookup(NamedTuple):
     """A file that was looked for: the folders it may be below, its path there, and the path as it
-    is written on the disk, empty where it is not there."""
+    is on the disk, empty where it does not exist."""
 
     used: Used
     folders: tuple[str, ...]
@@ -55,7 +55,7 @@ def _where(
         return (), ""
     path = path.lstrip("/")
     first = path.partition("/")[0].lower()
-    # A folder without a manifest must at least have the folder that is asked for.
+    # A folder without a manifest must at least have the first folder of the path.
     return tuple(it for it in folders_of(package) if _may_be_the_package(entries(it), first)), path
 
 
@@ -84,7 +84,7 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
         if it.folders and not it.found:
             near = _nearest(it)
             hint = f"did you mean {near!r}?" if near else f"looked in {it.folders[0]}"
-            yield problem(it.used, f"{it.used.name!r} is not there", hint)
+            yield problem(it.used, f"{it.used.name!r} does not exist", hint)
 
 
 def _nearest(it: Lookup) -> str:
@@ -113,9 +113,7 @@ def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
     lost = [it for it in _lookups(subject) if it.path and not it.folders]
     for package, it in {_package(it): it for it in reversed(lost)}.items():
-        yield problem(
-            it.used, f"package {package!r} was not found", "name a folder it is in: --roots"
-        )
+        yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
 
 
 def _package(it: Lookup) -> str:
@@ -138,8 +136,8 @@ def _package(it: Lookup) -> str:
     },
 )
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
-    """Paths that differ from the file only in capitals."""
+    """Paths that differ from the file only in upper and lower case."""
     for it in _lookups(subject):
         if it.found and it.found != os.path.normpath(it.path):
-            message = f"{it.path!r} is called {it.found!r} on the disk"
-            yield problem(it.used, message, f"write {it.found!r}")
+            message = f"{it.path!r} is {it.found!r} on the disk"
+            yield problem(it.used, message, f"use {it.found!r}")

@@ -1,4 +1,4 @@
-"""How files are named: paths of one machine, schemes, backslashes."""
+"""How files are named: absolute paths, schemes, backslashes."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ def mesh_without_file(subject: Subject) -> Iterator[Problem]:
     for mesh in subject.elements.every("mesh"):
         name = mesh.get("filename")
         if (name is None or not name.strip()) and _is_shape(mesh):
-            said = "no file" if name is None else "an empty file name"
-            yield Problem(mesh, f"<mesh> has {said}", None if name is None else "filename")
+            fault = "no file" if name is None else "an empty file name"
+            yield Problem(mesh, f"<mesh> has {fault}", None if name is None else "filename")
 
 
 def _is_shape(mesh: _Element) -> bool:
@@ -104,7 +104,7 @@ def mixed_schemes(subject: Subject) -> Iterator[Problem]:
     used = [it for it in used_files(subject) if "$" not in it.name]
     other = next((it for it in used if it.scheme != used[0].scheme), None)
     if other is not None:
-        message = f"{other.name!r} beside {used[0].name!r}: two ways to name meshes"
+        message = f"{other.name!r} and {used[0].name!r}: two ways to name meshes"
         yield problem(other, message, "use package:// for all")
 
 

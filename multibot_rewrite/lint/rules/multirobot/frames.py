@@ -20,7 +20,7 @@ from multibot_rewrite.rosnames import split_remap
     "MB404",
     "robot-name-in-frame",
     WARNING,
-    what="A frame has a robot's name in front of the name of a link, but the link itself has not.",
+    what="A frame is the name of a link with a robot's name in front, which the link does not have.",
     why="The frame exists only with that frame_prefix: the second robot's data gets the first "
     "one's frame and appears on it, and a rewrite cannot know what was intended.",
     fix="Use the link's own name and let frame_prefix or urdf-postfix add the robot's name, or "
@@ -44,8 +44,10 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
             continue
         link = value.partition("/")[2].strip("/")
         if link in links and is_plain(value) and claim_is_fixed(subject, claim):
-            message = f"frame {claim.value!r} holds a robot's name, the link is called {link!r}"
-            yield Problem(claim.element, message, claim.attribute, f"write {link!r}")
+            message = (
+                f"frame {claim.value!r} has a robot's name in front, the link is called {link!r}"
+            )
+            yield Problem(claim.element, message, claim.attribute, f"use {link!r}")
 
 
 @rule(
@@ -73,8 +75,8 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     """Frames that would have to be inserted for a robot."""
     for element, item in inserted(subject):
         if item[0] in ("frame", "link"):
-            message = f"without <{item[2]}> the plugin uses {item[1]!r}, as every other robot's"
-            yield Problem(element, message, None, f"say <{item[2]}> for each robot")
+            message = f"without <{item[2]}> the plugin uses {item[1]!r}, the same for every robot"
+            yield Problem(element, message, None, f"set <{item[2]}> for each robot")
 
 
 @rule(
@@ -113,8 +115,12 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
         if "odom" not in _words(claim) or {name, name.rpartition("/")[2]} & (links.keys() | shared):
             continue
         if is_plain(name) and claim_is_fixed(subject, claim):
-            message = f"{tag_of(claim)} {claim.value!r} is one frame for every copy of the robot"
-            yield Problem(claim.element, message, claim.attribute, "spell it for each robot")
+            message = (
+                f"{tag_of(claim)} {claim.value!r} is the same frame for every copy of the robot"
+            )
+            yield Problem(
+                claim.element, message, claim.attribute, "use a different one for each robot"
+            )
 
 
 def _words(claim: Claim) -> str:
@@ -155,8 +161,10 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
         if "/tf" in switched_off(host.element, rewriter) or _moves_tf(host.element):
             continue
         of = "the controllers it loads publish" if rewriter.process_wide else "it publishes"
-        message = f"plugin {host.element.get('name', '')!r}: {of} on /tf, which no namespace moves"
-        yield Problem(host.element, message, None, "<remapping>/tf:=tf</remapping>")
+        message = (
+            f"plugin {host.element.get('name', '')!r}: {of} on /tf, which a namespace does not move"
+        )
+        yield Problem(host.element, message, None, "add <remapping>/tf:=tf</remapping>")
 
 
 def _moves_tf(plugin: _Element) -> bool:

@@ -1,4 +1,4 @@
-"""What a rewrite for the named robots refuses or warns about."""
+"""What a rewrite for the named robots rejects or warns about."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ joints_reordered = rule(
     options={"robots": TWO},
 )
 def name_taken(subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the robots refuses as MB420."""
+    """What a rewrite for the robots rejects as MB420."""
     naming, names = subject.settings.naming, subject.settings.robots
     if names:
         yield from problems(robots.taken_names(subject.inventory, naming, names))
@@ -83,7 +83,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     },
 )
 def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the robots refuses as MB421."""
+    """What a rewrite for the robots rejects as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
     for it in robots.meeting(subject.inventory, naming, pairs):
@@ -169,7 +169,7 @@ off_the_shared_tf = rule(
     options={"robots": TWO},
 )
 def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
-    """Contacts that a rewrite refuses as MB424."""
+    """Contacts that a rewrite rejects as MB424."""
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.rewriters.contact import respell_collisions
@@ -188,9 +188,9 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, "use affix prefix")
 
 
-sensor_names_meet = rule(
+sensor_names_collide = rule(
     "MB425",
-    "sensor-names-meet",
+    "sensor-names-collide",
     WARNING,
     what="A plugin looks sensors up by bare name in the whole world, and the sensors have the same "
     "names for all robots.",

@@ -81,9 +81,9 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
         if any(it.kind == "namespace" for it in items):
             bare.append(host.element)
     if bare:
-        more = f" and {len(bare) - 1} more" if len(bare) > 1 else ""
-        message = f"plugin {bare[0].get('name', '')!r}{more} in no namespace"
-        yield Problem(bare[0], message, None, "give it one for each robot")
+        have = f"and {len(bare) - 1} more have" if len(bare) > 1 else "has"
+        message = f"plugin {bare[0].get('name', '')!r} {have} no namespace"
+        yield Problem(bare[0], message, None, "give each robot its own")
 
 
 @rule(
@@ -114,7 +114,7 @@ def one_robot_description(subject: Subject) -> Iterator[Problem]:
     for element in found:
         if is_fixed(subject, starts[element], ""):
             message = f"<{element.tag}> {(element.text or '').strip()!r} is the same for all robots"
-            yield Problem(element, message, "", "leave out what stands before the last slash")
+            yield Problem(element, message, "", "use the part after the last slash")
 
 
 def _children(subject: Subject, tags: tuple[str, ...]) -> list[_Element]:

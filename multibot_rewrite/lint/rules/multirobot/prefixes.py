@@ -103,7 +103,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
             read = words_of(macro)
             for name in names:
                 if name not in read and macro.find(".//link") is not None:
-                    message = f"macro {macro.get('name', '')!r} takes {name!r} and uses it nowhere"
+                    message = f"macro {macro.get('name', '')!r} takes {name!r} and does not use it"
                     yield Problem(macro, message, "params", "put it in front of the names")
     yield from _unused_arguments(root)
 
@@ -129,7 +129,7 @@ def _unused_arguments(root: _Element) -> Iterator[Problem]:
     for element in arguments:
         name = element.get("name", "")
         if PREFIX.fullmatch(name) and name not in read:
-            message = f"argument {name!r} is declared and used nowhere"
+            message = f"argument {name!r} is declared and not used"
             yield Problem(element, message, "name", "put it in front of the names")
 
 
@@ -146,4 +146,4 @@ def _of(scope: Scope) -> str:
 def _hint(scope: Scope, text: str) -> str:
     own = next((it for it in scope.declared if it.words & scope.prefix_names), None)
     found = SUBSTITUTIONS.search(own.text) if own else None
-    return f"write {found[0] + text!r}" if found else "put the prefix in front"
+    return f"use {found[0] + text!r}" if found else "put the prefix in front"

@@ -1,4 +1,4 @@
-"""Files, devices, sensors and systems of the world that there is only one of."""
+"""Files, devices, sensors and systems of the world that exist only once."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from multibot_rewrite.rewriters.tree import library_key
 # gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).
 WORLD_SYSTEMS = {
     "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
-    "gz-sim-imu-system": "every IMU of the world is published once more for each copy",
+    "gz-sim-imu-system": "every IMU of the world is published again for each copy",
     "gz-sim-physics-system": "two physics engines move the same links",
-    "gz-sim-contact-system": "every contact sensor is published once more for each copy",
-    "gz-sim-forcetorque-system": "every force sensor is published once more for each copy",
-    "gz-sim-navsat-system": "every GPS of the world is published once more for each copy",
-    "gz-sim-magnetometer-system": "every magnetometer is published once more for each copy",
-    "gz-sim-altimeter-system": "every altimeter is published once more for each copy",
-    "gz-sim-air-pressure-system": "every barometer is published once more for each copy",
-    "gz-sim-scene-broadcaster-system": "every state of the world is sent once more for each copy",
+    "gz-sim-contact-system": "every contact sensor is published again for each copy",
+    "gz-sim-forcetorque-system": "every force sensor is published again for each copy",
+    "gz-sim-navsat-system": "every GPS of the world is published again for each copy",
+    "gz-sim-magnetometer-system": "every magnetometer is published again for each copy",
+    "gz-sim-altimeter-system": "every altimeter is published again for each copy",
+    "gz-sim-air-pressure-system": "every barometer is published again for each copy",
+    "gz-sim-scene-broadcaster-system": "every state of the world is sent again for each copy",
 }
 DEVICE = regex(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
@@ -60,7 +60,7 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
         text = (element.text or "").strip()
         if text and is_fixed(subject, starts[element], ""):
             message = f"every robot's controllers read {text.rpartition('/')[2]!r}"
-            yield Problem(element, message, "", "give each robot its file")
+            yield Problem(element, message, "", "give each robot its own file")
 
 
 @rule(
@@ -113,7 +113,7 @@ def one_device(subject: Subject) -> Iterator[Problem]:
     line=3,
 )
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
-    """Only while no robots are named: then MB425 knows whether their names differ."""
+    """Only if no robots are named: otherwise MB425 knows whether their names differ."""
     if subject.settings.robots or not _has_fixed_sensor(subject):
         return
     for it in hazards.bare_lookups(subject.inventory, AS_WRITTEN):
@@ -148,5 +148,5 @@ def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
             continue
         key = library_key(host.element.get("filename", ""))
         if key in WORLD_SYSTEMS:
-            message = f"{key} comes once more with every robot: {WORLD_SYSTEMS[key]}"
+            message = f"{key} is loaded again with every robot: {WORLD_SYSTEMS[key]}"
             yield Problem(host.element, message, "filename", "load it in the world")

@@ -24,6 +24,8 @@ from multibot_rewrite.rosnames import split_remap
 
 ROS_KINDS = ("topic", "service")
 REMAP_FORMS = ("remap", "argument")
+# What a plugin has a default of, in a message.
+NOUNS = {"topic": "topic", "service": "service", "stem": "name"}
 GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
 GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
 
@@ -50,7 +52,7 @@ GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
     line=3,
 )
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
-    """Absolute ROS names that the settings do not call shared."""
+    """Absolute ROS names that are not shared by the settings."""
     wide = process_wide_plugins(subject)
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
@@ -107,8 +109,10 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
             continue
         if not claim_is_fixed(subject, claim):
             continue
-        message = f"{tag_of(claim)} {topic!r} is one gz topic for every copy of the robot"
-        yield Problem(claim.element, message, claim.attribute, "leave it out or spell it per robot")
+        message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
+        yield Problem(
+            claim.element, message, claim.attribute, "leave it out, or set one for each robot"
+        )
 
 
 def _is_gz(claim: Claim) -> bool:
@@ -116,7 +120,7 @@ def _is_gz(claim: Claim) -> bool:
 
 
 def _is_classic(subject: Subject) -> bool:
-    """Is it for Gazebo Classic, which puts the model's name before sensor topics itself?"""
+    """Is it for Gazebo Classic, which itself puts the model's name before sensor topics?"""
     hosts = (it.element for it in subject.inventory.hosts)
     keys = [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
     return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)
@@ -145,8 +149,8 @@ def _is_classic(subject: Subject) -> bool:
     "</ros2_control>\n",
 )
 def default_topic_shared(subject: Subject) -> Iterator[Problem]:
-    """Topics, services and beginnings of names that would have to be inserted for a robot."""
+    """Topics, services and prefixes of names that would have to be inserted for a robot."""
     for element, (kind, old, _) in inserted(subject):
-        if kind in ("topic", "service", "stem"):
-            message = f"without being told another {kind} it uses {old!r}, as every other robot's"
-            yield Problem(element, message, None, "say it for each robot")
+        if kind in NOUNS:
+            message = f"its default {NOUNS[kind]} {old!r} is the same for every robot"
+            yield Problem(element, message, None, "set it for each robot")

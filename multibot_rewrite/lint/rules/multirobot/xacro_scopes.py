@@ -10,7 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.lazy import regex
 
-# How people call the parameter that is put in front of a robot's names.
+# What people call the parameter that is put in front of a robot's names.
 PREFIX = regex(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
 _PARAM = regex(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
 SUBSTITUTIONS = regex(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")

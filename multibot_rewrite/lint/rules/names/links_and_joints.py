@@ -1,4 +1,4 @@
-"""Names of links, joints and the robot that URDF, SDF or tf cannot take."""
+"""Names of links, joints and the robot that are not valid in URDF, SDF or tf."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def empty_name(subject: Subject) -> Iterator[Problem]:
 
 @rule(
     "MB303",
-    "blank-in-name",
+    "space-in-name",
     WARNING,
     what="The name of a link or joint contains white space.",
     why="ROS names must not contain white space: rcl rejects topics, nodes and namespaces made "
@@ -41,14 +41,14 @@ def empty_name(subject: Subject) -> Iterator[Problem]:
     bad='<link name="left wheel"/>',
     good='<link name="left_wheel"/>',
 )
-def blank_in_name(subject: Subject) -> Iterator[Problem]:
+def space_in_name(subject: Subject) -> Iterator[Problem]:
     """White space in a name or around it."""
     for kind, name, element in named(subject):
         if name.strip() and BLANK.search(name):
             where = "" if name == name.strip() else " around it"
             near = "_".join(name.split())
             yield Problem(
-                element, f"{kind} {name!r} holds white space{where}", "name", f"write {near!r}"
+                element, f"{kind} {name!r} contains white space{where}", "name", f"use {near!r}"
             )
 
 
@@ -68,10 +68,14 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
     """Names that become names in SDF."""
     for kind, name, element in named(subject):
         if "::" in name:
-            hint = f"write {name.replace('::', '_')!r}"
-            yield Problem(element, f"{kind} {name!r} holds '::', which SDF keeps", "name", hint)
+            hint = f"use {name.replace('::', '_')!r}"
+            yield Problem(
+                element, f"{kind} {name!r} contains '::', which SDF reserves", "name", hint
+            )
     if "::" in (name_of_robot(subject) or ""):
-        yield Problem(subject.document.root, "the robot's name holds '::', which SDF keeps", "name")
+        yield Problem(
+            subject.document.root, "the robot's name contains '::', which SDF reserves", "name"
+        )
 
 
 @rule(
@@ -90,10 +94,10 @@ def reserved_name(subject: Subject) -> Iterator[Problem]:
     """Links, joints and the robot; a link called world is MB307."""
     for kind, name, element in named(subject):
         if _is_reserved(name) or (kind == "joint" and name == WORLD):
-            yield Problem(element, f"SDF keeps {name!r} for itself: no {kind} may have it", "name")
+            yield Problem(element, f"SDF reserves the name {name!r}: no {kind} may have it", "name")
     robot = name_of_robot(subject)
     if robot is not None and (_is_reserved(robot) or robot == WORLD):
-        message = f"SDF keeps {robot!r} for itself: no model may have it"
+        message = f"SDF reserves the name {robot!r}: no model may have it"
         yield Problem(subject.document.root, message, "name")
 
 
@@ -119,7 +123,7 @@ def _is_reserved(name: str) -> bool:
     '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
 )
 def world_link(subject: Subject) -> Iterator[Problem]:
-    """One finding, for the worst that is wrong with it."""
+    """One finding, for its worst fault."""
     link = subject.robot.link.get(WORLD)
     if link is None:
         return
@@ -131,7 +135,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
         message = f"link 'world' is not the root: joint {above[0].name!r} moves it with the robot"
         yield Problem(link.element, message, "name")
     elif content:
-        message = f"link 'world' has <{content}>, which Gazebo leaves out"
+        message = f"link 'world' has <{content}>, which Gazebo ignores"
         yield Problem(link.element, message, "name")
 
 
@@ -164,7 +168,7 @@ def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
 
 @rule(
     "MB309",
-    "case-twins",
+    "names-differ-by-case",
     NOTE,
     what="The names of two links or two joints differ only in upper and lower case.",
     why="ROS and Gazebo distinguish them; people, and files named after them on a case-insensitive "
@@ -173,7 +177,7 @@ def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
     bad='<link name="arm"/><link name="Arm"/>',
     good='<link name="arm"/><link name="arm_2"/>',
 )
-def case_twins(subject: Subject) -> Iterator[Problem]:
+def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
     """The second of each pair."""
     links = {it.name: it.element for it in subject.robot.links}
     joints = {it.name: it.element for it in subject.robot.joints}
@@ -184,7 +188,7 @@ def case_twins(subject: Subject) -> Iterator[Problem]:
         for name, element in parts.items():
             first = seen.setdefault(name.lower(), name)
             if first != name:
-                message = f"{kind} {name!r} differs from {first!r} in capitals alone"
+                message = f"{kind} {name!r} differs from {first!r} only in upper and lower case"
                 yield Problem(element, message, "name")
 
 
@@ -205,4 +209,4 @@ def name_not_ascii(subject: Subject) -> Iterator[Problem]:
         if not name.isascii():
             letter = next(it for it in name if not it.isascii())
             code = f"U+{ord(letter):04X}"
-            yield Problem(element, f"{kind} {name!r} holds {letter!r} ({code})", "name")
+            yield Problem(element, f"{kind} {name!r} contains {letter!r} ({code})", "name")

@@ -1,4 +1,4 @@
-"""Names that ROS cannot take: frames, topics, interfaces, the robot."""
+"""Names that are not valid in ROS: frames, topics, interfaces, the robot."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def leading_slash(subject: Subject) -> Iterator[Problem]:
             known = name in subject.inventory.declared["link"]
             message = f"frame {claim.value!r} starts with a slash"
             edits = _without_slash(subject, claim) if known else ()
-            yield Problem(claim.element, message, claim.attribute, "drop the slash", edits)
+            yield Problem(claim.element, message, claim.attribute, "delete the slash", edits)
 
 
 def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
@@ -96,8 +96,10 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
             name = part.get("name", "")
             if "/" in name and SUBSTITUTION not in name:
                 cut = name.partition("/")[0]
-                message = f"{part.tag} {name!r} holds a slash: its interfaces seem to be of {cut!r}"
-                yield Problem(part, message, "name", f"write {name.replace('/', '_')!r}")
+                message = (
+                    f"{part.tag} {name!r} contains a slash: its interfaces look like {cut!r}'s"
+                )
+                yield Problem(part, message, "name", f"use {name.replace('/', '_')!r}")
 
 
 @rule(
@@ -117,13 +119,15 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     name = name_of_robot(subject)
     if name is None or "::" in name or TOKEN.fullmatch(name):
         return
-    hint = f"write {propose_token(name)!r}" if name.strip() else "give it one"
-    yield Problem(subject.document.root, f"robot name {name!r} is no ROS name", "name", hint)
+    hint = f"use {propose_token(name)!r}" if name.strip() else "add one"
+    yield Problem(
+        subject.document.root, f"robot name {name!r} is not a valid ROS name", "name", hint
+    )
 
 
 @rule(
     "MB312",
-    "no-ros-name",
+    "invalid-ros-name",
     WARNING,
     what="A topic, service, namespace or node name of a plugin is not a valid ROS name.",
     why="rcl throws InvalidTopicNameError, or the node is not created: the plugin does not load, "
@@ -141,7 +145,7 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     "</gazebo>\n",
     line=3,
 )
-def no_ros_name(subject: Subject) -> Iterator[Problem]:
+def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
     """Values that are relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
         site = claim.site
@@ -149,7 +153,7 @@ def no_ros_name(subject: Subject) -> Iterator[Problem]:
             continue
         for name in _ros_names(claim):
             if fault := _name_fault(name, site.section):
-                message = f"{site.kinds[0]} {name!r} is no ROS name: {fault}"
+                message = f"{site.kinds[0]} {name!r} is not a valid ROS name: {fault}"
                 yield Problem(claim.element, message, claim.attribute)
 
 
@@ -163,7 +167,7 @@ def _ros_names(claim: Claim) -> list[str]:
 
 
 def _name_fault(name: str, section: str) -> str:
-    """Why rcl refuses a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
+    """Why rcl rejects a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
     if _ALLOWED_EVERYWHERE.fullmatch(name) and not section.startswith("block ros"):
         return ""
     fault = check_topic_name(name.rstrip("/"))

@@ -1,4 +1,4 @@
-"""The mass of links, alone and with what is fixed to them."""
+"""The mass of links, with and without what is fixed to them."""
 
 from __future__ import annotations
 
@@ -92,7 +92,9 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
             continue  # no joint has it: MB501
         below = len(reached(robot, [name], lost)) - 1
         tail = f", with {below} links below it" if below else ""
-        message = f"link {name!r} has no mass, nor anything fixed to it: Gazebo leaves it out{tail}"
+        message = (
+            f"link {name!r} and the links fixed to it have no mass: Gazebo leaves it out{tail}"
+        )
         yield Problem(link.element, message, "name")
 
 

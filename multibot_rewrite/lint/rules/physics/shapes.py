@@ -48,10 +48,10 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     touch, seen = _bodies_with(subject, "collision"), _bodies_with(subject, "visual")
     bare = [it for it in seen if it not in touch and moves(robot, it) and it in robot.link]
     if not touch and bare[1:]:
-        yield Problem(root, "no link has a <collision>: the robot touches nothing")
+        yield Problem(root, "no link has a <collision>: the robot cannot touch anything")
         return
     for name in bare:
-        message = f"link {name!r} has <visual> and no <collision>"
+        message = f"link {name!r} has <visual> but no <collision>"
         yield Problem(robot.link[name].element, message, "name")
 
 

@@ -14,7 +14,7 @@ from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.references.shared import ARM, FIXED, a_pair, a_system, name_of
 from multibot_rewrite.model import Claim
 
-# Types that no motor moves.
+# Types that a motor cannot move.
 UNDRIVEN = ("fixed", "floating", "planar", "")
 
 
@@ -54,7 +54,7 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     for it in _components(subject.document.root):
         joint = subject.robot.joint.get(it.get("name", ""))
         if joint is not None and joint.type == "fixed":
-            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "take it out")
+            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "remove it")
 
 
 @rule(
@@ -84,7 +84,7 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     WARNING,
     what="A joint that mimics another one has a command interface in <ros2_control>.",
     why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
-    "cannot have command interfaces'), unless the joint has mimic=\"false\".",
+    'cannot have command interfaces\'), unless the joint has mimic="false".',
     fix='Delete the command interface; set mimic="false" if the hardware drives both.',
     bad=a_pair('<mimic joint="j"/>')
     + a_system(
@@ -103,7 +103,7 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
-            yield Problem(it, message, "name", 'delete the interface, or say mimic="false"')
+            yield Problem(it, message, "name", 'delete the interface, or set mimic="false"')
 
 
 @rule(
@@ -127,7 +127,9 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
         if system not in beside:
             beside[system] = {name_of(joint) for joint in system.iterchildren("joint")}
         if other not in beside[system]:
-            message = f"joint {it.get('name')!r} mimics {other!r}, which is not in here"
+            message = (
+                f"joint {it.get('name')!r} mimics {other!r}, which is not in this <ros2_control>"
+            )
             yield Problem(it, message, "name", "put both in one <ros2_control>")
 
 
@@ -145,7 +147,7 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     line=7,
 )
 def undriven_joint(subject: Subject) -> Iterator[Problem]:
-    """One finding a robot: the joints that were forgotten, or are passive."""
+    """One finding per robot: the joints that were forgotten, or are passive."""
     if not subject.elements.tops("ros2_control", "transmission"):
         return
     claims = subject.inventory.claims
@@ -153,8 +155,10 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
-        message = f"{len(left)} joints that move are driven by nothing: {names}"
-        yield Problem(left[0].element, message, "name", "passive joints need a state, too")
+        message = f"nothing drives {len(left)} joints that move: {names}"
+        yield Problem(
+            left[0].element, message, "name", "passive joints need a published state as well"
+        )
 
 
 def _drives_a_joint(claim: Claim) -> bool:

@@ -34,15 +34,15 @@ if TYPE_CHECKING:
     good='<link name="a"/>',
 )
 def duplicate_name(subject: Subject) -> Iterator[Problem]:
-    """Every declaration but the first; one finding for all that one macro call repeats."""
+    """Every declaration except the first; one finding for all that one macro call repeats."""
     calls: dict[object, list[tuple[Claim, Claim]]] = {}
     for claim, first in repeated(subject.inventory):
         cause = _cause(subject, claim, first) or claim
         calls.setdefault(cause, []).append((claim, first))
     for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
-        also = f", and so are {len(more)} more that the same call makes" if more else ""
-        hint = "give each call a prefix of its own" if more else "rename one"
+        also = f", and so are {len(more)} more from the same call" if more else ""
+        hint = "give each call its own prefix" if more else "rename one"
         message = text + _first_at(subject, first.start) + also
         yield Problem(claim.element, message, claim.attribute, hint)
 
@@ -55,7 +55,7 @@ def _first_at(subject: Subject, start: int) -> str:
 
 
 def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
-    """What made xacro write an element twice: the macro call, or the file included again."""
+    """Why xacro wrote an element twice: the macro call, or the file included again."""
     one, other = (_origin(subject, it.start) for it in (first, claim))
     if one is None or other is None or (one.file, one.start) != (other.file, other.start):
         return None
@@ -88,7 +88,7 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
         components = system.iterchildren("joint", "sensor", "gpio")
         keys = (((it.tag, name_of(it)), it) for it in components if name_of(it))
         for it in _repeated(keys):
-            message = f"{it.tag} {name_of(it)!r} is twice in this <ros2_control>"
+            message = f"{it.tag} {name_of(it)!r} appears twice in this <ros2_control>"
             yield Problem(it, message, "name", "put its interfaces in one element")
 
 
@@ -105,7 +105,7 @@ def repeated_joint(subject: Subject) -> Iterator[Problem]:
     line=9,
 )
 def duplicate_hardware(subject: Subject) -> Iterator[Problem]:
-    """Every name that was there before."""
+    """Every name that another element has."""
     systems = subject.elements.tops("ros2_control")
     for it in _repeated((name_of(system), system) for system in systems if name_of(system)):
         yield Problem(it, f"there is another <ros2_control> {name_of(it)!r}", "name", "rename one")
@@ -155,7 +155,9 @@ def duplicate_material(subject: Subject) -> Iterator[Problem]:
     materials = subject.elements.tops("material")
     for it in _repeated((it.get("name"), it) for it in materials if it.get("name")):
         message = f"material {it.get('name')!r} is defined twice"
-        yield Problem(it, message, "name", "delete one: urdfdom refuses even the same colour")
+        yield Problem(
+            it, message, "name", "delete one: urdfdom rejects both even if they are alike"
+        )
 
 
 @rule(
@@ -182,7 +184,7 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
         if it.site.path == "@name" and it.element.find("ros") is not None
     )
     for it in _repeated(found):
-        message = f"another plugin is the node {name_of(it)!r} already"
+        message = f"another plugin has the node name {name_of(it)!r}"
         yield Problem(it, message, "name", "rename one, or give them namespaces")
 
 
@@ -206,7 +208,7 @@ def duplicate_transmission(subject: Subject) -> Iterator[Problem]:
 
 
 def _repeated(found: Iterable[tuple[object, _Element]]) -> Iterator[_Element]:
-    """The elements whose key was there before."""
+    """The elements whose key an earlier one has."""
     seen = set()
     for key, element in found:
         if key in seen:

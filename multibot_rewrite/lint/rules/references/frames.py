@@ -1,4 +1,4 @@
-"""Frames that are no link of the robot."""
+"""Frames that are not links of the robot."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that differ from a link by one typing mistake."""
     for claim, name, near in _frames(subject):
         if near:
-            message = f"{where(claim)} names the frame {name!r}, which no link has"
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
             yield Problem(claim.element, message, claim.attribute, f"did you mean {near!r}?")
 
 
 @rule(
     "MB218",
-    "foreign-frame",
+    "frame-not-a-link",
     NOTE,
     what="The frame of a sensor or plugin is not a link of the robot.",
     why="Unless another node publishes that frame, tf does not have it and every subscriber drops "
@@ -59,12 +59,12 @@ def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     "</gazebo>\n",
     line=3,
 )
-def foreign_frame(subject: Subject) -> Iterator[Problem]:
+def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have, and that no localisation publishes."""
     for claim, name, near in _frames(subject):
         if not near and not claim.site.default and not name.endswith(AT_RUN_TIME):
-            message = f"{where(claim)} names the frame {name!r}, which no link has"
-            yield Problem(claim.element, message, claim.attribute, "somebody else must publish it")
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
+            yield Problem(claim.element, message, claim.attribute, "another node must publish it")
 
 
 def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:

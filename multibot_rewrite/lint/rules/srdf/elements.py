@@ -29,7 +29,7 @@ def srdf_incomplete(subject: Subject) -> Iterator[Problem]:
     for it, path in _elements(subject.document.root):
         for attribute in ELEMENTS[path][0]:
             if attribute not in it.attrib:
-                yield Problem(it, f"<{it.tag}> has no {attribute}", None, f"give {attribute}")
+                yield Problem(it, f"<{it.tag}> has no {attribute}", None, f"add {attribute}")
 
 
 @srdf_rule(

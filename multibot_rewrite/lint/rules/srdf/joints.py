@@ -36,7 +36,7 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
         dummy = root == "world" and text_of(it, "type").lower() == "fixed"
         if robot and child in robot.link and child != root and not dummy:
             message = f"{child!r} is not the root link, which is {root!r}"
-            yield Problem(it, message, "child_link", f"child_link={root!r}")
+            yield Problem(it, message, "child_link", f"use {root!r}")
 
 
 @srdf_rule(
@@ -56,7 +56,7 @@ def joint_property(subject: Subject) -> Iterator[Problem]:
         name = text_of(it, "property_name")
         if name and name not in PROPERTIES:
             near = nearest(name, PROPERTIES)
-            hint = f"did you mean {near!r}?" if near else f"one of {', '.join(PROPERTIES)}"
+            hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(PROPERTIES)}"
             yield Problem(it, f"property {name!r} is not known", "property_name", hint)
 
 
@@ -77,8 +77,8 @@ def virtual_joint_type(subject: Subject) -> Iterator[Problem]:
         type_ = text_of(it, "type")
         if "type" in it.attrib and type_.lower() not in VIRTUAL_TYPES:
             near = nearest(type_, VIRTUAL_TYPES)
-            hint = f"did you mean {near!r}?" if near else f"one of {', '.join(VIRTUAL_TYPES)}"
-            yield Problem(it, f"type {type_!r} is taken for fixed", "type", hint)
+            hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(VIRTUAL_TYPES)}"
+            yield Problem(it, f"type {type_!r} is treated as fixed", "type", hint)
 
 
 def _root(robot: Robot) -> str:

@@ -24,7 +24,7 @@ from multibot_rewrite.lint.rules.srdf.shared import ARM, srdf_rule
     good=ARM,
 )
 def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
-    """One finding a file."""
+    """One finding per file."""
     root = subject.document.root
     if subject.beside is None:
         message = f"no URDF of a robot {root.get('name', '')!r} with its links was found"

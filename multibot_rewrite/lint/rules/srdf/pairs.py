@@ -28,7 +28,7 @@ from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, SHOWN, srdf_rule
     line=2,
 )
 def stale_pair(subject: Subject) -> Iterator[Problem]:
-    """One finding a name, at its first pair."""
+    """One finding per name, at its first pair."""
     found = list(undeclared("MB807", subject))
     names = Counter(_link(it) for it in found)
     for it in found:
@@ -54,7 +54,7 @@ def _link(problem: Problem) -> str:
     line=2,
 )
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
-    """One finding a file; the order of the two does not matter."""
+    """One finding per file; the order of the two does not matter."""
     first: dict[frozenset[str], _Element] = {}
     found = []
     for it in subject.document.root.iterchildren("disable_collisions"):
@@ -64,7 +64,7 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
     if found:
         names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found[:SHOWN]]
         more = ", ..." if len(found) > SHOWN else ""
-        message = f"{len(found)} pairs are disabled before: {', '.join(names)}{more}"
+        message = f"{len(found)} pairs are already disabled: {', '.join(names)}{more}"
         yield Problem(found[0], message, None, "delete the line")
 
 
@@ -100,7 +100,7 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
     line=2,
 )
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
-    """One finding a link, at its first pair."""
+    """One finding per link, at its first pair."""
     robot = subject.beside
     reported = set()
     for it in subject.document.root.iterchildren("disable_collisions") if robot else ():
@@ -114,7 +114,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
             ):
                 reported.add(name)
                 message = f"{name!r} has no collision geometry"
-                yield Problem(it, message, attribute, "the pair does nothing")
+                yield Problem(it, message, attribute, "the pair has no effect")
 
 
 @srdf_rule(
@@ -130,7 +130,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     line=2,
 )
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, if it disables any pair."""
+    """One finding per file, if it disables any pair."""
     root, robot = subject.document.root, subject.beside
     pairs = list(root.iterchildren("disable_collisions"))
     if robot is None or not pairs:

@@ -31,7 +31,7 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
             continue
         if not chain(robot, base, tip):
             fault = "are one link" if base == tip else "are not connected"
-            yield Problem(it, f"{base!r} and {tip!r} {fault}", None, "name two links of one tree")
+            yield Problem(it, f"{base!r} and {tip!r} {fault}", None, "use two links of one tree")
 
 
 @srdf_rule(
@@ -49,7 +49,7 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
     """Groups with nothing in them."""
     for it in subject.document.root.iterchildren("group"):
         if not any(child.tag in ELEMENTS["group"][2] for child in it.iterchildren("*")):
-            yield Problem(it, f"group {text_of(it)!r} is empty", "name", "give it a joint")
+            yield Problem(it, f"group {text_of(it)!r} is empty", "name", "add a joint")
 
 
 @srdf_rule(
@@ -75,7 +75,7 @@ def end_effector_parent(subject: Subject) -> Iterator[Problem]:
         parent, link = text_of(it, "parent_group"), text_of(it, "parent_link")
         if parent and parent == text_of(it, "group"):
             message = f"group {parent!r} is its own parent"
-            yield Problem(it, message, "parent_group", "name the group that carries it")
+            yield Problem(it, message, "parent_group", "use the group that carries it")
         elif (
             robot
             and parent in groups
@@ -83,4 +83,4 @@ def end_effector_parent(subject: Subject) -> Iterator[Problem]:
             and link not in links_of(parent, groups, robot)
         ):
             message = f"group {parent!r} does not have the parent link {link!r}"
-            yield Problem(it, message, "parent_group", "name the group that has it")
+            yield Problem(it, message, "parent_group", "use the group that has it")

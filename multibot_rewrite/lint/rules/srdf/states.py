@@ -67,7 +67,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
         if group not in joints:
             joints[group] = frozenset(joints_of(group, groups, robot))
         if joint not in joints[group]:
-            yield Problem(it, f"joint {joint!r} is not in group {group!r}", "name", "take it out")
+            yield Problem(it, f"joint {joint!r} is not in group {group!r}", "name", "remove it")
 
 
 @srdf_rule(
@@ -119,10 +119,12 @@ def state_value(subject: Subject) -> Iterator[Problem]:
         numbers = None if text is None else _numbers(text)
         size = SIZES.get(types.get(name, ""), 1)
         if text is not None and numbers is None:
-            yield Problem(it, f"the value of {name!r} is {text!r}, no number", "value", "a number")
+            yield Problem(
+                it, f"the value of {name!r} is {text!r}, not a number", "value", "write a number"
+            )
         elif numbers is not None and name in types and size and len(numbers) != size:
             message = f"{name!r} has {len(numbers)} values, a {types[name]} joint has {size}"
-            yield Problem(it, message, "value", "one number for each degree of freedom")
+            yield Problem(it, message, "value", "write one number for each degree of freedom")
 
 
 def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:

@@ -69,8 +69,8 @@ def zero_axis(subject: Subject) -> Iterator[Problem]:
     """Axes of length 0."""
     for joint, axis, length in _axes(subject.robot):
         if length == 0:
-            said = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
-            yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {said}", "xyz")
+            fault = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
+            yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {fault}", "xyz")
 
 
 def _not_unit(subject: Subject, *, types: tuple[str, ...]) -> Iterator[Problem]:
@@ -129,16 +129,14 @@ def _axes(robot: Robot) -> Iterator[tuple[Joint, _Element, float]]:
     line=5,
 )
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
-    """One finding a joint; exporters write <axis> and <dynamics> everywhere."""
+    """One finding per joint; exporters write <axis> and <dynamics> everywhere."""
     for joint in subject.robot.joints:
         if joint.type != "fixed":
             continue
         useless = [it for it in ("limit", "mimic", "safety_controller") if it in joint.parts]
         if useless:
-            words = ", ".join(f"<{it}>" for it in useless)
-            yield Problem(
-                joint.parts[useless[0]], f"fixed joint {joint.name!r} ignores its {words}"
-            )
+            tags = ", ".join(f"<{it}>" for it in useless)
+            yield Problem(joint.parts[useless[0]], f"fixed joint {joint.name!r} ignores its {tags}")
 
 
 @rule(

@@ -168,7 +168,7 @@ def negative_limit(subject: Subject) -> Iterator[Problem]:
     line=5,
 )
 def zero_limit(subject: Subject) -> Iterator[Problem]:
-    """One finding a joint; joints that mimic another one or cannot move need no effort."""
+    """One finding per joint; joints that mimic another one or cannot move need no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type not in ONE_AXIS or "mimic" in joint.parts or _cannot_move(joint, limit):
             continue
@@ -215,7 +215,7 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
     line=5,
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Long ways; the same to both sides is mostly a virtual joint without real limits."""
+    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         far = max(abs(lower), abs(upper))
         if joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper:

@@ -70,13 +70,11 @@ def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
     line=6,
 )
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
-    """Each circle, at its first mimic."""
-    for circle in _circles(_leaders(subject.robot)):
-        if len(circle) > 1:
-            mimic = subject.robot.joint[circle[0]].parts["mimic"]
-            yield Problem(
-                mimic, f"joints mimic each other in a circle: {first_names(circle)}", "joint"
-            )
+    """Each loop, at its first mimic."""
+    for loop in _loops(_leaders(subject.robot)):
+        if len(loop) > 1:
+            mimic = subject.robot.joint[loop[0]].parts["mimic"]
+            yield Problem(mimic, f"joints mimic each other in a loop: {first_names(loop)}", "joint")
 
 
 @rule(
@@ -95,13 +93,13 @@ def mimic_loop(subject: Subject) -> Iterator[Problem]:
     line=17,
 )
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
-    """Mimics of mimics; a circle is MB527."""
+    """Mimics of mimics; a loop is MB527."""
     leader = _leaders(subject.robot)
     chained = {name: follows for name, follows in leader.items() if follows in leader}
-    round_ = {name for circle in _circles(chained) for name in circle}
+    round_ = {name for loop in _loops(chained) for name in loop}
     for name, follows in chained.items():
         if name not in round_:
-            late = "; robot_state_publisher is too early for it" if name < follows else ""
+            late = "; robot_state_publisher sends no transform for it" if name < follows else ""
             message = f"joint {name!r} mimics {follows!r}, which mimics {leader[follows]!r}{late}"
             yield Problem(subject.robot.joint[name].parts["mimic"], message, "joint")
 
@@ -147,7 +145,7 @@ def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
     """Mimics whose joint never moves."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if value_of(mimic, "multiplier", 1.0) == 0 and joint.type in ONE_AXIS:
-            message = f"joint {joint.name!r} mimics {mimic.get('joint')!r} 0 times: it never moves"
+            message = f"joint {joint.name!r} never moves: the multiplier of its mimic is 0"
             yield Problem(mimic, message, "multiplier")
 
 
@@ -160,8 +158,8 @@ def _leaders(robot: Robot) -> dict[str, str]:
     }
 
 
-def _circles(leader: Mapping[str, str]) -> list[list[str]]:
-    """The joints that follow each other in a circle."""
+def _loops(leader: Mapping[str, str]) -> list[list[str]]:
+    """The joints that follow each other in a loop."""
     done: set[str] = set()
     found = []
     for start in leader:

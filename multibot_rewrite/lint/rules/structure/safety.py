@@ -69,7 +69,7 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
         low, high = max(soft[0], hard[0]), min(soft[1], hard[1])
         if low >= high and hard[0] < hard[1]:
             message = (
-                f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g} leave no way"
+                f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g} leave no range"
             )
             yield Problem(safety, message)
 
@@ -94,7 +94,7 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     line=6,
 )
 def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
-    """One finding a joint."""
+    """One finding per joint."""
     for joint, safety, soft, hard in _soft_and_hard(subject.robot):
         if hard[0] < hard[1] and (soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE):
             message = (

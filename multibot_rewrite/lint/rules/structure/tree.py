@@ -38,7 +38,7 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
     line=2,
 )
 def several_roots(subject: Subject) -> Iterator[Problem]:
-    """Every root but the one with most links below it; a misspelled child link is MB202."""
+    """Every root except the one with the most links below it; a misspelled child link is MB202."""
     robot = subject.robot
     found = roots(robot)
     if len(found) < 2:
@@ -51,8 +51,8 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     for link in found:
         if link is main or nearest(link.name, search):
             continue
-        said = f"link {link.name!r} is a second root beside {main.name!r}: it is no joint's child"
-        yield Problem(link.element, said, "name", "add the joint that it hangs on")
+        message = f"link {link.name!r} is not the child of a joint, nor is {main.name!r}: two roots"
+        yield Problem(link.element, message, "name", "add a joint that connects it")
 
 
 @rule(
@@ -103,11 +103,11 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
         last = max(joints, key=lambda it: order[it.element])
         at = joints.index(last) + 1
         names = [it.child for it in joints[at:] + joints[:at]]
-        way = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
+        path = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
         yield Problem(
             last.element,
             f"joint {last.name!r} closes a loop of {len(joints)} joints: {last.child!r} is below "
-            f"itself ({names[-1]!r} -> {way})",
+            f"itself ({names[-1]!r} -> {path})",
         )
 
 
@@ -172,7 +172,7 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     lost = [it for name, it in robot.link.items() if name not in seen]
     if lost:
         names = first_names(it.name for it in lost)
-        yield Problem(lost[0].element, f"no way from the root leads to {names}", "name")
+        yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
 
 
 @rule(
