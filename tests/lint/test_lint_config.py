@@ -477,5 +477,5 @@ def test_every_key_has_an_example_on_the_page() -> None:
         if not re.search(rf"^(\[*|\[tool.urdf-lint\.){key}\b", whole, re.MULTILINE)
     ]
     assert missing == []
-    told = re.findall(r"^\| `([a-z-]+)` \|", PAGE, re.MULTILINE)
-    assert sorted(told) == sorted(READERS)
+    reported = re.findall(r"^\| `([a-z-]+)` \|", PAGE, re.MULTILINE)
+    assert sorted(reported) == sorted(READERS)

@@ -62,8 +62,8 @@ class Code(NamedTuple):
 class Directive(NamedTuple):
     """A comment from ``start`` to ``end``, and the lines it is on as byte offsets.
 
-    ``element`` is the span of the element below it, if any. ``sometimes``: only some
-    expansions of the file have what it is about. ``idle``: there is no element that a finding could be at.
+    ``element`` is the span of the element below it, if any. ``sometimes``: only some expansions
+    of the file have what it is about. ``idle``: there is no element that a finding could be at.
     """
 
     start: int

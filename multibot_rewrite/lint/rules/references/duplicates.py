@@ -41,7 +41,8 @@ def duplicate_name(subject: Subject) -> Iterator[Problem]:
         calls.setdefault(cause, []).append((claim, first))
     for (claim, first), *more in calls.values():
         text = f"{claim.site.kinds[0]} {claim.value!r} is declared twice"
-        also = f", and so are {len(more)} more from the same call" if more else ""
+        are = "are" if len(more) > 1 else "is"
+        also = f", and so {are} {len(more)} more from the same call" if more else ""
         hint = "give each call its own prefix" if more else "rename one"
         message = text + _first_at(subject, first.start) + also
         yield Problem(claim.element, message, claim.attribute, hint)

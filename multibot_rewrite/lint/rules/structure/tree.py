@@ -51,7 +51,7 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     for link in found:
         if link is main or nearest(link.name, search):
             continue
-        message = f"link {link.name!r} is not the child of a joint, nor is {main.name!r}: two roots"
+        message = f"link {link.name!r} has no parent joint, like the root {main.name!r}"
         yield Problem(link.element, message, "name", "add a joint that connects it")
 
 
