@@ -147,7 +147,7 @@ def _unknown_attributes(
             continue
         meant = _near(key, [it for it in known if it not in keys])
         hint = f"did you mean {meant!r}?" if meant else ""
-        where = f"<{element.tag}> has an attribute {key!r}, which no reader of URDF knows"
+        where = f"<{element.tag}> has an attribute {key!r}, which no URDF parser reads"
         if meant in missing:
             missing.remove(meant)
             yield Fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
@@ -160,7 +160,7 @@ def _unknown_attributes(
 
 
 def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
-    """Children that are missing, repeated, or that no reader knows."""
+    """Children that are missing, repeated, or that no parser knows."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
     count = Counter(tags)
@@ -172,7 +172,7 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
         if meant in missing:
             missing.remove(meant)
             message = f"<{element.tag}> has no <{meant}>"
-            yield Fault("missing", child, None, message, f"is <{child.tag}> meant to be it?")
+            yield Fault("missing", child, None, message, f"is <{child.tag}> misspelled?")
         else:
             yield from _unknown_child(element, child, section, meant)
     for tag in missing:
