@@ -37,7 +37,7 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table

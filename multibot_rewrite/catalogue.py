@@ -33,7 +33,22 @@ class Home(NamedTuple):
     modules: tuple[str, ...]
 
 
-HOMES: tuple[Home, ...] = (Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),)
+HOMES: tuple[Home, ...] = (
+    Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),
+    Home(
+        "MF1",
+        "parameter files",
+        (
+            "companions.params.sections",
+            "companions.params.section_checks",
+            "companions.params.robot_names",
+            "companions.params.values",
+            "companions.params.name_checks",
+            "companions.params.unknown_parameters",
+            "companions.params.shared_defaults",
+        ),
+    ),
+)
 
 
 @cache

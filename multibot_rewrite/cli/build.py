@@ -9,18 +9,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import print_findings, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.fleets.artefacts import Artefact, make_artefacts
+from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,
-    Changes,
-    changes,
+    OutputChanges,
     hash_of,
     manifest,
+    output_changes,
     read_manifest,
 )
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import ERROR, Finding, UsageError
 from multibot_rewrite.remap.records import Problem
 from multibot_rewrite.sources.read import read_file
@@ -49,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     plan = plan_fleet(read_fleet(options.fleet))
-    made = make_artefacts(plan)
+    made = make_outputs(plan)
     findings = [*made.findings, *map(_as_finding, plan.fleet.table.problems)]
     print_findings(sorted(set(findings), key=lambda it: (it.file, it.line, it.column, it.code)))
     if any(it.level == ERROR or options.strict for it in findings):
@@ -59,11 +60,11 @@ def run(options: argparse.Namespace) -> int:
     with locked(options.output):
         known = _known(options.output)
         there = _there(options.output, {*known, *(it.path for it in files)})
-        found = changes(files, known, there)
+        found = output_changes(files, known, there)
         return _told(options, found) if options.check else _written(options, files, found)
 
 
-def _read(plan: FleetPlan, files: Iterable[Artefact]) -> dict[str, bytes]:
+def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
     """The files that a build was made from."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     return {path: read_file(path) for path in paths}
@@ -103,7 +104,7 @@ def _there(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
     return {path: hash_of(read_file(it)) for path, it in full.items() if os.path.isfile(it)}
 
 
-def _told(options: argparse.Namespace, found: Changes) -> int:
+def _told(options: argparse.Namespace, found: OutputChanges) -> int:
     stale = [f"{path}: stale" for path in found.write]
     print_lines([*stale, *(f"{path}: left over" for path in found.remove)])
     count = len(found.write) + len(found.remove)
@@ -115,7 +116,7 @@ def _told(options: argparse.Namespace, found: Changes) -> int:
     return DONE
 
 
-def _written(options: argparse.Namespace, files: Sequence[Artefact], found: Changes) -> int:
+def _written(options: argparse.Namespace, files: Sequence[OutputFile], found: OutputChanges) -> int:
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")

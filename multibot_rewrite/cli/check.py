@@ -64,10 +64,10 @@ def _plan(path: str) -> Expectation:
     if not is_fleet(data):
         return from_yaml(data, path)
     from multibot_rewrite.fleets.fleet import expected
-    from multibot_rewrite.fleets.plan import plan_fleet
-    from multibot_rewrite.fleets.started import started
+    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    return expected(started(plan_fleet(read_fleet(path))))
+    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path))))
 
 
 def _check(options: argparse.Namespace, plan: Expectation) -> int:

@@ -58,14 +58,14 @@ def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
 
 def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     from multibot_rewrite.fleets.fleet_file import read_fleet  # one description needs none of it
-    from multibot_rewrite.fleets.plan import plan_fleet
-    from multibot_rewrite.fleets.started import started
+    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
     given = [name for name in ("robots", "stack", "nodes", "topics") if getattr(options, name)]
     given += [name for name, usual in USUAL.items() if getattr(options, name) != usual]
     if given:
         raise UsageError(f"{options.input} says which {given[0]} there are: leave that out")
-    return started(plan_fleet(read_fleet(options.input), also))
+    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also))
 
 
 def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:

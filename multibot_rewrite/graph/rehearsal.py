@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.transforms import Edge, Edges
-from multibot_rewrite.remap.forms import arguments
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -20,11 +19,12 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Name,
     NodeTable,
+    ResolvedName,
     Table,
 )
 from multibot_rewrite.remap.table import ACTION_PARTS
+from multibot_rewrite.remap.table_formats import arguments
 
 TF = "tf2_msgs/msg/TFMessage"
 # The types used in place of one that is not installed.
@@ -90,7 +90,7 @@ def _merged(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
     return found.values()
 
 
-def _stub_endpoint(name: Name, types: Mapping[str, str]) -> StubEndpoint:
+def _stub_endpoint(name: ResolvedName, types: Mapping[str, str]) -> StubEndpoint:
     kind, role, own, type_, *_ = name.endpoint
     # A topic without a role is nearly always a sensor's output.
     return StubEndpoint(

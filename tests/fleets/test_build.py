@@ -249,9 +249,9 @@ def test_findings_are_sorted_and_said_once(
     told = [it for it in lines if "MF701" in it]
     assert len(told) == 1
     assert "robot 'robot1'" in told[0]
-    assert "so for 1 more robot" in told[0]
-    assert "multibotGraphHole" not in "".join(lines)
-    assert "multibotSpelledHole" not in "".join(lines)
+    assert "the same for 1 more robot" in told[0]
+    assert "multibotNamespaceSlot" not in "".join(lines)
+    assert "multibotTagSlot" not in "".join(lines)
 
 
 def test_errors_stop_the_job_and_strict_makes_errors(
@@ -298,7 +298,7 @@ def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> No
         ("out", False, "out: it is a file; name a folder"),
     ],
 )
-def test_what_stands_in_the_way_is_told(
+def test_what_prevents_a_pose_or_namespace_is_reported(
     path: str, folder: bool, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fleet_folder(tmp_path)
@@ -339,7 +339,7 @@ def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Pa
     ],
 )
 def test_what_is_no_manifest_is_refused(text: str) -> None:
-    with pytest.raises(InputError, match="m: this is no manifest of multibot build; delete it"):
+    with pytest.raises(InputError, match="m: not a manifest of multibot build; delete it"):
         read_manifest(text.encode(), "m")
 
 
@@ -574,7 +574,7 @@ def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_a_folder_that_cannot_be_written_is_told(
+def test_a_folder_that_cannot_be_written_is_reported(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = held(out)
@@ -590,7 +590,7 @@ def test_a_folder_that_cannot_be_written_is_told(
             path.chmod(0o755)
 
 
-def test_a_read_only_folder_is_told(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """On a file system that was mounted read-only, which stops root, too."""
     renamed(out.parent)
     mounts = [["mount", "--bind", str(out), str(out)], ["mount", "-o", "remount,ro,bind", str(out)]]
@@ -629,7 +629,7 @@ ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a
 
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
-    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", spelled=other)
+    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", frame_tag=other)
     end = PlannedEndpoint(f"/{other}", "topic", "publishes", f"/{word}", other, other)
     plan = Expectation("both", (robot,), (), (), tuple(frames), (end,), (), ((f"/{other}", word),))
     text = to_yaml(plan)

@@ -67,7 +67,7 @@ def test_a_node_that_is_not_there() -> None:
     assert (found.code, found.robot, found.node) == ("MG101", "robot2", "/robot2/driver")
 
 
-def test_a_node_started_without_its_namespace_is_told_so() -> None:
+def test_a_node_started_without_its_namespace_has_that_cause() -> None:
     graph = without_node(healthy(), "/robot1/driver")
     graph = graph._replace(nodes=(*graph.nodes, GraphNode("/driver", "x")))
     (found,) = check(plan(), graph)
@@ -100,7 +100,7 @@ def test_why_we_never_get_cmd_vel() -> None:
     )
 
 
-def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
+def test_a_misspelled_name_is_found_by_similarity() -> None:
     found = check(plan(), moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
     assert found[0].cause == (
         "it publishes /robot1/joint_state instead: is the name misspelled in a remap rule or "
@@ -135,7 +135,7 @@ def test_one_robot_listening_to_another() -> None:
     assert ("MG104", "/robot1/driver") in [(f.code, f.node) for f in found]
 
 
-def test_what_hangs_on_a_parameter_is_not_missed() -> None:
+def test_an_endpoint_with_a_condition_is_not_planned() -> None:
     assert not [w for w in plan().endpoints if w.code_name == "extra"]
 
 
@@ -194,7 +194,7 @@ def test_a_torn_tree() -> None:
     assert edges(lambda f: [f[0], f[1]._replace(parent="base_link"), *f[2:]]) == ["MG203"]
 
 
-def test_a_frame_that_nobody_declares() -> None:
+def test_an_undeclared_frame() -> None:
     assert edges(lambda f: [*f, f[1]._replace(child="gripper/robot1")]) == ["MG204"]
 
 
@@ -547,7 +547,7 @@ def test_an_operator_topic_without_an_operator_is_silent() -> None:
     assert check(plan(), healthy()) == []
 
 
-def test_a_teleop_without_a_robot_is_told_to_each() -> None:
+def test_a_teleop_without_a_robot_is_reported_for_each() -> None:
     twist = (PUBLISHES, "/cmd_vel", "geometry_msgs/msg/Twist")
     found = check(plan(), with_node(healthy(), "/teleop_twist_keyboard", twist))
     assert [(f.code, f.node) for f in found] == [
@@ -590,7 +590,7 @@ def test_a_publisher_of_quite_another_name() -> None:
     assert "MG111" not in {f.code for f in check(*with_pilot("/robot1/plan"))}
 
 
-def test_what_a_planned_publisher_lacks_is_told_of_it_alone() -> None:
+def test_a_missing_publisher_is_reported_only_for_its_node() -> None:
     found = check(plan(), moved(healthy(), "/robot1/joint_states", "/joint_states", "driver"))
     assert [f.code for f in found] == ["MG102", "MG103"]
 
@@ -629,7 +629,7 @@ def test_a_topic_that_is_planned_above_is_enough() -> None:
     assert "resolves a relative name in its own namespace" in found[0].cause
 
 
-def test_a_costmap_whose_plan_is_wrong_is_told_too() -> None:
+def test_a_costmap_with_a_wrong_plan_is_reported_too() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan")
     end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
     (found,) = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
@@ -771,7 +771,7 @@ def test_map_above_odom_is_silent() -> None:
     assert check(plan("L1"), with_frame("L1", "odom", "map", static=False)) == []
 
 
-def test_a_copy_of_all_tf_for_looking_on_is_silent() -> None:
+def test_a_copy_of_all_tf_for_rviz_is_silent() -> None:
     graph = with_node(healthy("L3"), "/tf_bridge", (PUBLISHES, "/tf", "tf2_msgs/msg/TFMessage"))
     copies = tuple(f._replace(topic="/tf") for f in graph.frames if not f.static)
     assert copies
@@ -792,7 +792,7 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
 
 def robots_called(*names: str, layout: str = "L2") -> Expectation:
     naming = make_naming(layout)
-    declared = {name: [spelled(link, name, naming) for link in LINKS] for name in names}
+    declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
     return expect(build_table(names, NODES, naming), naming, declared)
 
 
@@ -816,7 +816,9 @@ def robots_called(*names: str, layout: str = "L2") -> Expectation:
         (("robot1", "robot2"), "L2", "/robot1", ""),
     ],
 )
-def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot: str) -> None:
+def test_which_robot_a_name_belongs_to(
+    robots: tuple[str, ...], layout: str, name: str, robot: str
+) -> None:
     assert name_ownership(robots_called(*robots, layout=layout)).robot(name) == robot
 
 

@@ -15,7 +15,6 @@ from multibot_rewrite.graph.expectation import (
     PlannedEndpoint,
     PlannedRobot,
     expect,
-    spelled,
 )
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.snapshot import (
@@ -26,7 +25,7 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
-from multibot_rewrite.naming import Naming, affix, make_naming
+from multibot_rewrite.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.remap.records import (
     CALLS,
     PUBLISHES,
@@ -90,7 +89,7 @@ def fleets(draw: st.DrawFn) -> Fleet:
     still = tf._replace(name="/tf_static")
     nodes = [NodeFacts(name, "p", (*draw(some), tf, still)) for name in names]
     links = draw(st.lists(st.sampled_from(LINKS), min_size=1, max_size=4, unique=True))
-    frames = {robot: [spelled(link, robot, naming) for link in links] for robot in robots}
+    frames = {robot: [spelled(naming, robot, "frame", link) for link in links] for robot in robots}
     plan = expect(build_table(robots, nodes, naming), naming, frames)
     return Fleet(plan, beside(plan, as_planned(plan), naming))
 
@@ -165,7 +164,7 @@ def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -
 
 @settings(max_examples=100, deadline=None)
 @given(fleets(), st.data())
-def test_a_frame_that_hangs_elsewhere_is_found(fleet: Fleet, data: st.DataObject) -> None:
+def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject) -> None:
     if not fleet.graph.frames:
         return
     edge = data.draw(st.sampled_from(fleet.graph.frames))
@@ -252,7 +251,7 @@ def anything(draw: st.DrawFn) -> Fleet:
 
 @settings(max_examples=300, deadline=None)
 @given(anything())
-def test_whatever_there_is_each_finding_is_told_once(fleet: Fleet) -> None:
+def test_each_finding_is_reported_once_for_any_graph(fleet: Fleet) -> None:
     found = check(fleet.plan, fleet.graph)
     assert len(set(found)) == len(found)
     assert found == check(fleet.plan, fleet.graph)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner
+from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.snapshot import (
@@ -25,10 +25,11 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     to_json,
 )
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.known import Library, stack_of
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -48,7 +49,7 @@ from multibot_rewrite.rosnames import bind, expand, resolve_bound
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")
 # The parts without the nodes: nobody described these.
-UNKNOWN = Library(built_in().parts, {}, {})
+UNKNOWN = NodeLibrary(built_in().parts, {}, {})
 TEXT, IMAGE, TRIGGER = "std_msgs/msg/String", "sensor_msgs/msg/Image", "std_srvs/srv/Trigger"
 FETCH = "acme_msgs/action/Fetch"
 EVERY_NODE = tuple(end for end in built_in().parts["every_node"] if end.name != "/clock")
@@ -107,7 +108,7 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 
 
 def learned(
-    seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN
+    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
 ) -> tuple[LearnedNode, ...]:
     """What is learned, proved to survive the file."""
     found = learn(seen, choose_nodes(seen, names, base), base, library)
@@ -115,7 +116,9 @@ def learned(
     return found
 
 
-def one(seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN) -> LearnedNode:
+def one(
+    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
+) -> LearnedNode:
     (found,) = learned(seen, *names, base=base, library=library)
     return found
 
@@ -173,7 +176,9 @@ def led(nodes: Iterable[NodeFacts], table: Table) -> set[Led]:
     return found
 
 
-def assert_served(nodes: Sequence[NodeFacts], base: str, library: Library, naming: Naming) -> None:
+def assert_served(
+    nodes: Sequence[NodeFacts], base: str, library: NodeLibrary, naming: Naming
+) -> None:
     """Learned from one robot without rules, the table is that of the facts, and its rules serve."""
     seen = graph(*nodes, base=base)
     names = [node.name for node in seen.nodes]
@@ -359,7 +364,7 @@ def test_what_the_robot_has_above_a_nodes_namespace_is_absolute() -> None:
     assert spelled(one(seen, base="/old")) == [(SUBSCRIBES, "/older/scan"), (SUBSCRIBES, "/scan")]
 
 
-def test_two_names_that_are_spelled_alike_become_one() -> None:
+def test_two_names_with_the_same_name_in_code_become_one() -> None:
     seen = graph(node(name="eye/camera"), base="/old")
     who = "/old/eye/camera"
     seen = with_end(
@@ -406,7 +411,7 @@ def test_server_and_client_of_one_action_are_two() -> None:
     assert spelled(one(graph(own))) == [(SERVES, "/fetch"), (CALLS, "/fetch")]
 
 
-def test_an_action_and_a_service_of_one_name_are_said_once() -> None:
+def test_an_action_and_a_service_of_one_name_become_one() -> None:
     own = node(
         Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(SERVICE, SERVES, "fetch", TRIGGER)
     )
@@ -498,7 +503,7 @@ def test_a_helper_in_the_process_of_one_node_is_that_nodes() -> None:
     assert found.remarks == ()
 
 
-def test_a_helper_of_several_nodes_is_given_to_each_and_it_is_said() -> None:
+def test_a_helper_of_several_nodes_is_added_to_each_with_a_remark() -> None:
     seen = graph(node(name="one"), node(name="two"), LISTENER, process="p")
     for found in (*learned(seen), one(seen, "/one")):
         assert found.parts == ("tf_helper",)
@@ -551,6 +556,34 @@ def test_all_nodes_but_tools_are_learned() -> None:
     seen = graph(*(node(name=name) for name in ("b", "a", *tools, "foxglove_bridge")), LISTENER)
     assert choose_nodes(seen, (), "/") == ("/a", "/b")
     assert choose_nodes(seen, ("/rviz2",), "/") == ("/rviz2",)
+
+
+# What people run beside a robot: no part of it, whatever namespace it runs in.
+BESIDE = [
+    "rosbridge_websocket", "rosapi", "tf2_echo", "teleop_twist_keyboard", "joy_node", "gazebo",
+    "ros_gz_bridge", "spawner_arm_controller", "static_transform_publisher_x7", "my_container",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("tool", BESIDE)
+def test_what_the_check_ignores_is_not_learned_unless_asked_for_by_name(tool: str) -> None:
+    seen = graph(node(name="driver"), node(name=f"r1/{tool}"))
+    assert is_tool(f"/r1/{tool}")
+    assert choose_nodes(seen, (), "/") == ("/driver",)
+    assert choose_nodes(seen, (f"/r1/{tool}",), "/") == (f"/r1/{tool}",)
+
+
+@pytest.mark.parametrize("name", ["driver", "joint_state_broadcaster", "gazer", "bridge_driver"])
+def test_nodes_of_a_robot_are_no_tools(name: str) -> None:
+    assert not is_tool(f"/r1/{name}")
+
+
+def test_tools_that_may_be_a_robots_are_named() -> None:
+    """Not the hidden ones, launch and tf listeners: nobody plans those."""
+    names = ("driver", "can_bridge", "joy_node", "_ros2cli_7", "launch_ros_12")
+    seen = graph(*(node(name=name) for name in names), LISTENER)
+    assert left_out(seen, ["/driver"], "/") == ("/can_bridge", "/joy_node")
+    assert left_out(seen, ["/driver", "/joy_node"], "/") == ("/can_bridge",)
 
 
 def test_all_nodes_of_a_namespace_are_learned() -> None:
@@ -661,7 +694,9 @@ def test_what_is_learned_gives_the_whole_table(
 ) -> None:
     mine = str(tmp_path / "mine.yaml")
     assert main(["learn", "--snapshot", str(shot), "--stack", "mine", "-o", mine]) == 0
-    assert capsys.readouterr() == ("", "multibot: 2 nodes learned as stack mine\n")
+    note = "left out as tools: /rviz2; to learn one give its name to --node"
+    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine\n"
+    assert capsys.readouterr() == ("", said)
     names = [node.name for node in stack_of(user_stack(mine), "mine")]
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")
@@ -687,7 +722,7 @@ def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixt
     assert err == "multibot: 1 node learned as stack learned\n"
 
 
-def test_an_incomplete_view_is_written_and_told(
+def test_an_incomplete_view_is_written_and_reported(
     shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     seen = graph(node(publishes("odom")))
@@ -713,7 +748,9 @@ def test_nodes_of_one_robot_without_its_namespace_get_a_hint(
         assert (hint in capsys.readouterr().err) is hinted
 
 
-def test_helpers_of_nobody_are_told(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_helpers_without_a_node_are_reported(
+    shot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     shot.write_bytes(to_json(graph(node(), LISTENER)))
     assert main(["learn", "--snapshot", str(shot)]) == 0
     assert "they are left out: /transform_listener_impl_55d0c0ffee" in capsys.readouterr().err

@@ -131,7 +131,7 @@ def test_few_participants_of_a_peer_may_not_be_all() -> None:
     assert seen(("aaaa", 3), **peers, ROS_DISCOVERY_SERVER="a:1") == []
 
 
-def test_peers_that_nobody_reads_are_told() -> None:
+def test_peers_that_are_not_read_are_a_caveat() -> None:
     environ = {"ROS_STATIC_PEERS": "one", "ROS_AUTOMATIC_DISCOVERY_RANGE": "SYSTEM_DEFAULT"}
     assert [(it.code, it.incomplete) for it in setting_caveats(environ)] == [("peers-unread", True)]
     assert list(setting_caveats({**environ, "ROS_STATIC_PEERS": ""})) == []
@@ -173,7 +173,7 @@ def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
         yield lines
 
 
-def test_a_node_that_was_killed_stays_for_those_who_saw_it_alive(ros: None, plan: Path) -> None:
+def test_a_killed_node_stays_visible_to_who_saw_it_alive(ros: None, plan: Path) -> None:
     """Who looks later does not see it."""
     with one_robot_killed(plan, 82) as lines:
         twins = wait_for(lines, "+ /robot1/drive", "MG105 2 nodes have this name")
@@ -191,7 +191,7 @@ def test_after_its_lease_a_dead_node_is_gone(ros: None, plan: Path) -> None:
 
 
 @pytest.mark.deep
-def test_a_node_killed_while_it_is_looked_at_is_no_twin(ros: None, plan: Path) -> None:
+def test_a_node_killed_while_it_is_observed_is_not_there_twice(ros: None, plan: Path) -> None:
     own = domain(88)
     robots = [node("robot1")], [node("robot2")]
     command = [*COMMAND, "check", str(plan), *PATIENTLY]
@@ -221,7 +221,7 @@ def child_of(pid: int) -> int:
 
 @pytest.mark.deep
 @pytest.mark.skipif(not Path("/proc/self/task").exists(), reason="no /proc to look for children")
-def test_a_pause_of_the_looking_process_is_no_quiet(ros: None, tmp_path: Path) -> None:
+def test_a_pause_of_the_observing_process_is_not_quiet_time(ros: None, tmp_path: Path) -> None:
     """A busy machine may hold it up while the graph comes in."""
     names, nodes = crowd(30)
     plan = write_plan(tmp_path / "plan.yaml", names, ("drive", "pilot"))
@@ -304,7 +304,7 @@ def test_another_domain_is_named(ros: None, plan: Path) -> None:
         ({"ROS_LOCALHOST_ONLY": "1"}, "For robots on other machines set ROS_STATIC_PEERS"),
     ],
 )
-def test_where_nothing_was_seen_is_told(environ: dict[str, str], words: str) -> None:
+def test_a_view_without_nodes_has_its_environment(environ: dict[str, str], words: str) -> None:
     (nothing,) = view_caveats([], [], settings(environ), QUIET)
     assert words in nothing.message
 
@@ -328,7 +328,7 @@ def test_a_missing_or_broken_rclpy(error: str, plan: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("word", ["abc", "233"])
-def test_a_domain_that_is_none(word: str, plan: Path) -> None:
+def test_an_invalid_domain(word: str, plan: Path) -> None:
     done = check(plan, 87, ROS_DOMAIN_ID=word)
     assert (done.returncode, done.stdout) == (2, "")
     (line,) = done.stderr.splitlines()
@@ -337,7 +337,7 @@ def test_a_domain_that_is_none(word: str, plan: Path) -> None:
 
 
 @pytest.mark.parametrize("peers", ["10.0.0.1,10.0.0.2", "10.0.0.1; 10.0.0.2", "one two"])
-def test_peers_that_are_none(peers: str, plan: Path) -> None:
+def test_invalid_peers(peers: str, plan: Path) -> None:
     """rmw gives up on these without a message of its own."""
     done = check(plan, 87, ROS_STATIC_PEERS=peers)
     assert (done.returncode, done.stdout) == (2, "")

@@ -112,7 +112,7 @@ def test_peers_under_localhost_where_multicast_is_lost(tmp_path: Path) -> None:
 
 
 @pytest.mark.deep
-def test_a_super_client_sees_forty_participants_and_a_plain_one_says_why_not(
+def test_a_super_client_sees_forty_participants_and_a_plain_one_has_a_caveat(
     tmp_path: Path,
 ) -> None:
     plan = write_plan(tmp_path / "plan.yaml", MANY)

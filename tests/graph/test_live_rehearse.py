@@ -85,7 +85,7 @@ def actions(graph: Snapshot) -> set[str]:
     return {name for name in names if name.endswith("/_action/send_goal")}
 
 
-def test_without_rules_it_leaks_and_says_so() -> None:
+def test_without_rules_it_leaks_and_is_reported() -> None:
     words = [*PAIR, "--stack", "robot_state", "--layout", "tf-per-robot", "--without-rules"]
     done = rehearse(4, *words)
     assert done.returncode == 1, done.stderr

@@ -180,7 +180,7 @@ def test_what_a_plan_leaves_open_is_not_drawn_as_missing() -> None:
     assert FAULTY.isdisjoint(edge.state for edge in group(scene, "robot1").edges)
 
 
-def test_a_node_and_a_topic_that_nobody_planned() -> None:
+def test_an_unplanned_node_and_an_unplanned_topic() -> None:
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.with_end(nav2_graphs.healthy(plan), "/robot1/gripper", "/robot1/grip")
     scene = nav2_graphs.scene(
@@ -304,7 +304,7 @@ def assert_apart(places: list[float], gap: float) -> None:
     assert all(b - a >= gap - 0.01 for a, b in itertools.pairwise(order))
 
 
-def test_what_is_wrong_stands_on_top() -> None:
+def test_faults_are_at_the_top() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     order = [name for name, _ in lay_out(without_common(group(scene, "robot1"))).names]
@@ -333,7 +333,7 @@ def crossings(edges: list[tuple[float, float]]) -> int:
 # ---------------------------------------------------------------- tf
 
 
-def test_each_robots_tree_stands_by_itself_below_a_shared_root() -> None:
+def test_each_robot_has_its_own_tree_below_a_shared_root() -> None:
     plan = nav2_graphs.nav2("L2")
     trees = nav2_graphs.scene(plan, nav2_graphs.healthy(plan)).trees
     assert [(tree.topic, tree.robot, tree.rows[0].frame) for tree in trees] == [
@@ -356,7 +356,7 @@ def with_frames(plan: Expectation, *more: GraphFrame) -> Scene:
     return nav2_graphs.scene(plan, graph._replace(frames=(*graph.frames, *more)))
 
 
-def test_a_frame_with_two_parents_is_red_where_it_hangs() -> None:
+def test_a_frame_with_two_parents_is_red_below_both() -> None:
     scene = with_frames(nav2_graphs.nav2(), GraphFrame("imu_link/robot1", "map", "/tf", False, ()))
     (first, second) = (
         row for tree in scene.trees for row in tree.rows if row.frame == "imu_link/robot1"
@@ -418,7 +418,7 @@ def test_the_page_is_one_file_that_asks_for_nothing() -> None:
     assert set(re.findall(r"url\((.)", text)) <= {"#"}
 
 
-def test_the_policy_lets_in_the_pages_own_script_and_looks_alone() -> None:
+def test_the_policy_allows_only_the_own_script_and_style() -> None:
     tree = page(nav2_graphs.scene(swarm(), nav2_graphs.healthy(swarm())))
     (policy,) = (it for it in tree.iter("meta") if it.get("http-equiv"))
     rules = dict(rule.split(None, 1) for rule in policy.get("content").split("; "))
@@ -445,7 +445,7 @@ def test_all_links_and_hooks_lead_somewhere() -> None:
         assert hits <= hooks and ends <= hooks
 
 
-def test_every_finding_is_told_and_leads_to_what_it_is_about() -> None:
+def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     tree = page(scene)
@@ -513,7 +513,7 @@ def test_a_plan_without_robots_is_drawn() -> None:
     assert to_mermaid(scene).startswith(b"flowchart LR\n")
 
 
-def test_the_environment_is_told() -> None:
+def test_the_environment_is_shown() -> None:
     plan = nav2_graphs.nav2()
     around = nav2_graphs.environment(Caveat("range-word", False, "a word that is no range"))
     around = around._replace(static_peers=("10.0.0.1", "10.0.0.2"), discovery_server="h:11811")
@@ -801,7 +801,7 @@ def test_all_pictures_or_none(
     assert {path.name: path.read_bytes() for path in files.iterdir()} == before
 
 
-def test_a_snapshot_of_names_that_bite_goes_through_the_command(
+def test_a_snapshot_with_unsafe_names_works_with_the_command(
     files: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     _, graph = nav2_graphs.nasty(nav2_graphs.nav2())

@@ -126,7 +126,7 @@ def test_a_wrong_plan_is_one_line(
     assert err.count("\n") == 1
 
 
-def test_a_snapshot_that_is_none(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
     assert "not valid JSON" in capsys.readouterr().err

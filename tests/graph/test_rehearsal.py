@@ -24,8 +24,8 @@ from multibot_rewrite.graph.snapshot import from_json
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes
+from multibot_rewrite.remap.node_library import stack_of
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -36,8 +36,8 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
     NodeFacts,
+    NodeRule,
     NodeTable,
-    Rule,
     Table,
 )
 from multibot_rewrite.remap.stacks import built_in
@@ -97,8 +97,8 @@ def test_endpoints_of_a_helper_are_marked() -> None:
 
 
 def test_a_node_of_the_plugins_and_of_the_stack_is_one() -> None:
-    one = NodeTable("r", "manager", "/r", "manager", (Rule("r", "manager", "a", "b", "", ""),))
-    two = one._replace(rules=(Rule("r", "manager", "c", "d", "", ""),))
+    one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
+    two = one._replace(rules=(NodeRule("r", "manager", "c", "d", "", ""),))
     ((_, stub),) = stub_nodes(Table("both", (one, two), (), ()), {})
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "a:=b", "-r", "c:=d")
 

@@ -127,7 +127,7 @@ def test_what_is_below_a_sensors_link_starts_with_its_word_up_to_the_dot() -> No
     assert found(DOTS, graph(DOTS, *other)) == [("MG204", "robot1", ("lidar.depth.robot1",))]
 
 
-def test_a_torn_tree_names_the_spelling_with_a_dot() -> None:
+def test_a_disconnected_tree_has_the_frame_name_with_a_dot() -> None:
     """The wheel's root is there as a child, once more with the robot's name behind a dot."""
     seen = graph(
         DOTS,
@@ -177,7 +177,7 @@ def test_what_is_not_at_home_is_not_copied() -> None:
     assert ("MG205", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
 
 
-def test_frames_that_nobody_is_known_to_send_are_no_copy() -> None:
+def test_frames_without_a_known_sender_are_no_copy() -> None:
     seen = copied(graph(PREFIXED), "")
     assert ("MG205", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
 

@@ -162,7 +162,7 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
         (changed("environment", "caveats", 0, "code"), "environment.caveats[0].code: missing"),
     ],
 )
-def test_a_wrong_file_is_told_with_its_key(data: bytes, message: str) -> None:
+def test_a_wrong_file_is_reported_with_its_key(data: bytes, message: str) -> None:
     with pytest.raises(InputError) as error:
         from_json(data, "g.json")
     assert str(error.value).startswith("g.json")
@@ -188,7 +188,7 @@ def test_a_domain_is_read_as_rcl_reads_it(word: str, domain: int) -> None:
 
 
 @pytest.mark.parametrize("word", ["abc", "-1", "1.5", "233", "0x", "08", "7 ", "99999999999"])
-def test_a_wrong_domain_is_told_before_rcl_ends_the_process(word: str) -> None:
+def test_a_wrong_domain_is_reported_before_rcl_exits(word: str) -> None:
     with pytest.raises(UsageError, match=r"ROS_DOMAIN_ID.*give 0 to 232"):
         settings({"ROS_DOMAIN_ID": word})
 
@@ -233,7 +233,7 @@ def test_peers_and_server_are_read() -> None:
         ({"ROS_DISCOVERY_SERVER": "a:1", "ROS_SUPER_CLIENT": "TRUE"}, []),
     ],
 )
-def test_odd_settings_are_told(environ: dict[str, str], codes: list[str]) -> None:
+def test_problems_in_settings_are_caveats(environ: dict[str, str], codes: list[str]) -> None:
     caveats = list(setting_caveats(environ))
     assert [caveat.code for caveat in caveats] == codes
     assert all("\n" not in caveat.message for caveat in caveats)
@@ -281,7 +281,7 @@ def test_endpoints_without_a_known_node_are_an_unfinished_view() -> None:
     assert codes_of(["/a"], ends) == [("node-name-unknown", True)]
 
 
-def test_time_up_nothing_seen_and_twins_are_told() -> None:
+def test_timeout_nothing_seen_and_same_names_are_caveats() -> None:
     assert codes_of([], []) == [("nothing-seen", True)]
     assert codes_of(["/a"], [end("/a", "/x")], TIMEOUT) == [("not-settled", True)]
     assert codes_of(["/a", "/a"], [end("/a", "/x")]) == [("same-name", False)]
@@ -323,7 +323,7 @@ def test_a_long_list_is_cut() -> None:
         (9.0, (5.5, 0.0), set(), [], QUIET),
     ],
 )
-def test_when_the_looking_ends(
+def test_when_the_observation_ends(
     now: float, changed_: tuple[float, float], seen: set[str], wanted: list[str], why: str
 ) -> None:
     assert why_settled(now, LastChange(*changed_), seen, wanted, 9.0) == why
@@ -343,18 +343,18 @@ ENDS = [
 ]
 
 
-def test_the_dear_question_is_asked_where_it_is_worth_it() -> None:
+def test_the_slow_query_is_made_only_where_it_is_worth_it() -> None:
     asked = topics_to_query(["/a", "/b"], ENDS, TOPICS, [])
     assert asked == ["/both", "/nobody", "/robot1/tf", "/rosout"]
     assert "/one" in topics_to_query(["/a", "/b"], ENDS, TOPICS, ["/one"])
     assert "/gone" not in topics_to_query(["/a"], ENDS, TOPICS, ["/gone"])
 
 
-def test_two_nodes_of_one_name_hide_topics_so_all_are_asked_for() -> None:
+def test_two_nodes_of_one_name_hide_topics_so_all_are_queried() -> None:
     assert topics_to_query(["/a", "/a", "/b"], ENDS, TOPICS, []) == sorted(TOPICS)
 
 
-def test_what_is_known_better_replaces_what_nodes_told() -> None:
+def test_endpoints_by_topic_replace_those_by_node() -> None:
     better = [end("/a", "/both", qos=QOS), end("/a", "/both", qos=QOS, process="2")]
     service = end("/a", "/both", "serves")
     result = merged([*ENDS, service], {"/both": better, "/one": []})
@@ -383,7 +383,7 @@ def test_an_endpoint_gets_its_nodes_process_only_beyond_doubt() -> None:
     ]
 
 
-def test_an_edge_is_told_once_a_topic_and_static_where_it_was_kept() -> None:
+def test_a_transform_is_there_once_a_topic_and_static_if_latched() -> None:
     heard = [
         ReceivedTransform("/tf", False, "odom", "base_link"),
         ReceivedTransform("/tf", False, "odom", "base_link"),

@@ -10,10 +10,10 @@ import pytest
 from rcl_names import INSTALL, ask
 
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.forms import ros_args
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeTable, Table
 from multibot_rewrite.remap.stacks import load_stack
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table_formats import ros_args
 
 pytestmark = [
     pytest.mark.live,

@@ -28,8 +28,8 @@ from multibot_rewrite.graph.learning.folding import (
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.known import Library
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import (
     ACTION,
     PUBLISHES,
@@ -82,7 +82,7 @@ class _SeenPlace(NamedTuple):
 
 
 def learn(
-    graph: Snapshot, names: Sequence[str], namespace: str, library: Library
+    graph: Snapshot, names: Sequence[str], namespace: str, library: NodeLibrary
 ) -> tuple[LearnedNode, ...]:
     """Facts of the nodes ``names`` below ``namespace``, the robot's namespace.
 
@@ -104,7 +104,7 @@ def _learn_node(
     base: str,
     ends: Mapping[str, Sequence[GraphEndpoint]],
     helpers: Helpers,
-    library: Library,
+    library: NodeLibrary,
 ) -> LearnedNode:
     node = name.removeprefix(f"{base}/")
     known = library.nodes.get(node)
@@ -125,7 +125,7 @@ def _order(end: Endpoint) -> tuple[int, str]:
     return ROLES.index(end.role), end.name
 
 
-def _on_every_node(library: Library) -> frozenset[_Slot]:
+def _on_every_node(library: NodeLibrary) -> frozenset[_Slot]:
     """The endpoints of every node, by role and name; without the clock, which some do not use."""
     every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
     return frozenset({*every, SINCE_JAZZY})

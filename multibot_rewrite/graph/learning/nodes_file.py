@@ -7,7 +7,7 @@ from textwrap import wrap
 
 from multibot_rewrite.graph.learning.learn import LearnedNode
 from multibot_rewrite.model import ProofError, UsageError
-from multibot_rewrite.remap.known import Library, extended, stack_of
+from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import ROLES, Endpoint
 
 HEAD = """\
@@ -22,7 +22,7 @@ WIDTH = 100
 _NO_WRAP = 1 << 30
 
 
-def to_yaml(learned: Sequence[LearnedNode], stack: str, library: Library) -> str:
+def to_yaml(learned: Sequence[LearnedNode], stack: str, library: NodeLibrary) -> str:
     """The text of a file with the nodes and one stack of them.
 
     Raises ProofError if reading it does not give the same nodes.
@@ -30,7 +30,7 @@ def to_yaml(learned: Sequence[LearnedNode], stack: str, library: Library) -> str
     text = "".join(f"{line}\n" for line in _lines(learned, stack))
     facts = tuple(node.facts for node in learned)
     try:
-        read = stack_of(extended(library, text, stack), stack)
+        read = stack_of(extend(library, text, stack), stack)
     except UsageError as error:
         raise ProofError(f"the learned nodes cannot be read back: {error}") from None
     if read != facts:

@@ -26,7 +26,7 @@ class Tile(NamedTuple):
     title: str
     note: str
     link: str
-    looks: str
+    css_class: str
 
 
 class _Box(NamedTuple):
@@ -104,7 +104,7 @@ def _tile(tile: Tile, box: _Box) -> str:
     room = int((box.wide - 16) / LETTER)
     middle = f'x="{box.x + box.wide / 2:g}"'
     return (
-        f'<a href="{safe(tile.link)}"><g class="tile {tile.looks}">'
+        f'<a href="{safe(tile.link)}"><g class="tile {tile.css_class}">'
         f'<rect x="{box.x:g}" y="{box.y:g}" width="{box.wide:g}" height="{box.high:g}" rx="7"/>'
         f'<text class="title" {middle} y="{box.y + box.high * 0.44:g}">'
         f"{safe(clipped(tile.title, room))}</text>"
@@ -120,11 +120,11 @@ def _boxes(crossing: Crossing, places: Mapping[str, _Box]) -> tuple[_Box, _Box]:
 
 
 def _arrow(crossing: Crossing, path: str) -> str:
-    looks, tip = ("bad", "tip-bad") if crossing.state in FAULTY else ("calm", "tip")
+    css_class, tip = ("bad", "tip-bad") if crossing.state in FAULTY else ("calm", "tip")
     title = tooltip(
         f"{crossing.source or crossing.node}: {MEANINGS[crossing.state]}", *crossing.names
     )
-    return f'<path class="reach {looks}" d="{path}" marker-end="url(#{tip})">{title}</path>'
+    return f'<path class="reach {css_class}" d="{path}" marker-end="url(#{tip})">{title}</path>'
 
 
 def _label(crossing: Crossing, x: float, y: float) -> str:

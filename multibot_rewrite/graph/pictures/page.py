@@ -89,7 +89,7 @@ def _title(scene: Scene) -> str:
 
 
 def _header(scene: Scene) -> Iterator[str]:
-    verdict, looks = VERDICTS[scene.verdict]
+    verdict, css_class = VERDICTS[scene.verdict]
     about = next((one.about for one in LAYOUTS if scene.layout in (one.name, one.short)), "")
     nodes = {n.name for g in scene.groups for n in g.nodes if not n.is_robot and n.state != MISSING}
     facts = (
@@ -98,7 +98,7 @@ def _header(scene: Scene) -> Iterator[str]:
         counted(len(nodes), "node"),
         f"layout {scene.layout}{f': {about}' if about else ''}",
     )
-    yield f'<header class="{looks}">\n<p>multibot check</p>\n<h1>{verdict}</h1>\n<ul>'
+    yield f'<header class="{css_class}">\n<p>multibot check</p>\n<h1>{verdict}</h1>\n<ul>'
     yield "".join(f"<li>{safe(fact)}</li>" for fact in facts)
     yield "</ul>\n"
     for caveat in scene.environment.caveats:
@@ -191,10 +191,10 @@ def _tile(section: PageSection) -> Tile:
     nodes = counted(sum(node.robot == robot for node in section.group.nodes), "node")
     # Without findings of its own, only another robot's node makes a robot faulty.
     note = summarize(section.levels) or ("used by another robot" if section.faulty else nodes)
-    return Tile(robot, robot, note, f"#{section.id}", _looks(section))
+    return Tile(robot, robot, note, f"#{section.id}", _css_class(section))
 
 
-def _looks(section: PageSection) -> str:
+def _css_class(section: PageSection) -> str:
     return "bad" if section.levels[ERROR] else "odd" if section.faulty else "good"
 
 
@@ -204,7 +204,7 @@ def _group(section: PageSection, ids: Ids) -> Iterator[str]:
     counts = f"{nodes}, {counted(len(section.group.names), 'name')}"
     findings = summarize(section.levels)
     opened = " open" if section.open else ""
-    yield f'<details id="{section.id}"{opened}><summary class="{_looks(section)}">'
+    yield f'<details id="{section.id}"{opened}><summary class="{_css_class(section)}">'
     yield f"<b>{safe(title)}</b> <span>{counts}</span> <em>{findings}</em></summary>\n"
     yield f"<div>{group_svg(section.shown, ids, f'{section.id}-')}</div>\n"
     more = only_common(section.group)
@@ -234,9 +234,9 @@ def _panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
     if not tree.received:
         title += " <em>declared, not received</em>"
     opened = " open" if wrong or len(scene.robots) <= SMALL_FLEET else ""
-    looks = "bad" if wrong else "good" if tree.received else "odd"
+    css_class = "bad" if wrong else "good" if tree.received else "odd"
     return (
-        f'<details{opened}><summary class="{looks}">{title}</summary>\n'
+        f'<details{opened}><summary class="{css_class}">{title}</summary>\n'
         f'<div class="wide">{tree_svg(tree, scene.robots, ids)}</div></details>\n'
     )
 

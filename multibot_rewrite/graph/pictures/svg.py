@@ -198,11 +198,11 @@ def tree_svg(found: FrameTree, robots: Iterable[str], ids: Ids) -> str:
     return f'<svg class="tree" {size}>{"".join(lines)}{"".join(boxes)}</svg>'
 
 
-def _frame(frame: str, x: float, y: float, looks: str, id_attributes: str) -> str:
+def _frame(frame: str, x: float, y: float, css_class: str, id_attributes: str) -> str:
     text = visible(frame)
     wide = columns(text) * LETTER + 22
     return (
-        f'<g class="f {looks}"{id_attributes}>'
+        f'<g class="f {css_class}"{id_attributes}>'
         f'<rect x="{x}" y="{y - 10:g}" width="{wide:.0f}" height="20" rx="4"/>'
         f'<rect class="bar" x="{x}" y="{y - 10:g}" width="5" height="20" rx="2"/>'
         f'<text x="{x + 12}" y="{y + 4:g}">{escape(text)}</text></g>'

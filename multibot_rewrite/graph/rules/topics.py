@@ -257,16 +257,16 @@ def _in_namespaces_above(node: str, name: str) -> Iterator[str]:
 def subscriptions_without_publisher(view: View) -> Iterator[GraphFinding]:
     """A planned subscription without a publisher, while a similar topic has one."""
     waiting = [
-        key
-        for key in view.planned
-        if key[1:3] == (TOPIC, SUBSCRIBES)
-        and key[3] not in view.published_topics
-        and key in view.types
+        (node, name)
+        for node, kind, role, name in view.planned
+        if (kind, role) == (TOPIC, SUBSCRIBES)
+        and name not in view.published_topics
+        and (node, kind, role, name) in view.types
     ]
     planned = _planned_publishers(view) if waiting else {}
     unplanned = _unplanned_publishers(view) if waiting else {}
     reported = set()
-    for node, _, _, name in waiting:
+    for node, name in waiting:
         robot = view.robot_of.get(node, "")
         # Where the planned publisher is in the graph, missing_endpoints reports it.
         running = any(publisher in view.seen for publisher in planned.get(name, ()))
@@ -277,14 +277,14 @@ def subscriptions_without_publisher(view: View) -> Iterator[GraphFinding]:
         other = _similar_publisher(plain, own, unowned, name in planned)
         if other:
             reported.add(name)
-            message = (
-                f"subscribes to {name}, which has no publisher; {other.node} publishes {other.name}"
-            )
-            cause = (
-                f"if that is meant for {robot}, pass the rule {other.name}:={name} to {other.node}"
-            )
-            about = (name, other.name)
-            yield GraphFinding("MG111", WARNING, robot, node, message, cause, about)
+            yield _no_publisher(robot, node, name, other)
+
+
+def _no_publisher(robot: str, node: str, name: str, other: GraphEndpoint) -> GraphFinding:
+    published = f"{other.node} publishes {other.name}"
+    message = f"subscribes to {name}, which has no publisher; {published}"
+    cause = f"if that is meant for {robot}, pass the rule {other.name}:={name} to {other.node}"
+    return GraphFinding("MG111", WARNING, robot, node, message, cause, (name, other.name))
 
 
 def _planned_publishers(view: View) -> Mapping[str, list[str]]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.names.shared import BLANK, SUBSTITUTION, TOKEN, name_of_robot
 from multibot_rewrite.model import Claim
@@ -17,7 +17,7 @@ from multibot_rewrite.steps.document import value_slot
 
 ROS_KINDS = frozenset({"topic", "service", "namespace"})
 # ROS 1, ROS 2 and both Gazebos agree on these.
-_ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
+_ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
 
 
 @rule(
@@ -96,9 +96,8 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
             name = part.get("name", "")
             if "/" in name and SUBSTITUTION not in name:
                 cut = name.partition("/")[0]
-                message = (
-                    f"{part.tag} {name!r} contains a slash: its interfaces look like {cut!r}'s"
-                )
+                owner = f"its interfaces seem to belong to {cut!r}"
+                message = f"{part.tag} {name!r} contains a slash: {owner}"
                 yield Problem(part, message, "name", f"use {name.replace('/', '_')!r}")
 
 
