@@ -284,8 +284,8 @@ def _entry_findings(document: YamlText, entry: _Entry, context: Context) -> Iter
         yield finding_at(document, node, "MF501", WARNING, message, f"add a {ROS}")
     for kind, name in _PART.findall(entry.gz if MODEL_SLOT in entry.new_gz else ""):
         if not is_declared(context.names, kind, name) and not _PLACEHOLDER.search(name):
-            near = _near(name, context.names.declared.get(kind, ()))
-            message = f"the description has no {kind} {name!r}{near}"
+            known = context.names.declared.get(kind, ())
+            message = f"the description has no {kind} {name!r}{_near(name, known)}"
             yield finding_at(document, node, "MF507", WARNING, message, "correct the name")
     if text_of(node, SERVICE) and not text_of(node, SERVICE).strip("/").startswith("world/"):
         message = f"service {text_of(node, SERVICE)!r} is bridged once for all robots"

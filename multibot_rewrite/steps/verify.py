@@ -37,16 +37,16 @@ def verify(
     source, file = inventory.document.source, inventory.document.file
     try:
         result = collect(read_document(output, f"{file} for {robot}"), tree, urdf_declarations)
+        inserted = removals(result.document, robot)
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
     expected = _expected(inventory, plan, robot)
-    inserted = removals(result.document, robot)
     _same_names(inventory, not_inserted(result.claims, inserted), expected)
     _same_symbols(inventory, result, robot)
     come = Counter(expected)
     for item in plan.insertions:
         come.update(slot_values(etree.fromstring(item.xml.replace(ROBOT_SLOT, robot))))
-    _nothing_left(inventory, values, slot_values(result.document.root), come)
+    _same_values(inventory, values, slot_values(result.document.root), come)
     if b"".join(cut(output, invert(plan.edits, source, robot))) != source:
         raise ProofError(f"{file}: undoing the edits does not give the input back")
     if b"".join(cut(output, strip_edits(result, naming, robot))) != source:
@@ -84,15 +84,20 @@ def _expected(inventory: Inventory, plan: Plan, robot: str) -> list[str]:
     return values
 
 
-def _nothing_left(
+def _same_values(
     inventory: Inventory, before: list[str], after: list[str], come: Counter[str]
 ) -> None:
-    """Each claimed value is in the output as often as the plan says, claimed slots or not.
+    """Every value is there as often as planned, claimed or not, inserted text included.
 
     ``before`` and ``after`` are the values of all slots, ``come`` counts those the claims are to have.
     """
-    claimed = Counter([claim.value for claim in inventory.claims])
-    was = Counter(filter(claimed.__contains__, before))
-    for name, count in Counter(filter(claimed.__contains__, after)).items():
-        if count > was[name] - claimed[name] + come[name]:
-            raise ProofError(f"{inventory.document.file}: the old name {name!r} is still there")
+    expected = Counter(before)
+    expected.subtract(claim.value for claim in inventory.claims)
+    expected.update(come)
+    found = Counter(after)
+    # An empty text is no slot: what is filled was not there before.
+    del expected[""], found[""]
+    wrong = next(iter(found - expected), "") or next(iter(expected - found), "")
+    if wrong:
+        times = f"{found[wrong]} times, expected {expected[wrong]}"
+        raise ProofError(f"{inventory.document.file}: {wrong!r} is there {times}")

@@ -26,7 +26,7 @@ from paths import ROOT
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.graph.check import ABSENCE, check
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect, spelled
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.rules.ownership import name_ownership
 from multibot_rewrite.graph.snapshot import (
@@ -37,7 +37,7 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
-from multibot_rewrite.naming import make_naming, spelled
+from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
     PUBLISHES,
     SERVES,

@@ -124,6 +124,6 @@ def test_the_file_is_what_the_bridge_reads() -> None:
 
 def test_the_data_names_sections_and_elements_that_the_vocabulary_has() -> None:
     vocabulary = load_vocabulary(packages=False)
-    for plugin, topics in bridge_data()["plugins"].items():
-        (section,) = vocabulary.find("plugin", plugin)
-        assert {topic[0] for topic in topics} <= {site.path for site in section.sites}, plugin
+    for section, topics in bridge_data()["plugins"].items():
+        (rewriter,) = vocabulary.find("plugin", section)
+        assert {topic[0] for topic in topics} <= {site.path for site in rewriter.sites}, section

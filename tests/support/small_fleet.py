@@ -7,9 +7,9 @@ from graph_cases import (
     sent,
 )
 
-from multibot_rewrite.graph.expectation import Expectation, expect
+from multibot_rewrite.graph.expectation import Expectation, expect, spelled
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
-from multibot_rewrite.naming import make_naming, spelled
+from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
     PUBLISHES,
     SERVES,

@@ -15,7 +15,7 @@ from multibot_rewrite.rosnames import check_full_name, check_namespace
 
 # A tf2 listener without a node creates its own node, named after its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
-# Hidden nodes, launch and tf2 listeners: no part of any robot.
+# Hidden nodes, launch and tf2 listeners: never part of a robot.
 NEVER_MEANT = re.compile(rf".*/(_.*|launch_ros_\d+|{LISTENER}.*)")
 
 
@@ -53,7 +53,7 @@ def choose_nodes(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple
 
 
 def left_out(graph: Snapshot, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
-    """Tools below ``namespace`` that are not learned and that somebody may have meant to learn."""
+    """Tools below ``namespace`` that are not learned although somebody may want to learn them."""
     base = namespace_prefix(namespace)
     below = {node.name for node in graph.nodes if node.name.startswith(f"{base}/")}
     tools = (name for name in below.difference(chosen) if is_tool(name))

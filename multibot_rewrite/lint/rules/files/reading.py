@@ -90,7 +90,8 @@ def leftover(subject: Subject) -> Iterator[Problem]:
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding a file, for the first robot whose name is in it."""
     settings = subject.settings
-    found = already_rewritten(subject.inventory, rename_map(subject), settings.robots, False)
+    renames = rename_map(subject)
+    found = already_rewritten(subject.inventory, renames, settings.robots, False)
     for it in islice(found, 1):
         yield Problem(subject.document.root, it.message, None, "lint the source it was made from")
 

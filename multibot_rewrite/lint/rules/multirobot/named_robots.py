@@ -18,18 +18,17 @@ from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.renames import RenameMap
 
-Hazard = Callable[[Inventory, Naming], Iterable[Remark]]
-NameHazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
+Hazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
+ByNaming = Callable[[Inventory, Naming], Iterable[Remark]]
+
+
+def _by_naming(hazard: ByNaming) -> Hazard:
+    """The same for what needs no spelled name."""
+    return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the named robots warns about; nothing where none are named."""
-    if subject.settings.robots:
-        yield from problems(hazard(subject.inventory, subject.settings.naming))
-
-
-def _if_renamed(hazard: NameHazard, subject: Subject) -> Iterator[Problem]:
-    """The same of a hazard that looks at what names become."""
     if subject.settings.robots:
         yield from problems(hazard(subject.inventory, rename_map(subject)))
 
@@ -49,7 +48,7 @@ joints_reordered = rule(
     '<joint name="i" type="fixed"><parent link="a"/><child link="b"/></joint>'
     '<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint>',
     options={"robots": TWO},
-)(partial(_if_renamed, hazards.reordered))
+)(partial(_if_robots, hazards.reordered))
 
 
 @rule(
@@ -108,7 +107,7 @@ prefix_only = rule(
     good='<ros2_control name="h" type="system"><hardware><plugin>'
     "mock_components/GenericSystem</plugin></hardware></ros2_control>",
     options={"robots": TWO},
-)(partial(_if_robots, hazards.prefix_only))
+)(partial(_if_robots, _by_naming(hazards.prefix_only)))
 
 off_the_shared_tf = rule(
     "MB423",
@@ -122,7 +121,7 @@ off_the_shared_tf = rule(
     "</remapping></ros></plugin></gazebo>",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
     options={"robots": TWO},
-)(partial(_if_robots, hazards.moved_tf))
+)(partial(_if_robots, _by_naming(hazards.moved_tf)))
 
 
 @rule(
@@ -180,7 +179,7 @@ sensor_names_meet = rule(
     '</plugin></hardware><sensor name="imu"/></ros2_control>',
     good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
     options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_if_robots, hazards.bare_lookups))
+)(partial(_if_robots, _by_naming(hazards.bare_lookups)))
 
 
 @rule(
@@ -220,7 +219,7 @@ fixed_to_own_frame = rule(
     formats=(SRDF,),
     beside={"r.urdf": '<robot name="r"><link name="a"/></robot>'},
     options={"robots": TWO, "urdf": "r.urdf"},
-)(partial(_if_renamed, hazards.outside_frames))
+)(partial(_if_robots, hazards.outside_frames))
 
 hard_wired_name = rule(
     "MB428",
@@ -237,4 +236,4 @@ hard_wired_name = rule(
     '"a"/><child link="b"/></joint><gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/>'
     "</gazebo>",
     options={"robots": TWO},
-)(partial(_if_renamed, hazards.hardwired))
+)(partial(_if_robots, hazards.hardwired))
