@@ -31,7 +31,7 @@ class Job(NamedTuple):
         return builtin_tree(self.vocabulary)
 
     @property
-    def outside(self) -> Declared:
+    def urdf_declarations(self) -> Declared:
         """What the URDF beside an SRDF declares; raises InputError."""
         return pipeline.declarations(*self.urdf, self.tree) if self.urdf else NOTHING
 
@@ -59,7 +59,7 @@ class Prepared:
         self.job = job
 
     @cached_property
-    def template(self) -> pipeline.Prepared:
+    def template(self) -> pipeline.Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
         data, file, naming, _, urdf = self.job
         tree = self.job.tree

@@ -34,7 +34,7 @@ class Rewrite(NamedTuple):
     prepared: Prepared
 
     @property
-    def template(self) -> pipeline.Prepared:
+    def template(self) -> pipeline.Template:
         """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
         a vocabulary file is gone."""
         return self.prepared.template
@@ -153,9 +153,9 @@ def explain(
     job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
-    outside = job.outside
-    inventory = collect(read_document(job.data, job.file), job.tree, outside)
-    pipeline.check_urdf(inventory, outside)
+    urdf_declarations = job.urdf_declarations
+    inventory = collect(read_document(job.data, job.file), job.tree, urdf_declarations)
+    pipeline.check_urdf(inventory, urdf_declarations)
     return explain_line(inventory, naming, job.tree, robot, line)
 
 
@@ -183,7 +183,7 @@ def strip(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     job = read_job(source, naming, urdf, None, vocabulary, file)
-    return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.outside)
+    return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.urdf_declarations)
 
 
 def _check_robots(robots: Iterable[str]) -> None:

@@ -25,7 +25,7 @@ from multibot_rewrite.steps.verify import verify
 MENTIONED = ("link", "joint")
 
 
-class Prepared(NamedTuple):
+class Template(NamedTuple):
     """A description ready for any number of robots: parsed, planned and cut once."""
 
     inventory: Inventory
@@ -40,7 +40,7 @@ class Prepared(NamedTuple):
 
 def prepare(
     source: bytes, file: str, naming: Naming, tree: Tree, urdf_declarations: Declared = NOTHING
-) -> Prepared:
+) -> Template:
     """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
 
     ``urdf_declarations`` is what the URDF beside an SRDF declares.
@@ -53,7 +53,7 @@ def prepare(
     values = slot_values(inventory.document.root)
     findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
     pieces = cut(source, plan.edits)
-    return Prepared(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
+    return Template(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
 
 
 def declarations(source: bytes, file: str, tree: Tree) -> Declared:
@@ -70,7 +70,7 @@ def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
         raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
 
 
-def render(prepared: Prepared, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
+def render(prepared: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
     """The text for each robot in turn, the first one proved.
 
     The others differ from it in nothing but the robot's name at the same places; that no two names

@@ -11,10 +11,6 @@ from multibot_rewrite.checks.remarks import Remark, about
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.nearest import did_you_mean
-
-# The lint imports these two from here.
-from multibot_rewrite.nearest import fold as fold  # noqa: PLC0414
-from multibot_rewrite.nearest import nearest as nearest  # noqa: PLC0414
 from multibot_rewrite.rewriters.forms import Declared, NamePart
 from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.steps.collect import Inventory

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from multibot_rewrite.model import Change, Claim
-from multibot_rewrite.pipeline import Prepared
+from multibot_rewrite.pipeline import Template
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled
 from multibot_rewrite.steps.document import locate
 
 
-def list_changes(template: Prepared, robot: str) -> list[Change]:
+def list_changes(template: Template, robot: str) -> list[Change]:
     """Every renamed value at its place in the source, then every inserted one at its parent's."""
     inventory, plan = template.inventory, template.plan
     source = inventory.document.source

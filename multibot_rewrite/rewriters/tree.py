@@ -288,13 +288,4 @@ def _flavour(found: list[VocabularySection], element: _Element) -> VocabularySec
     if len(found) == 1:
         return found[0]
     tags = {child.tag for child in element}
-
-    def known(section: VocabularySection) -> tuple[int, str]:
-        own = {
-            split_step(split_path(site.path)[0][0])[0]
-            for site in section.sites
-            if site.path[0] != "@"
-        }
-        return len(own & tags), section.ros
-
-    return max(found, key=known)
+    return max(found, key=lambda section: (len(section.tags & tags), section.ros))

@@ -6,7 +6,6 @@ import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any, NamedTuple
 
-from multibot_rewrite.checks.references import nearest
 from multibot_rewrite.config import (
     configured_vocabulary,
     folders_above,
@@ -26,6 +25,7 @@ from multibot_rewrite.lint.config.values import (
 )
 from multibot_rewrite.model import WARNING, UsageError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.nearest import nearest
 
 __all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"

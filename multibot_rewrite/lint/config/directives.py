@@ -11,9 +11,9 @@ from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.checks.references import nearest
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.nearest import nearest
 
 MARK = b"urdf-lint"
 IGNORE, IGNORE_FILE = "ignore", "ignore-file"

@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.checks.references import nearest
 from multibot_rewrite.config import listed_files, type_name
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.selection import OFF
@@ -14,6 +13,7 @@ from multibot_rewrite.lint.config.patterns import anchored, with_folders
 from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.lint.registry import GROUPS, RULES
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rosnames.names import check_robot_name
 
 

@@ -150,9 +150,6 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
 def _names(srdf: Inventory) -> set[str]:
     """The links and joints an SRDF uses, those it declares aside."""
     own: Iterable[str] = srdf.declared["joint"]
-    used = {
-        it.value.strip()
-        for it in srdf.claims
-        if it.site.role == "uses" and it.site.whole_value_kind
-    }
+    uses = (it for it in srdf.claims if it.site.role == "uses" and it.site.whole_value_kind)
+    used = {it.value.strip() for it in uses}
     return used.difference(own)

@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.checks.audit import nearest
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.schema.sections import (
     ROBOT,
@@ -23,6 +22,7 @@ from multibot_rewrite.lint.schema.sections import (
     typed_attributes,
 )
 from multibot_rewrite.lint.schema.values import COUNTS, FINE, is_fine, shortened, wrong_numbers
+from multibot_rewrite.nearest import nearest
 from multibot_rewrite.steps.document import Document, tag_end
 
 # What a child of <robot> can be a misspelling of: anything else there is an extension.

@@ -102,6 +102,12 @@ class VocabularySection(NamedTuple):
         """All names that only a remap rule moves."""
         return self.publishes + self.subscribes + self.serves
 
+    @property
+    def tags(self) -> frozenset[str]:
+        """The tags of child elements that its rows know."""
+        paths = (split_path(site.path)[0] for site in self.sites if site.path[0] != "@")
+        return frozenset(split_step(steps[0])[0] for steps in paths)
+
 
 def read_header(place: str, row: str) -> tuple[str, ...]:
     """Type and names of a section from its first row (its ``[`` taken off)."""

@@ -10,9 +10,9 @@ from multibot_rewrite.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.checks.robots import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import declare, rule
+from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.model import Finding
-from multibot_rewrite.steps.renames import make_renames
 
 # These three are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
@@ -97,7 +97,7 @@ def leftover(subject: Subject) -> Iterator[Problem]:
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding per file, for the first robot whose name is in it."""
     settings = subject.settings
-    renames = make_renames(subject.inventory, settings.naming)
+    renames = rename_map(subject)
     found = already_rewritten(subject.inventory, renames, settings.robots, False)
     for it in islice(found, 1):
         yield Problem(subject.document.root, it.message, None, "lint the source it was made from")

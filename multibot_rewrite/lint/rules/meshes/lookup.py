@@ -88,7 +88,7 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
 
 
 def _nearest(it: Lookup) -> str:
-    from multibot_rewrite.checks.audit import nearest
+    from multibot_rewrite.nearest import nearest
 
     folder = os.path.join(it.folders[0], os.path.dirname(it.path))
     return nearest(os.path.basename(it.path), sorted(entries(folder)))

@@ -155,12 +155,12 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
     if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:
         return
     for host in subject.inventory.hosts:
-        rewriter = host.node.section
-        if rewriter is None or "/tf" not in rewriter.publishes or not rewriter.inserts:
+        section = host.node.section
+        if section is None or "/tf" not in section.publishes or not section.inserts:
             continue
-        if "/tf" in switched_off(host.element, rewriter) or _moves_tf(host.element):
+        if "/tf" in switched_off(host.element, section) or _moves_tf(host.element):
             continue
-        of = "the controllers it loads publish" if rewriter.process_wide else "it publishes"
+        of = "the controllers it loads publish" if section.process_wide else "it publishes"
         message = (
             f"plugin {host.element.get('name', '')!r}: {of} on /tf, which a namespace does not move"
         )

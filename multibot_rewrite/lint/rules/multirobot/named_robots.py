@@ -9,21 +9,17 @@ from multibot_rewrite.checks import hazards, robots
 from multibot_rewrite.checks.remarks import Remark
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
+from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, TWO
 from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.renames import RenameMap, make_renames
+from multibot_rewrite.steps.renames import RenameMap
 
 Hazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
 ByNaming = Callable[[Inventory, Naming], Iterable[Remark]]
-
-
-def renames_of(subject: Subject) -> RenameMap:
-    """How each name of the description is spelled for the named robots."""
-    return make_renames(subject.inventory, subject.settings.naming)
 
 
 def _by_naming(hazard: ByNaming) -> Hazard:
@@ -34,7 +30,7 @@ def _by_naming(hazard: ByNaming) -> Hazard:
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the named robots warns about; nothing where none are named."""
     if subject.settings.robots:
-        yield from problems(hazard(subject.inventory, renames_of(subject)))
+        yield from problems(hazard(subject.inventory, rename_map(subject)))
 
 
 joints_reordered = rule(
@@ -76,7 +72,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB420."""
     names = subject.settings.robots
     if names:
-        yield from problems(robots.taken_names(subject.inventory, renames_of(subject), names))
+        yield from problems(robots.taken_names(subject.inventory, rename_map(subject), names))
 
 
 @rule(
@@ -98,7 +94,7 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
-    for it in robots.meeting(subject.inventory, renames_of(subject), pairs):
+    for it in robots.meeting(subject.inventory, rename_map(subject), pairs):
         yield Problem(subject.document.root, it.message, None, it.hint)
 
 
@@ -189,7 +185,7 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     from multibot_rewrite.steps.renames import respeller
 
     document, claims, _, declared, *_ = subject.inventory
-    renames = renames_of(subject)
+    renames = rename_map(subject)
     first, last = (
         respell_collisions(document.root, claims, declared, respeller(renames, name))
         for name in (ROBOT_SLOT, LAST)

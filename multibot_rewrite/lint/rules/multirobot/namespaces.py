@@ -74,10 +74,10 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     declared = subject.inventory.declared
     bare = []
     for host in subject.inventory.hosts:
-        rewriter = host.node.section
-        if rewriter is None or not any("namespace" in it.kinds for it in rewriter.sites):
+        section = host.node.section
+        if section is None or not any("namespace" in it.kinds for it in section.sites):
             continue
-        items = insertions(host.element, rewriter, declared, APART)
+        items = insertions(host.element, section, declared, APART)
         if any(it.kind == "namespace" for it in items):
             bare.append(host.element)
     if bare:

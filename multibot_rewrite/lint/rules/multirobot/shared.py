@@ -45,10 +45,10 @@ def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]
     """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
     declared = subject.inventory.declared
     for host in subject.inventory.hosts:
-        rewriter = host.node.section
-        if rewriter is None or not any(map(_may_insert, rewriter.sites)):
+        section = host.node.section
+        if section is None or not any(map(_may_insert, section.sites)):
             continue
-        for it in insertions(host.element, rewriter, declared, APART):
+        for it in insertions(host.element, section, declared, APART):
             tag = it.xml[1:].partition(">")[0].partition(" ")[0]
             if it.kind != "namespace" and tag != "remapping":
                 yield host.element, (it.kind, it.old, tag)

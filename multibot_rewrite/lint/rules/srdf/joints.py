@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.checks.references import nearest
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.srdf.planning_groups import text_of
 from multibot_rewrite.lint.rules.srdf.shared import ARM, VIRTUAL, srdf_rule
+from multibot_rewrite.nearest import nearest
 
 VIRTUAL_TYPES = ("fixed", "planar", "floating")
 PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_distance")

@@ -8,7 +8,6 @@ from math import hypot
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.audit import nearest
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import vector
@@ -22,6 +21,7 @@ from multibot_rewrite.lint.rules.structure.shared import (
     joints_with,
     one_joint,
 )
+from multibot_rewrite.nearest import nearest
 
 FAR = 50.0
 

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.audit import nearest
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import loops, reached, roots
@@ -19,6 +18,7 @@ from multibot_rewrite.lint.rules.structure.shared import (
     fixed_joint,
     one_joint,
 )
+from multibot_rewrite.nearest import nearest
 
 # With more than this many pairs of names a search for the nearest one takes too long.
 MANY = 50
