@@ -16,16 +16,16 @@ from multibot_rewrite.cli.output import diff, print_bytes, say, watched
 from multibot_rewrite.cli.process import DONE, STOPPED, UNUSABLE, guarded
 from multibot_rewrite.cli.walk import check_folder, check_target, find_files
 from multibot_rewrite.findings.finding import LEVELS, Finding
-from multibot_rewrite.lint.configured import (
+from multibot_rewrite.lint.config.configured import (
     Configured,
     check_codes,
     configured,
     is_excluded,
     with_options,
 )
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import UsageError
 
 SUFFIXES = (".urdf", ".xacro", ".srdf")
