@@ -69,6 +69,7 @@ LAYOUTS = (
     Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
     Layout("postfix", "L4", True, True, False, "everything spelled per robot, no namespaces"),
 )
+DEFAULT_LAYOUT = "postfix"
 
 
 class Affix(NamedTuple):
@@ -95,7 +96,7 @@ class Naming(NamedTuple):
 
 
 def make_naming(
-    layout: str = "postfix",
+    layout: str = DEFAULT_LAYOUT,
     affix: str = POSTFIX,
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,

@@ -10,19 +10,18 @@ from contextlib import contextmanager, suppress
 from multibot_rewrite.model import UsageError
 
 
-def write_all(items: Iterable[tuple[str, bytes]], folders: bool = False) -> None:
+def write_all(items: Iterable[tuple[str, bytes]]) -> None:
     """Write every (path, data) beside its target, then rename; on an error everything is as it was.
 
-    ``folders`` makes those that are missing. An existing file keeps its mode bits, a link stays a
-    link. Raises UsageError with path, cause and remedy.
+    Missing folders are made. An existing file keeps its mode bits, a link stays a link. Raises
+    UsageError with path, cause and remedy.
     """
     staged: dict[str, str] = {}
     made: list[str] = []
     try:
         for path, data in items:
             with explained(path):
-                if folders:
-                    make_folders(os.path.dirname(path), made)
+                make_folders(os.path.dirname(path), made)
                 _stage(path, data, staged)
         _commit(staged)
         made.clear()

@@ -7,11 +7,12 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack, closing, contextmanager
 
 from multibot_rewrite.cli.output import print_lines
-from multibot_rewrite.cli.tables import Grid, renderable
+from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.graph.watching import Moment, Verdict, next_moment
+from multibot_rewrite.plural import plural
 
 WORDS = {
     Verdict.PLANNED: "as planned",
@@ -50,11 +51,13 @@ def _print_lines(moment: Moment) -> None:
 @contextmanager
 def _screen() -> Iterator[Show]:
     """A screen that is drawn anew at every change."""
-    from rich.console import Group
     from rich.live import Live
+    from rich.text import Text
 
     with Live(auto_refresh=False) as live:
-        yield lambda moment: live.update(Group(*map(renderable, _parts(moment))), refresh=True)
+        yield lambda moment: live.update(
+            Text.from_ansi(render(_parts(moment), live.console.width, colour=True)), refresh=True
+        )
 
 
 def _parts(moment: Moment) -> Iterator[str | Grid]:
@@ -89,9 +92,9 @@ def _headline(moment: Moment) -> str:
     nodes = _of(_sum(it.nodes for it in moment.robots))
     names = _of(_sum(it.names for it in moment.robots))
     moving = moment.graph.environment.settled == CHANGING
-    found = len(moment.found)
     said = "still changing" if moving else WORDS[moment.verdict]
-    return f"{nodes} nodes, {names} names, {found} finding{'s' * (found != 1)}: {said}"
+    found = plural(len(moment.found), "finding")
+    return f"{nodes} nodes, {names} names, {found}: {said}"
 
 
 def _sum(pairs: Iterator[tuple[int, int]]) -> tuple[int, int]:

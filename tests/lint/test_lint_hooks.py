@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 from junitparser import JUnitXml
+from multibot_rewrite.cli.lint_usage import check_use, parser
 from paths import ROOT
 
-from multibot_rewrite.cli.lint_usage import check_use, parser
 from multibot_rewrite.cli.urdf_lint import main
 
 HOOKS = ROOT / ".pre-commit-hooks.yaml"

@@ -1,0 +1,41 @@
+"""The known name that was probably meant where an unknown one is given: "did you mean"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+# How much alike two names have to be, from 0 to 1 (difflib's ratio): for a hint, which may be
+# wrong, and for what a finding itself rests on.
+ALIKE, MISTYPED = 0.7, 0.8
+
+
+def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
+    """The known name most like ``name``, one that differs in case or dashes alone first; else ""."""
+    found = nearest_few(name, known, 1, alike)
+    return found[0] if found else ""
+
+
+def nearest_few(name: str, known: Iterable[str], most: int, alike: float = ALIKE) -> list[str]:
+    """Up to ``most`` known names that are like ``name``, the most similar first."""
+    from difflib import get_close_matches  # only a message needs it
+
+    names = list(dict.fromkeys(known))
+    folded = fold(name)
+    same = next((it for it in names if fold(it) == folded), None)
+    if same is not None and most == 1:
+        return [same]
+    near = get_close_matches(name, names, most, alike)
+    first = [same] if same is not None else []
+    return list(dict.fromkeys([*first, *near]))[:most]
+
+
+def fold(name: str) -> str:
+    """A name without what is often written in another way: case, scope, slash, dashes, spaces."""
+    bare = name.rpartition("::")[2].strip().strip("/").casefold()
+    return bare.replace("-", "_").replace(" ", "_")
+
+
+def did_you_mean(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
+    """The hint ``did you mean 'x'?``; "" where no known name is like ``name``."""
+    near = nearest(name, known, alike)
+    return f"did you mean {near!r}?" if near else ""
