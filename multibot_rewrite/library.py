@@ -1,4 +1,4 @@
-"""The one call that launch files and scripts use; the commands use it too."""
+"""The calls that launch files and scripts use; the commands use them too."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite import pipeline
+from multibot_rewrite.arguments import checked
+from multibot_rewrite.job import Job, Prepared, read_job
 from multibot_rewrite.model import Change, Finding, UsageError
-from multibot_rewrite.naming import SHARED_FRAMES, SHARED_TOPICS, Naming, make_naming
+from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
 from multibot_rewrite.reports.changes import list_changes
-from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rosnames import check_robot_name
-from multibot_rewrite.sources.read import Source, args_for, read_source
+from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
@@ -24,43 +25,37 @@ class Rewrite(NamedTuple):
 
     ``data`` are the output bytes, ``text`` the same as str (for ``robot_description``).
     ``findings`` are warnings about the input. ``changes`` lists every renamed and inserted value.
+    It can be compared, copied and pickled.
     """
 
     robot: str
     data: bytes
     findings: tuple[Finding, ...]
-    template: pipeline.Template
+    prepared: Prepared
+
+    @property
+    def template(self) -> pipeline.Template:
+        """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
+        a vocabulary file is gone."""
+        return self.prepared.template
 
     @property
     def text(self) -> str:
-        """The output as str."""
+        """The output as str; raises nothing."""
         return self.data.decode()
 
     @property
     def changes(self) -> list[Change]:
-        """Every renamed or inserted value, in source order."""
+        """Every renamed or inserted value, in source order; raises as ``template`` does."""
         return list_changes(self.template, self.robot)
 
 
-def rewrite(source: Source, robot: str, **options: object) -> Rewrite:
-    """Rewrite a robot description for ``robot`` and prove the result.
-
-    ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
-    ending in ``.xacro`` is expanded. ``options`` are those of ``rewrite_all``. In a launch file:
-
-        parameters=[{"robot_description": rewrite("rover.urdf", "robot1").text}]
-
-    Raises InputError (cannot be read), UsageError (a wrong option or robot name), RewriteRefused
-    (the content does not allow it; ``.findings``), VocabularyError, ProofError.
-    """
-    return next(rewrite_all(source, [robot], **options))  # type: ignore[arg-type]
-
-
-def rewrite_all(
+@checked
+def rewrite(
     source: Source,
-    robots: Sequence[str],
+    robot: str,
     *,
-    layout: str = "postfix",
+    layout: str = DEFAULT_LAYOUT,
     affix: str = "postfix",
     topics: str | None = None,
     separators: Mapping[str, str] | None = None,
@@ -69,91 +64,132 @@ def rewrite_all(
     groups: str = "keep",
     urdf: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Sequence[str] = (),
+    vocabulary: Iterable[str] = (),
+    again: bool = False,
+    file: str = "",
+) -> Rewrite:
+    """Rewrite a robot description for ``robot`` and prove the result.
+
+    ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
+    ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:
+
+        parameters=[{"robot_description": rewrite("rover.urdf", "robot1").text}]
+
+    Raises InputError (cannot be read), UsageError (a wrong argument or robot name), RewriteRefused
+    (the content does not allow it; ``.findings``), VocabularyError, ProofError.
+    """
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
+    return next(rewrite_job(job, [robot], again))
+
+
+@checked
+def rewrite_all(
+    source: Source,
+    robots: Iterable[str],
+    *,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str = "postfix",
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
+    urdf: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
+    vocabulary: Iterable[str] = (),
     again: bool = False,
     file: str = "",
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
-    ``layout`` is one of tf-per-robot, frames-per-robot, both, postfix (or L1 to L4); ``affix`` is
-    postfix or prefix; ``topics`` is postfix, prefix or namespace (default: what the layout
-    implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what becomes of
-    an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to; ``again``
-    allows a second rewrite; ``file`` is the name used in messages. Raises as ``rewrite`` does,
-    before the first result.
+    ``layout`` is a name of ``multibot_rewrite.naming.LAYOUTS``, such as tf-per-robot or postfix;
+    ``affix`` is postfix or prefix; ``topics`` is postfix, prefix or namespace (default: what the
+    layout implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what
+    becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
+    ``xacro_args`` are the arguments of a xacro; ``vocabulary`` are vocabulary files beside the
+    built-in one; ``again`` allows a second rewrite; ``file`` is the name used in messages. Raises
+    as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
+    return rewrite_job(job, tuple(robots), again)
+
+
+def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:
+    """Rewrite what was read, raises as ``rewrite_all``."""
     _check_robots(robots)
-    tree = builtin_tree(tuple(vocabulary))
-    args = xacro_args or {}
-    data, name = read_source(source, args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
-    outside = pipeline.prepare(*beside, naming, tree).inventory.declared if beside else {}
-    template = pipeline.prepare(data, file or name, naming, tree, outside)
-    texts = pipeline.render(template, robots, again)
-    findings = tuple(template.findings)
-    return (Rewrite(r, t, findings, template) for r, t in zip(robots, texts, strict=True))
+    prepared = Prepared(job)
+    findings = tuple(prepared.template.findings)
+    texts = pipeline.render(prepared.template, robots, again)
+    return (Rewrite(r, t, findings, prepared) for r, t in zip(robots, texts, strict=True))
 
 
+@checked
 def explain(
     source: Source,
     line: int,
     robot: str = "robot1",
     *,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str = "postfix",
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
     urdf: Source | None = None,
     xacro_args: Mapping[str, str] | None = None,
-    vocabulary: Sequence[str] = (),
+    vocabulary: Iterable[str] = (),
     file: str = "",
-    **policy: object,
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``.
 
-    ``policy`` is that of ``rewrite_all``. A description that a rewrite refuses is explained all the
-    same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
+    The options are those of ``rewrite_all``. A description that a rewrite refuses is explained all
+    the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
     """
-    naming = make_naming(**policy)  # type: ignore[arg-type]
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    tree = builtin_tree(tuple(vocabulary))
-    args = xacro_args or {}
-    data, name = read_source(source, args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
-    outside = pipeline.declarations(*beside, tree) if beside else {}
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
-    inventory = collect(read_document(data, file or name), tree, outside)
+    outside = job.outside
+    inventory = collect(read_document(job.data, job.file), job.tree, outside)
     pipeline.check_outside(inventory, outside)
-    return explain_line(inventory, naming, tree, robot, line)
+    return explain_line(inventory, naming, job.tree, robot, line)
 
 
+@checked
 def strip(
     source: Source,
     robot: str,
     *,
-    naming: Naming | None = None,
+    layout: str = DEFAULT_LAYOUT,
+    affix: str = "postfix",
+    topics: str | None = None,
+    separators: Mapping[str, str] | None = None,
+    shared_frames: Iterable[str] = SHARED_FRAMES,
+    shared_topics: Iterable[str] = SHARED_TOPICS,
+    groups: str = "keep",
     urdf: Source | None = None,
-    vocabulary: Sequence[str] = (),
+    vocabulary: Iterable[str] = (),
     file: str = "",
-    **policy: object,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
-    ``policy`` are the ``layout``, ``affix``, ``topics``, ``separators``, ``shared_frames``,
-    ``shared_topics`` and ``groups`` it was made with, or ``naming`` is all of them. ``urdf`` is the
-    rewritten description a rewritten SRDF belongs to. Raises as ``rewrite`` does.
+    The options are those that the text was rewritten with; ``urdf`` is the rewritten description
+    that a rewritten SRDF belongs to. Raises as ``rewrite`` does.
     """
-    data, name = read_source(source, {})
+    naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    chosen = naming or make_naming(**policy)  # type: ignore[arg-type]
-    tree = builtin_tree(tuple(vocabulary))
-    outside = {} if urdf is None else pipeline.declarations(*read_source(urdf, {}), tree)
-    return pipeline.strip(data, file or name, robot, chosen, tree, outside)
+    job = read_job(source, naming, urdf, None, vocabulary, file)
+    return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.outside)
 
 
-def _check_robots(robots: Sequence[str]) -> None:
-    for robot in robots:
-        check_robot_name(robot)
+def _check_robots(robots: Iterable[str]) -> None:
     seen: set[str] = set()
     for robot in robots:
+        check_robot_name(robot)
         if robot in seen:
             raise UsageError(f"robot name {robot!r} is given twice; every robot needs its own")
         seen.add(robot)

@@ -87,8 +87,12 @@ class RewriteRefused(MultibotError):
     """The content does not allow a rewrite; ``findings`` says why."""
 
     def __init__(self, findings: tuple[Finding, ...]) -> None:
-        super().__init__("\n".join(str(finding) for finding in findings))
+        # The base class keeps its arguments, and a pickle is made of them.
+        super().__init__(findings)
         self.findings = findings
+
+    def __str__(self) -> str:
+        return "\n".join(str(finding) for finding in self.findings)
 
 
 class ProofError(MultibotError):

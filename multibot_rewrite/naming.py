@@ -7,7 +7,7 @@ where to insert, and what stands before and after the robot's name there.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
 
 from multibot_rewrite.model import UsageError
 
@@ -95,6 +95,18 @@ class Naming(NamedTuple):
     shared_topics: frozenset[str]
 
 
+class Policy(TypedDict, total=False):
+    """The options of ``make_naming`` as one value, for what is passed on to it."""
+
+    layout: str
+    affix: str
+    topics: str | None
+    separators: Mapping[str, str] | None
+    shared_frames: Iterable[str]
+    shared_topics: Iterable[str]
+    groups: str
+
+
 def make_naming(
     layout: str = DEFAULT_LAYOUT,
     affix: str = POSTFIX,
@@ -131,7 +143,7 @@ def make_naming(
 
 
 def find_layout(word: str) -> Layout:
-    """The layout called ``word``; raises UsageError naming the four."""
+    """The layout called ``word``; raises UsageError naming all of them."""
     for layout in LAYOUTS:
         if word in (layout.name, layout.short):
             return layout

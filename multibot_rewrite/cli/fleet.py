@@ -67,10 +67,10 @@ def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
         options.input,
         names,
         [*options.stack, *also],
+        policy(options),
         nodes=options.nodes,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
-        **policy(options),
     )
 
 

@@ -74,7 +74,7 @@ def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], 
         raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
     if not options.changed_since:
         return kept, refused
-    from multibot_rewrite.lint.changed import changed_since  # a plain run needs no git
+    from multibot_rewrite.lint.config.changed import changed_since  # a plain run needs no git
 
     return changed_since(options.changed_since, kept), refused
 
@@ -120,7 +120,7 @@ def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Findi
 
 
 def _write_baseline(options: argparse.Namespace, findings: Sequence[Finding]) -> int:
-    from multibot_rewrite.lint.baseline import baseline_text
+    from multibot_rewrite.lint.config.baseline import baseline_text
 
     text = baseline_text(findings, options.write_baseline)
     write_files(options, [(options.write_baseline, text)])
@@ -136,7 +136,7 @@ def _conclude(
 ) -> int:
     stale = 0
     if config.baseline:
-        from multibot_rewrite.lint.baseline import beyond, read_baseline
+        from multibot_rewrite.lint.config.baseline import beyond, read_baseline
 
         known = read_baseline(config.baseline)
         findings, stale = beyond(findings, known, config.baseline, paths)

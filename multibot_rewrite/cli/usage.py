@@ -4,21 +4,22 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import ROS_SEPARATORS, SEPARATORS
+from multibot_rewrite.naming import ROS_SEPARATORS, SEPARATORS, Policy
 
 # Kinds that ``--separator SEP`` without a kind is for.
 OF_DESCRIPTION = tuple(kind for kind in SEPARATORS if kind not in ROS_SEPARATORS)
 _AS_THEY_ARE = ("layout", "affix", "topics", "shared_frames", "shared_topics", "groups")
 
 
-def policy(options: argparse.Namespace) -> dict[str, Any]:
+def policy(options: argparse.Namespace) -> Policy:
     """The naming policy that the options ask for, as ``make_naming`` takes it; only what is given."""
     given = {name: getattr(options, name) for name in _AS_THEY_ARE}
-    words = {name: value for name, value in given.items() if value is not None}
-    return {**words, "separators": separators(options)} if options.separator else words
+    words: Policy = {name: value for name, value in given.items() if value is not None}  # type: ignore[assignment]
+    if options.separator:
+        words["separators"] = separators(options)
+    return words
 
 
 def separators(options: argparse.Namespace) -> dict[str, str]:

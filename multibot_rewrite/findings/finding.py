@@ -52,7 +52,7 @@ class Finding(NamedTuple):
 
     @property
     def place(self) -> str:
-        """Where it is: a node, a robot, or ``file:line:column``."""
+        """Where it is: a node, a robot, or ``file:line:column``; raises nothing."""
         if self.node.startswith("/"):
             return self.node
         if self.robot or self.node:

@@ -8,8 +8,8 @@ from functools import partial
 
 from multibot_rewrite.findings.finding import Finding
 
-# A robot's name in a text stands alone: ``robot1`` is not part of ``robot11`` or ``my_robot1``,
-# but it is of ``base_link_robot1`` where a separator puts it there.
+# Stands for the robot in a text that two robots share. A name counts where no letter or digit is next
+# to it: ``robot1`` in ``base_link_robot1``, not in ``robot11``.
 _SLOT = "\0"
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import yaml
 
 from multibot_rewrite.companions.yaml_text import anchors, line_of, pairs, read_yaml
-from multibot_rewrite.model import InputError
+from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.sources.read import read_file
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -72,11 +72,19 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
             yield below, line_of(key) if below == (*path, key.value) else line
 
 
-def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
-    from jsonschema import Draft202012Validator
-    from jsonschema.exceptions import best_match
+def _first_error(data: Any, schema: Mapping[str, Any]) -> Any:
+    try:
+        from jsonschema import Draft202012Validator
+        from jsonschema.exceptions import best_match
+    except ImportError as error:
+        what = "jsonschema 4.0 or newer is needed to read a fleet file"
+        hint = "install it: pip install 'jsonschema>=4.0'"
+        raise UsageError(f"{what}; {hint} ({error})") from None
+    return best_match(Draft202012Validator(schema).iter_errors(data))
 
-    error = best_match(Draft202012Validator(schema).iter_errors(data))
+
+def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:
+    error = _first_error(data, schema)
     if error is None:
         return
     path = tuple(error.absolute_path)

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.companions.respell import Names
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
-from multibot_rewrite.library import Rewrite, rewrite_all
+from multibot_rewrite.job import Job, read_job
+from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import Finding
-from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.steps.collect import NOTHING
 
 # Kinds that are names in the ROS graph; the others are the description's own.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
+# What decides a robot's texts but its names: its description, its SRDF, its xacro arguments.
+Sources = tuple[str, str, tuple[tuple[str, str], ...]]
+
+
+class Jobs(NamedTuple):
+    """What is rewritten for the robots of the same sources."""
+
+    description: Job
+    srdf: Job | None
 
 
 class Described(NamedTuple):
@@ -37,36 +46,44 @@ class Described(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def describe(
-    robots: Sequence[RobotSpec], policy: Mapping[str, Any], vocabulary: Sequence[str]
-) -> list[Described]:
+def read_jobs(
+    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str]
+) -> dict[Sources, Jobs]:
+    """Read every description and SRDF once; raises as ``read_job``."""
+    found: dict[Sources, Jobs] = {}
+    for it in robots:
+        if _sources(it) not in found:
+            more = it.arguments, vocabulary
+            description = read_job(it.description, naming, None, *more)
+            srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
+            found[_sources(it)] = Jobs(description, srdf)
+    return found
+
+
+def _sources(robot: RobotSpec) -> Sources:
+    return robot.description, robot.srdf, tuple(robot.arguments.items())
+
+
+def describe(robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]) -> list[Described]:
     """Rewrite every robot's description and SRDF, in the order of the robots.
 
     Raises as ``rewrite_all``.
     """
-    groups: dict[object, list[RobotSpec]] = {}
+    groups: dict[Sources, list[RobotSpec]] = {}
     for robot in robots:
-        key = robot.description, robot.srdf, tuple(robot.arguments.items())
-        groups.setdefault(key, []).append(robot)
-    found = {
-        it.spec.name: it
-        for group in groups.values()
-        for it in _described(group, dict(policy), tuple(vocabulary))
-    }
+        groups.setdefault(_sources(robot), []).append(robot)
+    made = (it for key, group in groups.items() for it in _described(group, jobs[key]))
+    found = {it.spec.name: it for it in made}
     return [found[robot.name] for robot in robots]
 
 
-def _described(
-    group: Sequence[RobotSpec], policy: dict[str, Any], vocabulary: tuple[str, ...]
-) -> Iterator[Described]:
-    first, naming, tree = group[0], make_naming(**policy), builtin_tree(vocabulary)
-    more: dict[str, Any] = {"vocabulary": vocabulary, "xacro_args": first.arguments}
+def _described(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[Described]:
+    naming = jobs.description.naming
     robots = [robot.namespace for robot in group]
-    texts = list(rewrite_all(first.description, robots, **more, **policy))
-    semantics: Sequence[Rewrite | None] = [None] * len(group)
-    if first.srdf:
-        beside = {**more, "urdf": first.description}
-        semantics = list(rewrite_all(first.srdf, robots, **beside, **policy))
+    texts = rewrite_job(jobs.description, robots)
+    semantics: Iterable[Rewrite | None] = [None] * len(group)
+    if jobs.srdf:
+        semantics = rewrite_job(jobs.srdf, robots)
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _spelled(text, robot, naming)
         declared = text.template.inventory.declared
@@ -77,7 +94,7 @@ def _described(
             Names(declared, naming, robot.spelled),
             Names(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
-            member(text, data, robot.spelled, tree),
+            member(text, data, robot.spelled),
             (*text.findings, *(semantic.findings if semantic else ())),
         )
 

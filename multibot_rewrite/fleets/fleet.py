@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
 from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import Rewrite, rewrite_all
-from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.naming import Naming, Policy, make_naming
 from multibot_rewrite.remap.known import stack_of
 from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
 from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table, joined
-from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
@@ -54,22 +52,21 @@ def make_fleet(
     source: Source,
     robots: Sequence[str],
     stacks: Sequence[str],
+    policy: Policy,
     *,
     nodes: str | None = None,
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
-    **policy: Any,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file of nodes and stacks beside the known ones; ``policy`` is that of
-    ``make_naming``. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    ``nodes`` is a file of nodes and stacks beside the known ones. Raises as ``rewrite_all``, and
+    UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes)
-    more: dict[str, Any] = {"vocabulary": vocabulary, "xacro_args": xacro_args}
-    rewritten = list(rewrite_all(source, robots, **more, **policy))
-    tree = builtin_tree(tuple(vocabulary))
-    return assemble([member(it, it.data, it.robot, tree) for it in rewritten], facts, policy)
+    found = rewrite_all(source, robots, vocabulary=vocabulary, xacro_args=xacro_args, **policy)
+    members = [member(it, it.data, it.robot) for it in found]
+    return assemble(members, facts, make_naming(**policy))
 
 
 def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
@@ -78,19 +75,17 @@ def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts
     return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
 
 
-def member(source: Rewrite, data: bytes, spelled: str, tree: Tree) -> Member:
+def member(source: Rewrite, data: bytes, spelled: str) -> Member:
     """The robot of a rewrite; ``data`` is its description as it is in the end."""
-    document = source.template.inventory.document
+    inventory, tree = source.template.inventory, source.template.tree
     # Lines of the source: those of a rewritten text are moved by what was inserted.
-    places = tuple(plugin_places(source.template.inventory))
-    return Member(source.robot, spelled, collect(read_document(data, document.file), tree), places)
+    places = tuple(plugin_places(inventory))
+    written = collect(read_document(data, inventory.document.file), tree)
+    return Member(source.robot, spelled, written, places)
 
 
-def assemble(
-    members: Sequence[Member], facts: tuple[NodeFacts, ...], policy: Mapping[str, Any]
-) -> Fleet:
+def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
     """The fleet of robots that run the same nodes."""
-    naming = make_naming(**policy)
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.inventory, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}

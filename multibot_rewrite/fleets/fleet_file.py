@@ -9,18 +9,18 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import cache
 from importlib.resources import files
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.fleets.by_schema import Path, read_fitting
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
 
 SCHEMA = "fleet.schema.json"
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
-POLICY = ("layout", "affix", "topics", "groups", "separators", "shared_frames", "shared_topics")
+POLICY = tuple(Policy.__annotations__)
 PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
 Places = Mapping[Path, tuple[str, int]]
 # What stands behind ``robots:``, empty lines and comments aside.
@@ -67,7 +67,7 @@ class FleetFile(NamedTuple):
     parameters, vocabulary."""
 
     file: str
-    policy: Mapping[str, Any]
+    policy: Policy
     world: str
     distro: str
     nodes: str
@@ -90,7 +90,7 @@ def read_fleet(path: str) -> FleetFile:
     """Read a fleet file and those it includes; raises InputError with file and line."""
     read = _with_includes(path, ())
     data = read.data
-    policy = {key: _policy(key, data[key]) for key in POLICY if key in data}
+    policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
     naming = _naming(read, policy)
     robots = tuple(_robot(read, naming, at) for at in range(len(data["robots"])))
     _check_apart(robots)
@@ -160,9 +160,12 @@ def _check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
 
 @cache
 def schema() -> dict[str, Any]:
-    """The published JSON Schema of fleet files."""
+    """The published JSON Schema of fleet files, with the layouts that there are."""
     text = files("multibot_rewrite.fleets").joinpath(SCHEMA).read_text()
-    return dict(json.loads(text))
+    result: dict[str, Any] = json.loads(text)
+    names = [*(it.name for it in LAYOUTS), *(it.short for it in LAYOUTS)]
+    result["properties"]["layout"]["enum"] = names
+    return result
 
 
 def _from(folder: str, data: dict[str, Any]) -> dict[str, Any]:
@@ -190,7 +193,7 @@ def _listed(value: Any) -> Sequence[Any]:
     return [value] if isinstance(value, str) else value
 
 
-def _naming(read: _Read, policy: Mapping[str, Any]) -> Naming:
+def _naming(read: _Read, policy: Policy) -> Naming:
     try:
         return make_naming(**policy)
     except UsageError as error:

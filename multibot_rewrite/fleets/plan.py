@@ -2,42 +2,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.bulk import uncollected
-from multibot_rewrite.fleets.describe import Described, describe
+from multibot_rewrite.fleets.describe import Described, Jobs, Sources, describe, read_jobs
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.naming import Naming, make_naming
 
 
 class FleetPlan(NamedTuple):
-    """A fleet file, its robots with their descriptions, their tables and what to expect of them."""
+    """A fleet file, its robots with their descriptions, their tables and what to expect of them.
+    ``jobs`` are the descriptions as they were read."""
 
     file: FleetFile
     robots: tuple[Described, ...]
     fleet: Fleet
+    jobs: Mapping[Sources, Jobs]
 
 
-def plan_fleet(file: FleetFile, also: Sequence[str] = ()) -> FleetPlan:
+def plan_fleet(
+    file: FleetFile, also: Sequence[str] = (), jobs: Mapping[Sources, Jobs] | None = None
+) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
-    ``also`` are nodes that every robot runs, too. Raises as ``rewrite_all``, and UsageError for an
-    unknown stack.
+    ``also`` are nodes that every robot runs, too; ``jobs`` are the descriptions, where they have
+    been read. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
     with uncollected():
-        return _planned(file, also)
+        naming = make_naming(**file.policy)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary)
+        robots = describe(file.robots, read)
+        return FleetPlan(file, tuple(robots), _fleet(file, robots, naming, also), read)
 
 
-def _planned(file: FleetFile, also: Sequence[str]) -> FleetPlan:
-    robots = describe(file.robots, file.policy, file.vocabulary)
+def _fleet(
+    file: FleetFile, robots: Sequence[Described], naming: Naming, also: Sequence[str]
+) -> Fleet:
     stacks: dict[tuple[str, ...], list[Described]] = {}
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
     fleets = [
-        assemble(
-            [it.member for it in group], facts_of((*names, *also), file.nodes or None), file.policy
-        )
+        assemble([it.member for it in group], facts_of((*names, *also), file.nodes or None), naming)
         for names, group in stacks.items()
     ]
-    return FleetPlan(file, tuple(robots), merge(fleets))
+    return merge(fleets)

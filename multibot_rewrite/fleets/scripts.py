@@ -9,18 +9,19 @@ for robot in load_fleet("fleet.yaml").robots:
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple, NoReturn
 
+from multibot_rewrite.arguments import checked
 from multibot_rewrite.companions.graph_names import known_topics, robot_topic
 from multibot_rewrite.companions.respell import respell
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.fleets import spawn, teleop, transforms
 from multibot_rewrite.fleets.artefacts import Artefact, Artefacts, make_artefacts
-from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.fleets.describe import Described, Jobs, Sources
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.fleets.fleet_file import Pose, read_fleet
+from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, read_fleet
 from multibot_rewrite.fleets.node_params import (
     Value,
     check_values,
@@ -49,10 +50,12 @@ class NodeNames(NamedTuple):
     nodes: Mapping[str, NodeTable]
     hosted: Mapping[str, tuple[str, ...]]
 
+    @checked
     def for_node(self, node: str) -> Rules:
         """The node's remappings, as ``launch_ros.actions.Node`` takes them.
 
-        Rules for one node of those it hosts come first: rcl takes the first that matches.
+        Rules for one node of those it hosts come first: rcl takes the first that matches. Raises
+        UsageError for a node that no stack of the fleet has.
         """
         own = self._found(node)
         rules = [
@@ -62,16 +65,19 @@ class NodeNames(NamedTuple):
         ]
         return [*rules, *((rule.source, rule.target) for rule in own.rules)]
 
+    @checked
     def name(self, node: str) -> str:
-        """The name the node runs under, without its namespace."""
+        """The name the node runs under, without its namespace; raises as ``for_node``."""
         return self._found(node).name
 
+    @checked
     def namespace(self, node: str) -> str:
-        """The namespace the node runs in, from the root."""
+        """The namespace the node runs in, from the root; raises as ``for_node``."""
         return self._found(node).namespace
 
+    @checked
     def full_name(self, node: str) -> str:
-        """The node's name with its namespace."""
+        """The node's name with its namespace; raises as ``for_node``."""
         return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
 
     def _found(self, node: str) -> NodeTable:
@@ -86,7 +92,7 @@ class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
     ``namespace`` starts at the root; ``spelled`` is what stands in its frames and joints; ``pose`` is
-    None where the fleet file has none.
+    None where the fleet file has none. It can be copied and pickled, with its fleet.
     """
 
     def __init__(self, fleet: LoadedFleet, described: Described) -> None:
@@ -103,26 +109,33 @@ class LoadedRobot:
     def __repr__(self) -> str:
         return f"LoadedRobot({self.name!r})"
 
+    def __reduce__(self) -> tuple[Callable[[LoadedFleet, str], LoadedRobot], tuple[object, ...]]:
+        return LoadedFleet.robot, (self._fleet, self.name)
+
     @property
     def description(self) -> str:
-        """Its rewritten description, for ``robot_description``."""
+        """Its rewritten description, for ``robot_description``; raises nothing."""
         return self._described.description.decode()
 
     @property
     def srdf(self) -> str:
-        """Its rewritten SRDF, for ``robot_description_semantic``; empty where it has none."""
+        """Its rewritten SRDF, for ``robot_description_semantic``; empty where it has none. Raises
+        nothing."""
         return self._described.srdf.decode()
 
     @cached_property
     def table(self) -> NodeNames:
-        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``."""
+        """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``. Raises
+        nothing."""
         fleet = self._fleet.planned
         return _names(fleet.table, fleet.facts, self._graph)
 
+    @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
 
         ``files`` are parameter files of the fleet; where it starts is added for its localisation.
+        Raises UsageError for a node that no stack has, and as ``params`` for a file.
         """
         given = [self.params(file, node) for file in files]
         return {
@@ -132,11 +145,13 @@ class LoadedRobot:
             "parameters": [it for it in (*given, self.start_parameters(node)) if it],
         }
 
+    @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
         """What a parameter file of the fleet says for a node, once rewritten, by dotted names.
 
         ``node`` is its name in the stack, or in the file. A node of a stack that the file does not
-        mention gets nothing; any other is a UsageError.
+        mention gets nothing. Raises UsageError for any other node, and as ``text`` and
+        ``LoadedFleet.parameters`` for the file.
         """
         document = self._read(file)
         known = node in self.table.nodes
@@ -147,22 +162,30 @@ class LoadedRobot:
             raise UsageError(f"{file}: {unknown('node', node, own, self.table.nodes)}")
         return node_parameters(document, full)
 
+    @checked
     def text(self, file: str) -> str:
-        """A file of the fleet as this robot has it: ``params.yaml``, ``bridge.yaml``, RViz's."""
+        """A file of the fleet as this robot has it: ``params.yaml``, ``bridge.yaml``, RViz's.
+
+        Raises as ``LoadedFleet.text``.
+        """
         name = os.path.basename(file)
         own, shared = f"{self.name}/{name}", name
         return self._fleet.text(own if own in self._fleet.files else shared)
 
+    @checked
     def frame(self, name: str) -> str:
-        """A frame or link of the description, as this robot has it."""
+        """A frame or link of the description, as this robot has it; raises UsageError for a name
+        that is no str."""
         return respell(self._described.names, "frame", name)
 
+    @checked
     def joint(self, name: str) -> str:
-        """A joint of the description, as this robot has it."""
+        """A joint of the description, as this robot has it; raises as ``frame``."""
         return respell(self._described.names, "joint", name)
 
+    @checked
     def topic(self, name: str) -> str:
-        """The full name of a topic that one robot alone has under ``name``."""
+        """The full name of a topic that one robot alone has under ``name``; raises as ``frame``."""
         plan = self._fleet.plan
         known = known_topics(plan.fleet.table, plan.fleet.facts, self._graph)
         full = robot_topic(self._described.topics, name, known)
@@ -170,7 +193,7 @@ class LoadedRobot:
 
     @property
     def tf_remappings(self) -> Rules:
-        """The rules that a node of no stack needs to hear this robot's tf."""
+        """The rules that a node of no stack needs to hear this robot's tf; raises nothing."""
         names = self._described.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
@@ -184,27 +207,30 @@ class LoadedRobot:
 
     @property
     def spawn_arguments(self) -> list[str]:
-        """``arguments`` of ``ros_gz_sim create``."""
+        """``arguments`` of ``ros_gz_sim create``; raises nothing."""
         return spawn.gz_arguments(self._spawn)
 
     @property
     def classic_arguments(self) -> list[str]:
-        """``arguments`` of ``gazebo_ros spawn_entity.py``."""
+        """``arguments`` of ``gazebo_ros spawn_entity.py``; raises nothing."""
         return spawn.classic_arguments(self._spawn)
 
     @property
     def teleop_arguments(self) -> list[str]:
-        """``arguments`` of ``teleop_twist_keyboard``."""
+        """``arguments`` of ``teleop_twist_keyboard``; raises nothing."""
         return teleop.arguments(teleop.teleop(self._fleet.plan, self._described))
 
     @property
     def transform_arguments(self) -> list[str]:
-        """``arguments`` of the ``static_transform_publisher`` of its pose; none if none is needed."""
+        """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
+        raises nothing."""
         made = self._fleet.placed.transforms
         return next((transforms.arguments(it) for it in made if it.robot == self._graph), [])
 
+    @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Parameters that tell ``node`` where the robot starts; empty where it does not take them."""
+        """Parameters that give ``node`` the robot's start, empty where it takes none; raises as
+        ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})
@@ -220,7 +246,8 @@ class LoadedRobot:
 class LoadedFleet:
     """A fleet file, ready for a launch script; ``robots`` are in its order.
 
-    ``findings`` are what a person should know about the descriptions and the table.
+    ``findings`` are what a person should know about the descriptions and the table. It can be copied
+    and pickled: the descriptions go along as they were read, other files are read where they are.
     """
 
     def __init__(self, plan: FleetPlan) -> None:
@@ -233,8 +260,12 @@ class LoadedFleet:
     def __repr__(self) -> str:
         return f"LoadedFleet({self.file!r})"
 
+    def __reduce__(self) -> tuple[Callable[..., LoadedFleet], tuple[object, ...]]:
+        return _planned, (self.plan.file, self.plan.jobs)
+
+    @checked
     def robot(self, name: str) -> LoadedRobot:
-        """The robot of this name; UsageError for another."""
+        """The robot of this name; raises UsageError for another."""
         found = {it.name: it for it in self.robots}
         if name not in found:
             raise UsageError(f"{self.file}: {unknown('robot', name, found)}")
@@ -242,17 +273,17 @@ class LoadedFleet:
 
     @cached_property
     def table(self) -> NodeNames:
-        """Names and remappings of the nodes that serve all robots."""
+        """Names and remappings of the nodes that serve all robots; raises nothing."""
         return _names(self.planned.table, self.planned.facts, "")
 
     @cached_property
     def planned(self) -> Fleet:
-        """The fleet with the nodes that hold its robots where they start."""
+        """The fleet with the nodes that hold its robots where they start; raises nothing."""
         return started(self.plan)
 
     @cached_property
     def placed(self) -> transforms.Placed:
-        """Where its robots stand."""
+        """Where its robots are in the world; raises nothing."""
         return transforms.place(self.plan)
 
     @cached_property
@@ -268,18 +299,20 @@ class LoadedFleet:
 
     @cached_property
     def files(self) -> Mapping[str, Artefact]:
-        """The same by path: ``robot1/params.yaml``."""
+        """The same by path: ``robot1/params.yaml``; raises as ``made``."""
         return {it.path: it for it in self.made.files}
 
+    @checked
     def text(self, path: str) -> str:
-        """One of these files; UsageError for one that is not there."""
+        """One of these files; raises UsageError for one that is not there, else as ``made``."""
         if path not in self.files:
             _no_file(self, path)
         return self.files[path].data.decode()
 
+    @checked
     def parameters(self, path: str) -> YamlText:
-        """One of these files as a parameter file; InputError, with the line of the source, for values
-        that rcl refuses."""
+        """One of these files as a parameter file. Raises as ``text``, and InputError with the line of
+        the source for values that rcl refuses."""
         if path not in self._parameters:
             text = self.text(path)
             for source in self.files[path].sources:
@@ -288,15 +321,21 @@ class LoadedFleet:
         return self._parameters[path]
 
 
+@checked
 def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
 
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused where two
-    robots would meet.
+    robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
     fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
     _refuse(fleet.findings)
     return fleet
+
+
+def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
+    """The fleet of a pickle: rewritten again from the descriptions that went along."""
+    return LoadedFleet(plan_fleet(file, jobs=jobs))
 
 
 def _names(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:

@@ -14,11 +14,11 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
+from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.lint.settings import Settings
-from multibot_rewrite.lint.subjects import Failed, read_subjects
 from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError, VocabularyError
 from multibot_rewrite.sources.read import read_file

@@ -1,4 +1,4 @@
-"""Safe edits -> the mended text, proved: nothing else changed, and the findings are gone."""
+"""Safe edits -> the fixed text, and the proof that nothing else changed and the findings are gone."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ from multibot_rewrite.model import Edit, ProofError
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.document import Document, read_document
 
-# A fix may uncover another one; what is not done by then goes round in circles.
+# A fix may make another one possible; more rounds than this never end.
 ROUNDS = 5
 _LINE = re.compile(r"\bline \d+")
 
 
 def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
-    """The text with every safe fix made, and what is left to find in it.
+    """The text with every safe fix applied, and the findings that are left.
 
     Raises InputError where the file cannot be read, ProofError where the result does not hold.
     """
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
-        edits = list(_apart(_edits(path, findings)))
+        edits = list(_not_overlapping(_edits(path, findings)))
         if not edits:
             return source, findings
-        mended = b"".join(cut(source, edits))
-        after = lint_data(path, mended, settings)
-        _prove(path, (source, findings), (mended, after), edits)
-        source, findings = mended, after
+        fixed = b"".join(cut(source, edits))
+        after = lint_data(path, fixed, settings)
+        _prove(path, (source, findings), (fixed, after), edits)
+        source, findings = fixed, after
     raise ProofError(f"{path}: fixes come back after {ROUNDS} rounds")
 
 
@@ -42,8 +42,8 @@ def _edits(path: str, findings: Iterable[Finding]) -> set[Edit]:
     return {edit for finding in findings if finding.file == path for edit in finding.edits}
 
 
-def _apart(edits: Iterable[Edit]) -> Iterator[Edit]:
-    """In source order, without those that would change what another one changes."""
+def _not_overlapping(edits: Iterable[Edit]) -> Iterator[Edit]:
+    """The edits in source order, without those that overlap an earlier one."""
     end = -1
     for edit in sorted(edits, key=lambda it: (it.start, it.end)):
         if edit.start >= max(end, 0) and edit.end > edit.start:
@@ -70,7 +70,7 @@ def _prove(
 
 
 def _touched(document: Document, edits: Sequence[Edit]) -> list[bool]:
-    """Has each element an edit between its start tag and the next one?"""
+    """For each element: is there an edit between its start tag and the next one?"""
     numbers = {max(bisect_right(document.starts, it.start) - 1, 0) for it in edits}
     return [number in numbers for number in range(len(document.starts))]
 

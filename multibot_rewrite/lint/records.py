@@ -1,24 +1,16 @@
 """Frozen records of the lint: subject (what a rule looks at) and problem (what it yields)."""
 
-# ruff: noqa: PLC0414
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.findings.finding import LEVELS as LEVELS
-from multibot_rewrite.findings.finding import NOTE as NOTE
 from multibot_rewrite.findings.finding import Edit
-from multibot_rewrite.findings.rule import SRDF as SRDF
-from multibot_rewrite.findings.rule import URDF as URDF
-from multibot_rewrite.findings.rule import XACRO as XACRO
-from multibot_rewrite.findings.rule import Rule as Rule
-from multibot_rewrite.findings.rule import rule as rule
-from multibot_rewrite.lint.elements import Elements
-from multibot_rewrite.lint.robot import Robot
-from multibot_rewrite.lint.schema import Fault
+from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.lint.facts.robot import Robot
+from multibot_rewrite.lint.schema.faults import Fault
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
@@ -35,6 +27,7 @@ class Subject(NamedTuple):
     robot that an SRDF belongs to, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
     ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's shape.
+    ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
     """
 
     format: str
@@ -44,6 +37,7 @@ class Subject(NamedTuple):
     tree: Tree
     robot: Robot
     settings: Settings
+    memo: dict[object, Any]
     beside: Robot | None = None
     origins: tuple[Origin | None, ...] = ()
     sources: Mapping[str, bytes] = {}
@@ -55,7 +49,7 @@ class Problem(NamedTuple):
     """What a rule found, at an element of its subject's document.
 
     ``attribute`` is the name of the attribute at fault, empty for the element's text, None for the
-    element itself. ``edits`` mend it without a change of meaning; empty where that is not safe.
+    element itself. ``edits`` fix it without a change of meaning; empty where that is not safe.
     """
 
     element: _Element

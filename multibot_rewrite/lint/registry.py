@@ -9,20 +9,20 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.rules import (
     files,
-    itself,
     meshes,
+    meta,
     multirobot,
     names,
     physics,
     references,
     rewriting,
-    semantics,
+    srdf,
     structure,
 )
 from multibot_rewrite.lint.settings import Settings
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
-    ("MB0", "the lint itself", itself),
+    ("MB0", "the lint itself", meta),
     ("MB1", "file and encoding", files),
     ("MB2", "references", references),
     ("MB3", "names", names),
@@ -30,10 +30,18 @@ GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB5", "structure", structure),
     ("MB6", "physics", physics),
     ("MB7", "meshes and packages", meshes),
-    ("MB8", "SRDF against URDF", semantics),
+    ("MB8", "SRDF against URDF", srdf),
     ("MB9", "rewriting", rewriting),
 )
-_FOUND = [it for *_, module in GROUPS for it in vars(module).values() if isinstance(it, Rule)]
+
+
+def rules_of(group: ModuleType) -> list[Rule]:
+    """The rules of a group's themes; a group of one file is its own theme."""
+    themes: tuple[ModuleType, ...] = getattr(group, "THEMES", (group,))
+    return [it for theme in themes for it in vars(theme).values() if isinstance(it, Rule)]
+
+
+_FOUND = [rule for *_, group in GROUPS for rule in rules_of(group)]
 RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 assert len(RULES) == len(_FOUND), "two rules have one code"
 

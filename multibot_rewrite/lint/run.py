@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterable, Sequence
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import by_place, lint_file
 from multibot_rewrite.lint.failures import lost, too_long
-from multibot_rewrite.lint.included import included
-from multibot_rewrite.lint.pairing import named_urdfs
+from multibot_rewrite.lint.files.included import included
+from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.rewriters.builtin import builtin_tree
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lazy import regex
-from multibot_rewrite.lint.directives import (
+from multibot_rewrite.lint.config.directives import (
     ALWAYS_TOLD,
     IGNORE_FILE,
     MARK,

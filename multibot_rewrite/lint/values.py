@@ -10,7 +10,7 @@ from multibot_rewrite.config import listed_files, type_name
 from multibot_rewrite.findings.codes import known_beginnings, no_rule
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.selection import OFF
-from multibot_rewrite.lint.patterns import anchored, with_folders
+from multibot_rewrite.lint.config.patterns import anchored, with_folders
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.model import UsageError

@@ -1,4 +1,4 @@
-"""Processes that work side by side. What one of them does not survive is told, the rest is done.
+"""Processes that work side by side. What kills one of them is reported, the rest is done.
 
 A pool of the standard library waits forever, or gives up altogether, when one of its processes is
 killed; and nothing but the end of a process stops an expression like 9**9**9.
@@ -19,14 +19,14 @@ from multibot_rewrite.model import UsageError
 
 _Item = TypeVar("_Item")
 _Made = TypeVar("_Made")
-# Beyond what a worker has when it starts; what needs more takes the machine with it.
+# Beyond what a worker has when it starts: a file that needs more would stop the machine.
 MOST_MEMORY = 4 * 2**30
 # So many objects may wait for the collector.
 MOST_LEFT = 500_000
 
 
 class _Worker(NamedTuple):
-    """A process, the pipe on which it hears numbers of items, and the one it answers on."""
+    """A process, the pipe that sends it numbers of items, and the pipe of its answers."""
 
     pid: int
     orders: BinaryIO
@@ -83,10 +83,10 @@ class Crew(Generic[_Item, _Made]):
             _limit_memory()
             gc.freeze()
             gc.disable()
-            heard, told = os.fdopen(orders[0], "rb"), os.fdopen(answers[1], "wb")
+            requests, replies = os.fdopen(orders[0], "rb"), os.fdopen(answers[1], "wb")
             while True:
-                pickle.dump(self.work(self.items[pickle.load(heard)]), told)
-                told.flush()
+                pickle.dump(self.work(self.items[pickle.load(requests)]), replies)
+                replies.flush()
                 _collect()
         finally:
             os._exit(0)
@@ -166,7 +166,7 @@ def _ready(busy: dict[int, int]) -> list[int]:
 
 
 def _collect() -> None:
-    """Free what xacro's trees leave, which hold on to each other: seldom, and all at once."""
+    """Free what xacro's trees leave, which refer to each other: seldom, and all at once."""
     if gc.get_count()[0] > MOST_LEFT:
         gc.collect()
 

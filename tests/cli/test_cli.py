@@ -283,10 +283,16 @@ def test_quiet_leaves_only_findings(folder: Path) -> None:
     ("words", "code"),
     [
         pytest.param(("rover.urdf", "robot1"), 0, id="done"),
-        pytest.param(("rover.urdf", "robot1", "--fail-on", "warning"), 0, id="strict-nothing-found"),
+        pytest.param(
+            ("rover.urdf", "robot1", "--fail-on", "warning"), 0, id="strict-nothing-found"
+        ),
         pytest.param(("siblings.urdf", "robot1"), 0, id="warning"),
         pytest.param(("siblings.urdf", "robot1", "--fail-on", "warning"), 1, id="strict-warning"),
-        pytest.param(("siblings.urdf", "robot1", "--affix", "prefix", "--fail-on", "warning"), 0, id="no-warning-left"),
+        pytest.param(
+            ("siblings.urdf", "robot1", "--affix", "prefix", "--fail-on", "warning"),
+            0,
+            id="no-warning-left",
+        ),
         pytest.param(("rover.urdf", "robot1", "--strip"), 1, id="not-rewritten"),
         pytest.param(("nothing.urdf", "robot1"), 2, id="unreadable"),
         pytest.param(("rover.urdf", "robot-1"), 2, id="wrong-use"),

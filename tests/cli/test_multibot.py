@@ -114,7 +114,10 @@ def test_the_table_of_commands_is_what_help_lists(multibot: Multibot) -> None:
         (("coverage", "a", "--min-known", "nan"), "'nan' is not a percentage"),
         (("coverage", "a", "--min-known", "x"), "'x' is not a percentage"),
         (("coverage", "a", "--vocabulry", "x"), "--vocabulry; did you mean '--vocabulary'?"),
-        (("vocabulary", "--type", "car"), "argument --type: 'car' is not known, use one of element"),
+        (
+            ("vocabulary", "--type", "car"),
+            "argument --type: 'car' is not known, use one of element",
+        ),
         (("vocabulary", "x", "--suggest", "a"), "--suggest goes with --vocabulary only"),
         (("vocabulary", "--form", "json", "--suggest", "a"), "--suggest goes with"),
         (("vocabulary", "a", "b"), "a b: give one NAME"),
@@ -481,9 +484,7 @@ def test_a_table_fits_a_narrow_terminal_and_loses_nothing() -> None:
 
 
 def test_brackets_and_colons_are_shown_as_they_are() -> None:
-    text = render(
-        ["[bold]x[/bold] :smile:", Grid(("path",), [("plugin[red]:car:",)])]
-    )
+    text = render(["[bold]x[/bold] :smile:", Grid(("path",), [("plugin[red]:car:",)])])
     assert text == "[bold]x[/bold] :smile:\npath\nplugin[red]:car:\n"
 
 

@@ -12,8 +12,6 @@ from rule_examples import found
 from multibot_rewrite import catalogue
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.lint.registry import GROUPS
-from multibot_rewrite.lint.registry import RULES as LINT_RULES
 
 RULES = catalogue.rules()
 # No text makes them: a fault of the lint, and a file that takes too long. Other tests raise them.
@@ -43,16 +41,6 @@ def test_the_words_of_a_rule_are_all_there(rule: Rule) -> None:
 
 def test_names_are_no_two_rules() -> None:
     assert len({rule.name for rule in RULES.values()}) == len(RULES)
-
-
-def test_every_lint_rule_is_in_its_group() -> None:
-    homes = {start: module.__name__ for start, _, module in GROUPS}
-    wrong = {
-        code: rule.check.__module__
-        for code, rule in LINT_RULES.items()
-        if rule.check and not rule.check.__module__.startswith(homes[code[:3]])
-    }
-    assert wrong == {}
 
 
 @pytest.mark.parametrize("code", WITHOUT_EXAMPLES)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -16,6 +18,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.by_schema import TYPES
 from multibot_rewrite.fleets.fleet_file import (
     KINDS,
+    SCHEMA,
     FleetFile,
     Pose,
     RobotSpec,
@@ -337,6 +340,28 @@ def test_the_schema_is_one_and_says_so() -> None:
     assert keys(schema()["$defs"]["companions"]) == set(KINDS)
     used = re.findall(r'"type": "(\w+)"', json.dumps(schema()))
     assert set(used) <= set(TYPES)
+
+
+def test_the_schema_for_editors_lists_the_layouts() -> None:
+    """Editors read the file as it is; a command takes the layouts from the rows in naming."""
+    text = ROOT.joinpath("multibot_rewrite", "fleets", SCHEMA).read_text()
+    wanted = json.dumps(schema()["properties"]["layout"])
+    assert json.loads(text) == schema(), f'write "layout": {wanted} into {SCHEMA}'
+
+
+def test_an_old_jsonschema_is_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Ubuntu 22.04 has 3.2.0, which has no Draft202012Validator."""
+    monkeypatch.setitem(sys.modules, "jsonschema", ModuleType("jsonschema"))
+    fleet = fleet_folder(tmp_path, ONE)
+    assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
+    out, err = capsys.readouterr()
+    assert err.startswith(
+        "multibot: jsonschema 4.0 or newer is needed to read a fleet file; install"
+    )
+    assert (out, err.count("\n")) == ("", 1)
+    assert not (tmp_path / "out").exists()
 
 
 def test_every_key_of_the_schema_is_on_the_page() -> None:

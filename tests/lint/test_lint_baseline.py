@@ -9,8 +9,14 @@ import pytest
 
 from multibot_rewrite import UsageError
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.lint.baseline import FORMAT, Baseline, baseline_text, beyond, read_baseline
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.baseline import (
+    FORMAT,
+    Baseline,
+    baseline_text,
+    beyond,
+    read_baseline,
+)
 from multibot_rewrite.lint.settings import Settings
 
 

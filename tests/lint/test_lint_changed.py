@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import UsageError
-from multibot_rewrite.lint.changed import changed_since
+from multibot_rewrite.lint.config.changed import changed_since
 
 ROBOT = '<robot name="r"><link name="a"/></robot>'
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">{}</robot>'

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from multibot_rewrite.cli.commands import LINT
 from paths import FIXTURES
 
+from multibot_rewrite.cli.commands import LINT
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.lint.registry import RULES

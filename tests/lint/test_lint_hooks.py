@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 import pytest
 import yaml
 from junitparser import JUnitXml
+from paths import ROOT
+
 from multibot_rewrite.cli.commands import LINT
 from multibot_rewrite.cli.lint_use import check_use
 from multibot_rewrite.cli.parser import make_parser, parsed
-from paths import ROOT
-
 from multibot_rewrite.cli.urdf_lint import main
 
 HOOKS = ROOT / ".pre-commit-hooks.yaml"

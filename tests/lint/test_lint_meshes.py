@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.lint import packages
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.files import packages
 from multibot_rewrite.lint.settings import Settings
 
 

@@ -10,7 +10,7 @@ import pytest
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.rules.physics import _eigenvalues
+from multibot_rewrite.lint.rules.physics.moments import eigenvalues
 from multibot_rewrite.lint.settings import Settings
 
 GROUP = Settings(select=("MB6",), ignore=("MB609", "MB610", "MB611"))
@@ -232,7 +232,7 @@ def test_principal_moments_are_those_of_numpy() -> None:
         scale = 10 ** draw(-9, 9)
         xx, xy, xz, yy, yz, zz = values = tuple(draw(-1, 1) * scale for _ in range(6))
         expected = numpy.linalg.eigvalsh([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        assert _eigenvalues(values) == pytest.approx(list(expected), abs=1e-7 * scale)
+        assert eigenvalues(values) == pytest.approx(list(expected), abs=1e-7 * scale)
 
 
 def test_every_rule_of_the_group_is_in_a_case() -> None:

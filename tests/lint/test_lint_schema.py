@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from multibot_rewrite.lint.schema import Fault, read_faults, schema
+from multibot_rewrite.lint.schema.faults import Fault, read_faults
+from multibot_rewrite.lint.schema.sections import schema
 from multibot_rewrite.steps.document import read_document
 
 LINKS = '<link name="a"/><link name="b"/>'
@@ -220,7 +221,7 @@ def test_hints_name_what_is_meant(body: str, hint: str) -> None:
 
 
 def test_the_schema_is_whole() -> None:
-    sections = schema()
+    sections = schema().sections
     for name, section in sections.items():
         for tag, child in section.children.items():
             assert not child.section or child.section in sections, (name, tag)

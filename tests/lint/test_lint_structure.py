@@ -11,9 +11,9 @@ from lxml import etree
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.numbers import number, vector
+from multibot_rewrite.lint.facts.numbers import number, vector
+from multibot_rewrite.lint.facts.robot import loops, read_robot
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.robot import loops, read_robot
 from multibot_rewrite.lint.settings import Settings
 
 GROUP = Settings(select=("MB5",))

@@ -14,7 +14,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.directives import ALWAYS_TOLD, read_directives
+from multibot_rewrite.lint.config.directives import ALWAYS_TOLD, read_directives
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import RULES

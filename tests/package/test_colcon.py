@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -170,6 +171,14 @@ def test_versions_and_descriptions_agree() -> None:
     assert manifest.findtext("license") == TOML["project"]["license"]
 
 
+def test_both_manifests_ask_for_the_same_packages() -> None:
+    depends = ET.parse(ROOT / "package.xml").iter()
+    ros = {it.text for it in depends if it.tag in ("depend", "exec_depend")}
+    pip = {re.split(r"[>=<;]", it)[0].lower() for it in TOML["project"]["dependencies"]}
+    names = {"pyyaml": "python3-yaml", "xacro": "xacro"}
+    assert ros == {names.get(it, f"python3-{it}") for it in pip}
+
+
 def test_pip_goes_by_pyproject_alone(tmp_path: Path) -> None:
     source, target = copied(tmp_path), tmp_path / "target"
     for name in ("README.md", "LICENSE"):
@@ -181,5 +190,8 @@ def test_pip_goes_by_pyproject_alone(tmp_path: Path) -> None:
     (found,) = importlib.metadata.distributions(path=[str(target)])
     assert found.metadata["License-Expression"] == TOML["project"]["license"]
     assert found.metadata["Requires-Python"] == TOML["project"]["requires-python"]
+    needed = [it for it in found.requires or () if "extra ==" not in it]
+    assert any(it.startswith("lxml") for it in needed)
+    assert not any(it.startswith("yourdfpy") for it in needed)
     assert sorted(it.name for it in (target / "bin").iterdir()) == PROGRAMS
     assert not (target / "share").exists()

@@ -13,7 +13,6 @@ from real_robots import WHEELS, wheel_files
 from refusal_reasons import Outcome, is_true, reason
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
-from multibot_rewrite.naming import make_naming
 
 REFUSALS = FIXTURES / "corpus_refusals.json"
 LEAST_CORPUS, LEAST_WHEELS, LEAST_WHEEL_FILES = 1000, 3, 100
@@ -51,8 +50,7 @@ def problems(data: bytes, output: bytes, options: Mapping[str, object]) -> Itera
     for slot, new in changed_slots(data, output):
         if slot.tag not in RECOMPUTED and not is_insertion(slot.value, new):
             yield f"{slot} became {new!r}"
-    naming = make_naming(**options)  # type: ignore[arg-type]
-    if strip(output, ROBOT, naming=naming) != data:
+    if strip(output, ROBOT, **options) != data:  # type: ignore[arg-type]
         yield "strip does not give the input back"
 
 

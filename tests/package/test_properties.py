@@ -100,8 +100,7 @@ def test_it_is_the_same_robot_under_new_names(robot: Robot, words: Options) -> N
 def test_strip_gives_the_input_back(robot: Robot, words: Options, name: str) -> None:
     result = attempt(robot, words, name)
     if result:
-        naming = make_naming(**words)  # type: ignore[arg-type]
-        assert strip(result.data, name, naming=naming) == robot.text
+        assert strip(result.data, name, **words) == robot.text  # type: ignore[arg-type]
 
 
 @given(random_robots(), options)
@@ -238,5 +237,4 @@ def test_thousands_of_robots(robot: Robot, words: Options, name: str) -> None:
     result = attempt(robot, words, name)
     if result:
         assert graph_problems(robot.text, result.data, words, name) == []
-        naming = make_naming(**words)  # type: ignore[arg-type]
-        assert strip(result.data, name, naming=naming) == robot.text
+        assert strip(result.data, name, **words) == robot.text  # type: ignore[arg-type]

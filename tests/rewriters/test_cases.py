@@ -6,6 +6,7 @@ import io
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import cast
 
 import pytest
 import yourdfpy
@@ -15,7 +16,7 @@ from lxml import etree
 from multibot_rewrite import Rewrite, RewriteRefused, pipeline, rewrite, strip
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import ERROR, Finding, Site
-from multibot_rewrite.naming import POSTFIX, Naming, make_naming
+from multibot_rewrite.naming import POSTFIX, Policy, make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.vocabulary import Rewriter, load_vocabulary
@@ -59,10 +60,9 @@ def _run(name: str, source: bytes) -> Rewrite:
     return rewrite(source, ROBOTS[0], **BY_NAME[name].options)
 
 
-def policy(case: Case) -> Naming:
-    """The naming policy that the case's options ask for."""
-    words = {key: value for key, value in case.options.items() if key not in NO_POLICY}
-    return make_naming(**words)
+def policy(case: Case) -> Policy:
+    """The options of the case that say how names are made."""
+    return cast(Policy, {key: it for key, it in case.options.items() if key not in NO_POLICY})
 
 
 def beside(case: Case) -> dict[str, bytes]:
@@ -107,7 +107,7 @@ def test_refused_with_that_code(case: Case) -> None:
 
 @every
 def test_identity(case: Case) -> None:
-    naming = policy(case)._replace(separators={}, topics=POSTFIX)
+    naming = make_naming(**policy(case))._replace(separators={}, topics=POSTFIX)
     template = pipeline.prepare(case.source, case.name, naming, builtin_tree(), outside(case))
     assert fill(template.pieces, ROBOTS[0]) == case.source
     assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)
@@ -115,7 +115,7 @@ def test_identity(case: Case) -> None:
 
 @every
 def test_strip_gives_the_input_back(case: Case) -> None:
-    stripped = strip(run(case).data, ROBOTS[0], naming=policy(case), **beside(case))
+    stripped = strip(run(case).data, ROBOTS[0], **policy(case), **beside(case))
     assert stripped == case.source
 
 

@@ -12,7 +12,6 @@ import pytest
 from lxml import etree
 
 from multibot_rewrite import RewriteRefused, rewrite, strip
-from multibot_rewrite.naming import make_naming
 from multibot_rewrite.rewriters.contact import Respell, collision_map
 
 UNDERSCORE = {"link": "_"}
@@ -131,12 +130,11 @@ def test_a_contact_sensor_follows(
 ) -> None:
     source = robot(links, contact(scope + old))
     for side, new in (("postfix", postfix), ("prefix", prefix)):
-        naming = make_naming(affix=side, separators=UNDERSCORE)
         result = rewrite(source, "r1", affix=side, separators=UNDERSCORE)
         assert f"{new}</collision>" in result.text
         (change,) = [change for change in result.changes if change.kind == "collision"]
         assert change.old == scope + old
-        assert strip(result.data, "r1", naming=naming) == source.encode()
+        assert strip(result.data, "r1", affix=side, separators=UNDERSCORE) == source.encode()
 
 
 def test_a_collision_nobody_has_stays() -> None:

@@ -17,7 +17,7 @@ from real_robots import corpus_files, wheel_files
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.pairing import named_urdfs
+from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
 from multibot_rewrite.lint.settings import Settings

@@ -1,1 +1,1 @@
-"""The rules: one module a group, one function a rule, its words and examples above it."""
+"""The rules: a folder a group, a file a theme. A rule is its words, its examples and its check."""

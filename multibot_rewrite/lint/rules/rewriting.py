@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
 
 from multibot_rewrite.checks.audit import unknown_hardware, unknown_plugins
 from multibot_rewrite.checks.mentions import remark, unclaimed_mentions
-from multibot_rewrite.lint.records import NOTE, SRDF, URDF, Problem, Subject, rule
-from multibot_rewrite.model import WARNING
+from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.shared import problems
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import slot_values
 
 
@@ -31,12 +37,19 @@ def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
     if not names:
         return
     values = slot_values(subject.document.root)
-    for mention in unclaimed_mentions(inventory, values, names, subject.tree):
-        said = remark(mention)
-        yield Problem(said.element, said.message, said.attribute, said.hint)
+    mentions = unclaimed_mentions(inventory, values, names, subject.tree)
+    yield from problems(map(remark, mentions))
 
 
-@rule(
+Audit = Callable[[Inventory, Tree], Iterable[Remark]]
+
+
+def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
+    """What an audit of the vocabulary finds in a document."""
+    return problems(audit(subject.inventory, subject.tree))
+
+
+unknown_plugin = rule(
     "MB902",
     "unknown-plugin",
     NOTE,
@@ -46,14 +59,9 @@ def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
     fix="Add a section for it to a vocabulary file.",
     bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
     good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
-)
-def unknown_plugin(subject: Subject) -> Iterator[Problem]:
-    """Plugins without a section of their own."""
-    for it in unknown_plugins(subject.inventory, subject.tree):
-        yield Problem(it.element, it.message, it.attribute, it.hint)
+)(partial(_audit, unknown_plugins))
 
-
-@rule(
+unknown_hardware_class = rule(
     "MB903",
     "unknown-hardware",
     NOTE,
@@ -65,8 +73,4 @@ def unknown_plugin(subject: Subject) -> Iterator[Problem]:
     '<param name="side">left</param></hardware></ros2_control>',
     good='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin></hardware>'
     "</ros2_control>",
-)
-def unknown_hardware_class(subject: Subject) -> Iterator[Problem]:
-    """Hardware classes with parameters and without a section."""
-    for it in unknown_hardware(subject.inventory, subject.tree):
-        yield Problem(it.element, it.message, it.attribute, it.hint)
+)(partial(_audit, unknown_hardware))

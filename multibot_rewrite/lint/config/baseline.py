@@ -1,0 +1,124 @@
+"""Findings that a project has already: only new ones are reported.
+
+A finding is recognised by its code, its file and its message, so lines may move.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.config import read
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.model import UsageError
+
+FORMAT = "urdf-lint-baseline"
+VERSION = 1
+# The number of a line in a message may change.
+_LINE = re.compile(r"\bline \d+")
+FIELDS = {"code": str, "file": str, "message": str, "count": int}
+
+
+class Key(NamedTuple):
+    """What a finding is recognised by; ``file`` is relative to the baseline's folder."""
+
+    code: str
+    file: str
+    message: str
+
+
+class Baseline(NamedTuple):
+    """How many findings of each kind are known."""
+
+    counts: Mapping[Key, int]
+
+
+def read_baseline(path: str) -> Baseline:
+    """The baseline in a file; raises UsageError for a file that is none."""
+    try:
+        content = json.loads(read(path))
+        return Baseline(_counts(content))
+    except (ValueError, RecursionError) as error:
+        reason = " ".join(str(error).split())
+        hint = f"write one with --write-baseline {path}"
+        raise UsageError(f"{path}: it is no baseline of urdf-lint: {reason}; {hint}") from None
+
+
+def _counts(content: object) -> Counter[Key]:
+    if not isinstance(content, dict) or content.get(FORMAT) != VERSION:
+        raise ValueError(f'"{FORMAT}": {VERSION} is not in it')
+    listed = content.get("findings")
+    if not isinstance(listed, list):
+        raise ValueError('"findings" is no list')
+    counts: Counter[Key] = Counter()
+    for number, entry in enumerate(listed, 1):
+        _check(entry, number)
+        counts[Key(entry["code"], entry["file"], entry["message"])] += entry["count"]
+    return counts
+
+
+def _check(entry: object, number: int) -> None:
+    if not isinstance(entry, dict) or set(entry) != set(FIELDS):
+        raise ValueError(f"finding {number} does not have just {', '.join(FIELDS)}")
+    wrong = next((name for name, kind in FIELDS.items() if type(entry[name]) is not kind), None)
+    if wrong is not None:
+        raise ValueError(f"{wrong!r} of finding {number} is {entry[wrong]!r}")
+    if entry["count"] < 1:
+        raise ValueError(f"'count' of finding {number} is {entry['count']}")
+
+
+def beyond(
+    findings: Sequence[Finding],
+    baseline: Baseline,
+    path: str,
+    linted: Collection[str] | None = None,
+) -> tuple[list[Finding], int]:
+    """The findings that the baseline at ``path`` lacks, and how many of its findings are gone.
+
+    ``linted`` are the files that were looked at, None for all: of a file that is still there and
+    was not looked at nothing is gone.
+    """
+    left = Counter(baseline.counts)
+    new = []
+    for finding in findings:
+        key = _key(finding, path)
+        if left[key] > 0:
+            left[key] -= 1
+        else:
+            new.append(finding)
+    names = None if linted is None else {_relative(it, path) for it in linted}
+    gone = (count for key, count in left.items() if _is_judged(key.file, path, names))
+    return new, sum(gone)
+
+
+def _is_judged(file: str, path: str, names: Collection[str] | None) -> bool:
+    if names is None or file in names:
+        return True
+    return not os.path.exists(os.path.join(os.path.dirname(path), file))
+
+
+def baseline_text(findings: Iterable[Finding], path: str) -> bytes:
+    """The baseline that holds just these findings, to be written to ``path``: sorted, a line each."""
+    counts = Counter(_key(it, path) for it in findings)
+    lines = [
+        json.dumps({**key._asdict(), "count": count}, ensure_ascii=False)
+        for key, count in sorted(counts.items(), key=lambda it: (it[0].file, it[0]))
+    ]
+    listed = ",\n  ".join(lines)
+    listed = f"\n  {listed}\n" if lines else ""
+    text = f'{{\n"{FORMAT}": {VERSION},\n"findings": [{listed}]\n}}\n'
+    return text.encode("utf-8", "backslashreplace")
+
+
+def _key(finding: Finding, path: str) -> Key:
+    message = _LINE.sub("line N", finding.message)
+    return Key(finding.code, _relative(finding.file, path), message)
+
+
+def _relative(file: str, path: str) -> str:
+    folder = os.path.dirname(os.path.abspath(path))
+    return os.path.relpath(file, folder).replace(os.sep, "/")

@@ -1,0 +1,184 @@
+"""Which files git says changed, and which xacro files read one that did."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from multibot_rewrite.model import UsageError
+
+_INCLUDE = re.compile(
+    rb"<xacro:include\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?filename\s*=\s*(\"[^\"]*\"|'[^']*')"
+)
+# Only xacro can fill these in: it may be any name.
+_UNKNOWN = re.compile(rb"\$.*[)}]|&#?\w+;", re.DOTALL)
+# A word in a file, or the end of its name -> what it reads without naming it.
+_YAML = (b"load_yaml", ("*.yaml", "*.yml"))
+_BESIDE = ((".srdf", ".srdf.xacro"), ("*.urdf", "*.xacro"))
+
+
+class Changes(NamedTuple):
+    """Of the repository at ``top``: the paths that changed, those that git has, the others."""
+
+    top: str
+    changed: frozenset[str]
+    tracked: frozenset[str]
+    untracked: frozenset[str]
+
+
+def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
+    """Those of ``paths`` that changed since HEAD and ``rev`` had a commit in common.
+
+    That is a commit since then, the working tree, a file git does not have, or a xacro file that
+    includes such a one. The repository is that of the working directory; what is outside of it, or
+    ignored, counts as changed: git cannot tell. Raises UsageError where git cannot be asked.
+    """
+    if not rev or rev.startswith("-") or "\0" in rev:
+        raise UsageError(f"{rev!r} is no revision; name a branch, a tag or a commit")
+    changes = _changes(rev)
+    touched = _touched(paths, changes)
+    return [it for it in paths if touched[it]]
+
+
+def _changes(rev: str) -> Changes:
+    top = os.fsdecode(_git([], "rev-parse", "--show-toplevel").removesuffix(b"\n"))
+    base = _base(rev)
+    there = ["-C", top]
+    diff = (
+        "diff",
+        "--name-only",
+        "-z",
+        "--no-renames",
+        "--no-ext-diff",
+        "--ignore-submodules=none",
+    )
+    changed = _names(_git(there, *diff, base, "--"))
+    others = _names(_git(there, "ls-files", "-z", "--others", "--exclude-standard"))
+    return Changes(top, changed | others, _names(_git(there, "ls-files", "-z")), others)
+
+
+def _base(rev: str) -> str:
+    """The last commit that HEAD and the revision have in common."""
+    try:
+        _git([], "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
+    except UsageError:
+        raise UsageError(
+            f"git knows no revision {rev!r} here; fetch it, or name another one"
+        ) from None
+    try:
+        return _git([], "merge-base", rev, "HEAD").decode().strip()
+    except UsageError:
+        hint = "fetch the whole history (fetch-depth: 0)"
+        raise UsageError(f"{rev!r} and HEAD have no commit in common here; {hint}") from None
+
+
+def _git(where: Sequence[str], *words: str) -> bytes:
+    try:
+        done = subprocess.run(["git", *where, *words], capture_output=True, check=True)
+    except OSError as error:
+        raise UsageError(f"git cannot be run: {error.strerror}; install it") from None
+    except subprocess.CalledProcessError as error:
+        said = error.stderr.decode("utf-8", "replace").strip().splitlines() or ["it failed"]
+        raise UsageError(f"git says: {said[0].removeprefix('fatal: ')}") from None
+    return done.stdout
+
+
+def _names(listed: bytes) -> frozenset[str]:
+    """The names in a list with zeros between them; a nested repository ends in a slash."""
+    return frozenset(os.fsdecode(it).rstrip("/") for it in listed.split(b"\0") if it)
+
+
+def _touched(paths: Iterable[str], changes: Changes) -> dict[str, bool]:
+    """Which files changed, or read one that did; included files are looked at, too."""
+    reads = _reads(paths, changes)
+    changed_by_path = {path: _is_changed(path, changes) for path in reads}
+    names = set(_base_names(changes))
+    names.update(os.path.basename(path) for path, it in changed_by_path.items() if it)
+    left = {path: patterns for path, patterns in reads.items() if not changed_by_path[path]}
+    while more := [path for path, patterns in left.items() if _reach(patterns, names)]:
+        changed_by_path.update(dict.fromkeys(more, True))
+        names.update(os.path.basename(path) for path in more)
+        left = {path: patterns for path, patterns in left.items() if not changed_by_path[path]}
+    return changed_by_path
+
+
+def _base_names(changes: Changes) -> Iterator[str]:
+    """The names of what changed; a nested repository changed as a whole."""
+    for path in changes.changed:
+        yield os.path.basename(path)
+        for _, _, files in os.walk(os.path.join(changes.top, path)):
+            yield from files
+
+
+def _is_changed(path: str, changes: Changes) -> bool:
+    """Did the file itself change, or the one that a link leads to?"""
+    folder, name = os.path.split(path)
+    places = {os.path.realpath(path), os.path.join(os.path.realpath(folder), name)}
+    return any(_is_other(os.path.relpath(it, changes.top), changes) for it in places)
+
+
+def _is_other(name: str, changes: Changes) -> bool:
+    # A nested repository is listed as its folder.
+    parts = name.split(os.sep)
+    names = {os.sep.join(parts[:end]) for end in range(1, len(parts) + 1)}
+    return not names.isdisjoint(changes.changed) or names.isdisjoint(changes.tracked)
+
+
+def _reads(paths: Iterable[str], changes: Changes) -> dict[str, tuple[str, ...]]:
+    """For the files, and all that they include, patterns for the names of what each reads."""
+    there: dict[str, list[str]] = {}
+    for name in changes.tracked | changes.untracked:
+        there.setdefault(os.path.basename(name), []).append(os.path.join(changes.top, name))
+    found: dict[str, tuple[str, ...]] = {}
+    todo = list(paths)
+    while todo:
+        path = todo.pop()
+        if path not in found:
+            asked = list(_includes(path))
+            found[path] = tuple(os.path.basename(it) for it in asked)
+            todo += _located(path, asked, there)
+    return found
+
+
+def _includes(path: str) -> Iterator[str]:
+    """Patterns for the files that a file reads, as far as that can be seen in its text."""
+    if path.endswith(_BESIDE[0]):
+        yield from _BESIDE[1]
+    if path.endswith(".urdf"):
+        return
+    try:
+        with open(path, "rb") as file:
+            data = file.read()
+    except (OSError, ValueError):  # reported when it is linted
+        return
+    if _YAML[0] in data:
+        yield from _YAML[1]
+    for name in _INCLUDE.findall(data):
+        yield os.fsdecode(_UNKNOWN.sub(b"*", name[1:-1]))
+
+
+def _located(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> Iterator[str]:
+    """Files of these names, wherever they are; git may not have the one beside the file."""
+    for it in asked:
+        name = os.path.basename(it)
+        beside = os.path.join(os.path.dirname(path), it)
+        if os.path.isfile(beside):
+            yield beside
+        # A name that is all wildcard matches every change anyway.
+        if name.strip("*"):
+            yield from (file for known in _matching(name, there) for file in there[known])
+
+
+def _matching(pattern: str, names: Collection[str]) -> list[str]:
+    found = [pattern] if pattern in names else []
+    if not any(it in pattern for it in "*?["):
+        return found
+    return found + [it for it in names if it != pattern and fnmatchcase(it, pattern)]
+
+
+def _reach(patterns: Iterable[str], names: Collection[str]) -> bool:
+    return any(_matching(it, names) for it in patterns)

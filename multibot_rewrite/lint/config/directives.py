@@ -1,0 +1,227 @@
+"""``urdf-lint:`` comments of a file: what they silence, and in which part of the file.
+
+<!-- urdf-lint: ignore MB401, MB402 - a reason -->
+<!-- urdf-lint: ignore-file MB401: a reason -->
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.checks.references import nearest
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.lint.registry import RULES
+
+MARK = b"urdf-lint"
+IGNORE, IGNORE_FILE = "ignore", "ignore-file"
+# No comment silences these: the lint did not look at a file, or a comment is wrong.
+ALWAYS_TOLD = frozenset({"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103"})
+_OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
+_PART = regex(
+    rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</?([^\s/>!?]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
+    re.DOTALL,
+)
+_DIRECTIVE = regex(rb"<!--\s*urdf-lint\s*(:?)\s*([^\s:]*)(.*)-->", re.DOTALL)
+# A dash or a colon with blanks around: neither MB401-MB405 nor MB401:MB402 drops a code silently.
+_REASON = regex(rb"\s*:(?=\s|$)|\s+(?:-|\xe2\x80\x93|\xe2\x80\x94)(?=\s|$)")
+_WORD = regex(rb"[^\s,]+")
+_LIKE_A_CODE = regex(r"[A-Za-z]{1,3}-?\d+")
+# What only some expansions of a xacro file hold.
+_SOMETIMES = frozenset({b"xacro:macro", b"xacro:if", b"xacro:unless"})
+_HOW = "write urdf-lint: ignore CODE, CODE - reason"
+
+
+class Part(NamedTuple):
+    """A tag, comment or the like by byte offsets; ``name`` is that of an element's first tag."""
+
+    kind: str
+    start: int
+    end: int
+    name: bytes = b""
+
+
+class Fault(NamedTuple):
+    """What is wrong with a comment, at a byte offset."""
+
+    start: int
+    message: str
+    hint: str = _HOW
+
+
+class Code(NamedTuple):
+    """A rule's code in a comment, and its place."""
+
+    text: str
+    start: int
+    end: int
+
+
+class Directive(NamedTuple):
+    """A comment from ``start`` to ``end``, and the lines it is on as byte offsets.
+
+    ``element`` is the span of the element below it, if any. ``sometimes``: not every expansion of the
+    file has what it is about. ``idle``: there is nothing that a finding could be at.
+    """
+
+    start: int
+    end: int
+    word: str
+    codes: tuple[Code, ...]
+    faults: tuple[Fault, ...]
+    lines: tuple[int, int]
+    element: tuple[int, int] | None = None
+    sometimes: bool = False
+    idle: bool = False
+
+
+def read_directives(source: bytes) -> list[Directive]:
+    """The comments of a file that address the lint, in order."""
+    parts = list(_parts(source))
+    ends = _element_ends(parts)
+    spans = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
+    tags = [it for it in parts if it.kind in (_OPEN, _EMPTY)]
+    found = []
+    for at, part in enumerate(parts):
+        if part.kind == _COMMENT and (it := _directive(source, part)):
+            element = _below(source, parts, at, ends) if it.word == IGNORE else None
+            it = _in_place(it._replace(element=element), tags)
+            idle = it.word == IGNORE and _is_idle(it, tags, _kind_before(parts, at))
+            found.append(it._replace(sometimes=_meets(it, spans), idle=idle))
+    return found
+
+
+def _parts(source: bytes) -> Iterator[Part]:
+    for found in _PART.finditer(source):
+        start, end, name = found.start(), found.end(), found[1]
+        if name is None:
+            kind = _COMMENT if source.startswith(b"<!--", start) else _OTHER
+            yield Part(kind, start, end)
+        elif source.startswith(b"</", start):
+            yield Part(_CLOSE, start, end)
+        else:
+            yield Part(_EMPTY if source[end - 2 : end] == b"/>" else _OPEN, start, end, name)
+
+
+def _element_ends(parts: Sequence[Part]) -> dict[int, int]:
+    """Number of an element's first tag -> the offset where the element ends."""
+    ends: dict[int, int] = {}
+    opened: list[int] = []
+    for at, part in enumerate(parts):
+        if part.kind == _OPEN:
+            opened.append(at)
+        elif part.kind == _EMPTY:
+            ends[at] = part.end
+        elif part.kind == _CLOSE and opened:
+            ends[opened.pop()] = part.end
+    return ends
+
+
+def _directive(source: bytes, part: Part) -> Directive | None:
+    said = _DIRECTIVE.fullmatch(source, part.start, part.end)
+    if said is None:
+        return None
+    word = said[2].decode("utf-8", "replace")
+    if not said[1] and word not in (IGNORE, IGNORE_FILE):
+        return None  # prose about the lint
+    codes, faults = _codes(source, said)
+    if not said[1]:
+        faults = [Fault(part.start, f"there is no colon behind {MARK.decode()!r}")]
+    elif word not in (IGNORE, IGNORE_FILE):
+        faults = [_unknown_word(word, part.start)]
+    codes = [] if faults and faults[0].start == part.start else codes
+    lines = source.rfind(b"\n", 0, part.start) + 1, _line_end(source, part.end)
+    return Directive(part.start, part.end, word, tuple(codes), tuple(faults), lines)
+
+
+def _line_end(source: bytes, offset: int) -> int:
+    end = source.find(b"\n", offset)
+    return len(source) if end < 0 else end
+
+
+def _unknown_word(word: str, start: int) -> Fault:
+    near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
+    hint = f"did you mean {near!r}?" if near else _HOW
+    return Fault(start, f"{word!r} is no word of urdf-lint" if word else "it says nothing", hint)
+
+
+def _codes(source: bytes, said: re.Match[bytes]) -> tuple[list[Code], list[Fault]]:
+    """The valid codes, and what is wrong with the others."""
+    reason = _REASON.search(source, said.start(3), said.end(3))
+    end = reason.start() if reason else said.end(3)
+    codes: list[Code] = []
+    faults: list[Fault] = []
+    for found in _WORD.finditer(source, said.start(3), end):
+        text = found[0].decode("utf-8", "replace")
+        fault = _fault(text, found.start())
+        if fault:
+            faults.append(fault)
+        else:
+            codes.append(Code(text, *found.span()))
+        if not _LIKE_A_CODE.fullmatch(text):
+            break  # the words of a reason are one fault
+    if not codes and not faults:
+        faults.append(Fault(said.start(), "it names no code"))
+    return codes, faults
+
+
+def _fault(text: str, start: int) -> Fault | None:
+    if text in ALWAYS_TOLD:
+        return Fault(start, f"no comment silences {text}", "leave it out")
+    if text in RULES:
+        return None
+    if not _LIKE_A_CODE.fullmatch(text):
+        return Fault(start, f"{text!r} is no code", "put a dash before a reason: CODE - reason")
+    if any(code.startswith(text.upper()) for code in RULES) and text.upper() not in RULES:
+        return Fault(start, f"{text!r} is only the beginning of codes", "write whole codes")
+    near = nearest(text.upper(), RULES)
+    return Fault(start, f"no rule has the code {text!r}", f"did you mean {near}?" if near else _HOW)
+
+
+def _below(
+    source: bytes, parts: Sequence[Part], at: int, ends: dict[int, int]
+) -> tuple[int, int] | None:
+    """The element after a comment on lines of its own; other comments may be in between."""
+    comment = parts[at]
+    before = source[source.rfind(b"\n", 0, comment.start) + 1 : comment.start]
+    after = source[comment.end : _line_end(source, comment.end)]
+    if before.strip() or after.strip():
+        return None
+    last = comment.end
+    for number in range(at + 1, len(parts)):
+        part = parts[number]
+        if source[last : part.start].strip() or part.kind in (_CLOSE, _OTHER):
+            return None
+        if part.kind != _COMMENT:
+            return part.start, ends.get(number, part.end)
+        last = part.end
+    return None
+
+
+def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
+    """An ignore-file has no effect after the root's first child."""
+    if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
+        return it
+    late = Fault(it.start, f"{IGNORE_FILE} stands behind the first element", "move it to the top")
+    return it._replace(codes=(), faults=(*it.faults, late))
+
+
+def _is_idle(it: Directive, tags: Sequence[Part], before: str) -> bool:
+    """Is there no element below the comment, and no tag or text on its lines?"""
+    last = bisect_left(tags, it.lines[1], key=lambda tag: tag.start) - 1
+    on_the_lines = last >= 0 and tags[last].end > it.lines[0]
+    return not it.element and not on_the_lines and before != _OPEN
+
+
+def _kind_before(parts: Sequence[Part], at: int) -> str:
+    """The kind of what is in front of a comment, other comments aside."""
+    kinds = (parts[number].kind for number in range(at - 1, -1, -1))
+    return next((kind for kind in kinds if kind != _COMMENT), _OTHER)
+
+
+def _meets(it: Directive, spans: Iterable[tuple[int, int]]) -> bool:
+    reach = it.element or (it.start, it.end)
+    everywhere = it.word == IGNORE_FILE
+    return any(everywhere or (start < reach[1] and reach[0] < end) for start, end in spans)

@@ -1,0 +1,38 @@
+"""The elements of a document by their tags: looked for once, however many rules ask."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+from lxml.etree import _Element
+
+from multibot_rewrite.steps.document import Document
+
+_ByTag = Mapping[str, Sequence[_Element]]
+
+
+class Elements:
+    """The elements of one document."""
+
+    __slots__ = ("_every", "_tops", "root")
+
+    def __init__(self, document: Document) -> None:
+        self.root = document.root
+        self._every = _by_tag(document.elements)
+        self._tops = _by_tag(document.root.iterchildren("*"))
+
+    def every(self, *tags: str) -> list[_Element]:
+        """All of these tags, tag by tag in document order."""
+        return [it for tag in tags for it in self._every.get(tag, ())]
+
+    def tops(self, *tags: str) -> list[_Element]:
+        """The same of the root's children alone."""
+        return [it for tag in tags for it in self._tops.get(tag, ())]
+
+
+def _by_tag(elements: Iterable[_Element]) -> _ByTag:
+    found: dict[str, list[_Element]] = defaultdict(list)
+    for it in elements:
+        found[it.tag].append(it)
+    return found

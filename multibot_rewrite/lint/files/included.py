@@ -1,0 +1,51 @@
+"""Which files xacro files include: their content is linted where it is used."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.model import InputError
+from multibot_rewrite.sources.read import read_file
+
+_INCLUDE = regex(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
+# What is before the last substitution of a path is not known.
+_KNOWN = regex(r".*[)}]")
+
+
+def included(paths: Sequence[str]) -> frozenset[str]:
+    """Those of the files that a xacro file among them includes, by the known end of its path."""
+    files = {os.path.realpath(path): path for path in paths}
+    ends: dict[str, set[str]] = {}
+    for path in filter(_is_read, files.values()):
+        for asked in _asked_for(path):
+            ends.setdefault(os.path.basename(asked), set()).add(asked)
+    return frozenset(
+        path
+        for real, path in files.items()
+        if any(real.endswith(f"/{asked}") for asked in ends.get(os.path.basename(real), ()))
+    )
+
+
+def _is_read(path: str) -> bool:
+    # A pipe would never end.
+    return path.endswith(".xacro") and os.path.isfile(path)
+
+
+def _asked_for(path: str) -> Iterator[str]:
+    """The paths that a file includes, without what only xacro can fill in, and without itself."""
+    own = os.path.realpath(path)
+    for name in _names(path):
+        known = _KNOWN.sub("", name)
+        asked = os.path.normpath(known).lstrip("./") if known.strip("/. ") else ""
+        if asked and not own.endswith(f"/{asked}"):
+            yield asked
+
+
+def _names(path: str) -> Iterable[str]:
+    try:
+        data = read_file(path)
+    except InputError:  # reported when it is linted
+        return ()
+    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(data))

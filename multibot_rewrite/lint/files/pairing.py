@@ -1,0 +1,154 @@
+"""Which URDF an SRDF belongs to: the one it names among the linted files, else one near it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import redirect_stderr
+from functools import partial
+from glob import escape, glob
+from io import StringIO
+from typing import NamedTuple
+
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.lint.facts.robot import Robot, read_robot
+from multibot_rewrite.lint.files.packages import package_folder
+from multibot_rewrite.lint.settings import Settings, matches
+from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
+from multibot_rewrite.steps.document import read_document
+
+_NAME = regex(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+# The root element is in the first bytes: the whole file need not be read.
+HEAD = 4096
+# Where a package of MoveIt has its URDF, from the folder of its SRDF.
+NEAR = (".", "../urdf", "../config", "../robots", "../../*_description/urdf")
+ENDINGS = ("*.urdf", "*.xacro")
+# How many files are looked into, and how many descriptions are read.
+MOST, TRIED = 200, 6
+# How many of an SRDF's names its URDF may lack: one in PART, or SLIPS where there are few.
+PART, SLIPS = 4, 2
+SRDF_MARK = ".srdf"
+
+
+class Pair(NamedTuple):
+    """The robot of an SRDF's URDF and what that declares; ``misses`` of the SRDF's names are not in
+    it."""
+
+    robot: Robot | None
+    declared: Declared
+    misses: int = 0
+
+
+NO_PAIR = Pair(None, NOTHING)
+
+
+def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[str, str], ...]:
+    """The robot names of the files that are no SRDF, where an SRDF is among them."""
+    others = [it for it in paths if SRDF_MARK not in os.path.basename(it)]
+    if len(others) == len(paths):
+        return ()
+    whole = (it for it in others if it not in included or not it.endswith(".xacro"))
+    named = ((robot_name(path), path) for path in whole if os.path.isfile(path))
+    return tuple((name, path) for name, path in named if name)
+
+
+def robot_name(path: str) -> str:
+    """The name on the root element as it is written; empty if the first bytes do not have it."""
+    try:
+        with open(path, "rb") as file:
+            found = _NAME.search(file.read(HEAD))
+    except (OSError, ValueError):
+        return ""
+    return found[1].decode("utf-8", "replace").strip() if found else ""
+
+
+def find_pair(path: str, srdf: Inventory, settings: Settings) -> Pair:
+    """The description that an SRDF belongs to: the one that has most of its names.
+
+    One that lacks more than a few of them is that of another robot or another variant.
+    """
+    if settings.urdf:
+        return _read(settings.urdf, srdf, settings)
+    name = srdf.document.root.get("name", "").strip()
+    best = NO_PAIR
+    for candidate in _candidates(path, name, settings)[:TRIED]:
+        try:
+            found = _read(candidate, srdf, settings)
+        except InputError:  # reported when it is linted itself
+            continue
+        if best is NO_PAIR or found.misses < best.misses:
+            best = found
+        if not found.misses:
+            break
+    names = len(_names(srdf))
+    fits = best.misses * PART <= names or (best.misses <= SLIPS and best.misses < names)
+    return best if fits else NO_PAIR
+
+
+def _candidates(path: str, name: str, settings: Settings) -> list[str]:
+    """Files with that robot's name, the nearest first; else what is near on disk."""
+    folder = os.path.dirname(os.path.abspath(path))
+    named = [urdf for robot, urdf in settings.urdfs if robot == name]
+    return sorted(named, key=lambda it: (_distance(folder, it), it)) or _near(path, folder, name)
+
+
+def _distance(folder: str, path: str) -> int:
+    return os.path.relpath(os.path.abspath(path), folder).count(os.sep)
+
+
+def _near(path: str, folder: str, name: str) -> list[str]:
+    """Those with the robot's name, else those with the file name of the SRDF."""
+    stem = _stem(path)
+    files = [it for it, _ in zip(_files(folder), range(MOST), strict=False)]
+    same = [it for it in files if robot_name(it) == name]
+    return same or [it for it in files if _stem(it) == stem]
+
+
+def _files(folder: str) -> Iterator[str]:
+    for place in NEAR:
+        for ending in ENDINGS:
+            found = glob(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
+            yield from (it for it in sorted(found) if SRDF_MARK not in os.path.basename(it))
+
+
+def _stem(path: str) -> str:
+    return os.path.basename(path).partition(".")[0]
+
+
+def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
+    data, name = _described(path, settings)
+    inventory = collect(read_document(data, name), builtin_tree(settings.vocabulary))
+    declared = inventory.declared
+    known = declared["link"].keys() | declared["joint"].keys()
+    misses = sum(it not in known for it in _names(srdf))
+    return Pair(read_robot(inventory.document.root), declared, misses)
+
+
+def _described(path: str, settings: Settings) -> tuple[bytes, str]:
+    """With the default arguments, else with the first that the settings have for the file."""
+    if not path.endswith(".xacro"):
+        return read_file(path), path
+    from multibot_rewrite.sources.expand import expand
+
+    sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
+    find = partial(package_folder, file=path, roots=settings.roots)
+    name = f"{path} (expanded)"
+    # xacro prints its warnings when a person runs it.
+    with redirect_stderr(StringIO()):
+        try:
+            return expand(path, {}, find), name
+        except InputError:
+            if not sets:
+                raise
+            return expand(path, sets[0], find), name
+
+
+def _names(srdf: Inventory) -> set[str]:
+    """The links and joints an SRDF uses, those it declares aside."""
+    own: Iterable[str] = srdf.declared["joint"]
+    used = {it.value.strip() for it in srdf.claims if it.site.role == "uses" and it.site.plain}
+    return used.difference(own)

@@ -1,0 +1,116 @@
+"""A file -> what rules look at: its document, once for each set of xacro arguments."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import redirect_stderr
+from functools import partial
+from io import StringIO
+from typing import NamedTuple
+
+from lxml.etree import _Element
+
+from multibot_rewrite.findings.rule import SRDF, URDF, XACRO
+from multibot_rewrite.lint.facts.elements import Elements
+from multibot_rewrite.lint.facts.robot import read_robot
+from multibot_rewrite.lint.files.packages import package_folder
+from multibot_rewrite.lint.files.pairing import SRDF_MARK, find_pair
+from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.lint.schema.faults import read_faults
+from multibot_rewrite.lint.settings import ArgumentSet, Settings, matches
+from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.steps.collect import NOTHING, collect
+from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
+from multibot_rewrite.steps.document import Document, read_document
+
+# Makes the reader take the root for that of an SRDF, whatever it holds.
+NO_URDF: Declared = {"link": {}}
+EXPANDED = " (expanded)"
+DEFAULT = ArgumentSet("*", ())
+MISSING = "Undefined substitution argument"
+ROOTS = ("robot", "sdf")
+DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
+
+
+class Failed(NamedTuple):
+    """An expansion that failed: what xacro says, and the arguments that it was made with."""
+
+    message: str
+    arguments: str
+
+
+def read_subjects(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
+    """Every subject of a file; raises InputError where it cannot be read.
+
+    What others include is linted where it is used. Such a xacro file, or one that only defines what
+    others use, is not expanded alone, and may have any root element.
+    """
+    document = read_document(data, path)
+    xacro, included = path.endswith(".xacro"), path in settings.included
+    part = included or (xacro and _only_defines(document.root))
+    if part and (not xacro or document.root.tag not in ROOTS):
+        return
+    written = _subject(document, settings)
+    yield written._replace(format=XACRO) if xacro else _shaped(written)
+    if xacro and not part:
+        yield from _expansions(path, data, settings)
+
+
+def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject | Failed]:
+    sets = [given for given in settings.arguments if matches(path, given.pattern)]
+    for given in (DEFAULT, *sets):
+        try:
+            yield _expanded(path, data, given, settings)
+        except InputError as error:
+            # With arguments that have no default there is no default expansion.
+            if given is not DEFAULT or not sets or MISSING not in str(error):
+                yield Failed(str(error), str(given))
+
+
+def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
+    from multibot_rewrite.sources.expand import expand_traced  # a URDF needs none of it
+    from multibot_rewrite.sources.trace import Trace
+
+    trace = Trace({path: data}, path)
+    find = partial(package_folder, file=path, roots=settings.roots)
+    # What xacro warns about is no finding, and would be printed between them.
+    with redirect_stderr(StringIO()):
+        expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
+    subject = _subject(read_document(expanded, path + EXPANDED), settings)
+    return _shaped(subject)._replace(origins=origins, sources=trace.sources, arguments=str(given))
+
+
+def _shaped(subject: Subject) -> Subject:
+    """The subject with the faults of its shape; the source of a xacro file has none yet."""
+    urdf = subject.format == URDF
+    return subject._replace(faults=read_faults(subject.document)) if urdf else subject
+
+
+def _only_defines(root: _Element) -> bool:
+    """Does a file only define what others use? Expanded alone it is an empty robot.
+
+    One that only includes may be a whole robot; one that defines macros as well is read by others.
+    """
+    tags = {_local(child) for child in root.iterchildren("*")}
+    return tags <= DEFINITIONS and ("include" not in tags or "macro" in tags)
+
+
+def _local(element: _Element) -> str:
+    space, _, name = str(element.tag).rpartition("}")
+    return name if "xacro" in space else ""
+
+
+def _subject(document: Document, settings: Settings) -> Subject:
+    tree = builtin_tree(settings.vocabulary)
+    called = SRDF_MARK in os.path.basename(document.file)
+    inventory = collect(document, tree, NO_URDF if called else NOTHING)
+    elements, robot = Elements(document), read_robot(document.root)
+    # In the source of a xacro file names are not complete yet.
+    if inventory.format != SRDF_SECTION or document.file.endswith(".xacro"):
+        return Subject(URDF, document, elements, inventory, tree, robot, settings, {})
+    pair = find_pair(document.file.removesuffix(EXPANDED), inventory, settings)
+    inventory = collect(document, tree, pair.declared or NO_URDF)
+    return Subject(SRDF, document, elements, inventory, tree, robot, settings, {}, pair.robot)

@@ -1,0 +1,17 @@
+"""What rules about the shape of a URDF share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.lint.records import Problem, Subject
+
+
+def faults(kind: str, subject: Subject, *, substitutions: bool = True) -> Iterator[Problem]:
+    """The faults of a document's shape (``schema.faults``) of one kind, which its rule is named after.
+
+    Without ``substitutions`` values with a ``$`` are left out: MB105 reports them.
+    """
+    for it in subject.faults:
+        if it.kind == kind and (substitutions or "$" not in it.message):
+            yield Problem(it.element, it.message, it.attribute, it.hint)

@@ -1,0 +1,91 @@
+"""The XML declaration, byte order mark and namespaces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.lint.records import Problem, Subject
+
+BOM = b"\xef\xbb\xbf"
+_DECLARED = regex(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")
+_ENCODED = regex(rb"<\?xml\s[^>]*?\sencoding\s*=\s*[\"']([^\"']*)[\"']")
+_NAMESPACE = regex(rb"\s+xmlns:([\w.-]+)\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_ROOT = regex(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+
+
+@rule(
+    "MB140",
+    "xml-declaration",
+    WARNING,
+    what="The XML declaration names a version other than 1.0, or an encoding other than UTF-8.",
+    why="urdfdom and Gazebo read UTF-8 whatever it says; expat (xacro, Python launch files) "
+    "refuses encodings of several bytes such as gb2312, and reads letters as the others do not.",
+    fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
+    bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
+    good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',
+)
+def xml_declaration(subject: Subject) -> Iterator[Problem]:
+    """With a fix: a file of another encoding that was read at all is plain ASCII."""
+    source = subject.document.source
+    if subject.origins or b"<?xml" not in source[:8]:
+        return
+    for pattern, right, allowed in (
+        (_DECLARED, b"1.0", (b"1.0",)),
+        (_ENCODED, b"UTF-8", (b"utf-8", b"utf8", b"us-ascii", b"ascii")),
+    ):
+        found = pattern.match(source, source.index(b"<?xml"))
+        if found and found[1].lower() not in allowed:
+            said = found[1].decode("utf-8", "replace")
+            edit = Edit(found.start(1), found.end(1), right, None)
+            message = f"the XML declaration says {said!r}"
+            yield Problem(subject.document.root, message, None, f"write {right.decode()}", (edit,))
+
+
+@rule(
+    "MB141",
+    "byte-order-mark",
+    NOTE,
+    what="The file starts with a byte order mark.",
+    why="UTF-8 needs none. XML readers skip it at the start of a file, and refuse it as text before "
+    "the root where a script or template puts the description behind other text.",
+    fix="Save the file as UTF-8 without it.",
+    bad='\ufeff<robot name="r"><link name="a"/></robot>',
+    good='<robot name="r"><link name="a"/></robot>',
+)
+def byte_order_mark(subject: Subject) -> Iterator[Problem]:
+    """With a fix."""
+    if subject.document.source.startswith(BOM):
+        edit = Edit(0, len(BOM), b"", None)
+        root = subject.document.root
+        yield Problem(root, "the file starts with a byte order mark", None, "", (edit,))
+
+
+@rule(
+    "MB142",
+    "unused-namespace",
+    NOTE,
+    what="The root element declares a namespace prefix that the file does not use.",
+    why="It has no effect. A xacro prefix in a plain URDF makes readers look for macros that are "
+    "not there.",
+    fix="Delete the declaration.",
+    bad='<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/></robot>',
+    good='<robot name="r" xmlns:drake="http://drake.mit.edu"><drake:joint name="j"/></robot>',
+)
+def unused_namespace(subject: Subject) -> Iterator[Problem]:
+    """Prefixes of the root that are written nowhere else in the file."""
+    root, source = subject.document.root, subject.document.source
+    if not root.nsmap or subject.origins:
+        return
+    start = subject.document.starts[0]
+    tag = _ROOT.match(source, start)
+    for found in _NAMESPACE.finditer(source, start, tag.end() if tag else start):
+        prefix = found[1] + b":"
+        # What is left of xacro in a plain URDF is reported by MB105, its prefix as well.
+        left = b"/xacro" in found[0] and (b"${" in source or b"$(" in source)
+        if prefix not in source and not left:
+            edit = Edit(found.start(), found.end(), b"", None)
+            message = f"nothing in the file uses the prefix {found[1].decode()!r}"
+            yield Problem(root, message, f"xmlns:{found[1].decode()}", "", (edit,))

@@ -1,0 +1,145 @@
+"""Files and packages that are not there."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import NamedTuple
+from urllib.parse import unquote
+
+from multibot_rewrite.findings.finding import ERROR, NOTE
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.files.packages import entries, find_in, package_folders
+from multibot_rewrite.lint.files.subjects import EXPANDED
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_files
+
+
+class Lookup(NamedTuple):
+    """A file that was looked for: the folders it may be below, its path there, and the path as it
+    is written on the disk, empty where it is not there."""
+
+    used: Used
+    folders: tuple[str, ...]
+    path: str
+    found: str
+
+
+@memoized
+def _lookups(subject: Subject) -> tuple[Lookup, ...]:
+    """Each file that can be looked for once, by the first element that names it."""
+    file, roots = subject.document.file.removesuffix(EXPANDED), subject.settings.roots
+    first = {it.name: it for it in reversed(used_files(subject)) if it.scheme in ("package", "")}
+    asked = (it for it in reversed(first.values()) if "$" not in it.name and "\\" not in it.name)
+    folders_of = cache(lambda name: package_folders(name, file, roots))
+    return tuple(_looked_up(it, *_where(it, file, folders_of)) for it in asked)
+
+
+def _looked_up(it: Used, folders: tuple[str, ...], path: str) -> Lookup:
+    found = [find_in(folder, path) for folder in folders]
+    exact = os.path.normpath(path)
+    return Lookup(it, folders, path, exact if exact in found else next(filter(None, found), ""))
+
+
+def _where(
+    it: Used, file: str, folders_of: Callable[[str], tuple[str, ...]]
+) -> tuple[tuple[str, ...], str]:
+    """The folders in which a file may be, and its path below them."""
+    if it.scheme == "":
+        here = os.path.dirname(os.path.abspath(file))
+        return (here, os.path.dirname(here)), it.path
+    package, _, path = unquote(it.path).partition("/")
+    if not package or not path:
+        return (), ""
+    path = path.lstrip("/")
+    first = path.partition("/")[0].lower()
+    # A folder without a manifest must at least have the folder that is asked for.
+    return tuple(it for it in folders_of(package) if _may_be_the_package(entries(it), first)), path
+
+
+def _may_be_the_package(names: frozenset[str], first: str) -> bool:
+    return "package.xml" in names or any(name.lower() == first for name in names)
+
+
+@rule(
+    "MB701",
+    "mesh-missing",
+    ERROR,
+    what="A mesh or texture file is not there, though its package is.",
+    why="RViz shows the link without a shape and marks the robot as faulty; Gazebo spawns it "
+    "without that visual or collision, so a wheel falls through the ground.",
+    fix="Correct the path, or add the file to the package and to what it installs.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://arm_description/meshes/link.stl",
+    beside={
+        "arm_description/package.xml": "<package><name>arm_description</name></package>",
+        "arm_description/meshes/link.stl": "solid",
+    },
+)
+def mesh_missing(subject: Subject) -> Iterator[Problem]:
+    """Files of packages that were found, and relative ones."""
+    for it in _lookups(subject):
+        if it.folders and not it.found:
+            near = _nearest(it)
+            hint = f"did you mean {near!r}?" if near else f"looked in {it.folders[0]}"
+            yield problem(it.used, f"{it.used.name!r} is not there", hint)
+
+
+def _nearest(it: Lookup) -> str:
+    from multibot_rewrite.checks.audit import nearest
+
+    folder = os.path.join(it.folders[0], os.path.dirname(it.path))
+    return nearest(os.path.basename(it.path), sorted(entries(folder)))
+
+
+@rule(
+    "MB702",
+    "package-not-found",
+    NOTE,
+    what="A package that holds meshes is not below the folders that were searched.",
+    why="Whether its files are there was not checked; at run time they are looked for in the "
+    "packages of the sourced workspace.",
+    fix="Name the folder of the workspace's sources as a root, or source the workspace.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://hand_description/meshes/base.stl",
+    beside={
+        "hand_description/package.xml": "<package><name>hand_description</name></package>",
+        "hand_description/meshes/base.stl": "solid",
+    },
+)
+def package_not_found(subject: Subject) -> Iterator[Problem]:
+    """Once for each package."""
+    lost = [it for it in _lookups(subject) if it.path and not it.folders]
+    for package, it in {_package(it): it for it in reversed(lost)}.items():
+        yield problem(
+            it.used, f"package {package!r} was not found", "name a folder it is in: --roots"
+        )
+
+
+def _package(it: Lookup) -> str:
+    return it.used.path.partition("/")[0]
+
+
+@rule(
+    "MB703",
+    "mesh-name-case",
+    ERROR,
+    what="A mesh file has another spelling on the disk: capitals where there are none.",
+    why="macOS and Windows find it all the same, Linux does not: on the robot and in CI the link has "
+    "no shape.",
+    fix="Write it as the file is called.",
+    bad=MESH % "package://arm_description/meshes/base.stl",
+    good=MESH % "package://arm_description/meshes/Base.STL",
+    beside={
+        "arm_description/package.xml": "<package><name>arm_description</name></package>",
+        "arm_description/meshes/Base.STL": "solid",
+    },
+)
+def mesh_name_case(subject: Subject) -> Iterator[Problem]:
+    """Paths that differ from the file only in capitals."""
+    for it in _lookups(subject):
+        if it.found and it.found != os.path.normpath(it.path):
+            message = f"{it.path!r} is called {it.found!r} on the disk"
+            yield problem(it.used, message, f"write {it.found!r}")

@@ -1,0 +1,12 @@
+"""MB4: what goes wrong when a second robot uses the same description."""
+
+from multibot_rewrite.lint.rules.multirobot import (
+    frames,
+    named_robots,
+    namespaces,
+    prefixes,
+    resources,
+    topics,
+)
+
+THEMES = (topics, namespaces, frames, resources, prefixes, named_robots)

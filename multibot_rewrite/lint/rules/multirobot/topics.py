@@ -1,0 +1,136 @@
+"""Topics that two robots of one description would share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.findings.finding import NOTE
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.source_values import claim_is_fixed
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.multirobot.shared import (
+    claims_of,
+    inserted,
+    is_plain,
+    process_wide_plugins,
+    tag_of,
+)
+from multibot_rewrite.model import Claim
+from multibot_rewrite.naming import TF_TOPICS
+from multibot_rewrite.rewriters.tree import library_key
+from multibot_rewrite.rosnames import split_remap
+
+ROS_KINDS = ("topic", "service")
+REMAP_FORMS = ("remap", "argument")
+GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
+GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
+
+
+@rule(
+    "MB401",
+    "absolute-topic",
+    NOTE,
+    what="A plugin's topic or service is absolute, or its remap rule leads to an absolute one.",
+    why="A ROS namespace moves relative names only (rcl expand_topic_name.c): both robots obey one "
+    "/cmd_vel and their sensors are mixed on one topic.",
+    fix="Leave out the leading slash and start each robot in its namespace; urdf-postfix spells it "
+    "for each robot.",
+    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>'
+    "cmd_vel:=/cmd_vel</remapping></ros></plugin></gazebo>",
+    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>'
+    "cmd_vel:=drive</remapping></ros></plugin></gazebo>",
+)
+def absolute_topic(subject: Subject) -> Iterator[Problem]:
+    """Absolute ROS names that the settings do not call shared."""
+    wide = process_wide_plugins(subject)
+    for claim in claims_of(subject, ROS_KINDS):
+        name = _target(claim)
+        if name[:1] != "/" or not is_plain(name) or _is_gz(claim):
+            continue
+        if name.strip("/") in subject.settings.naming.shared_topics | set(TF_TOPICS):
+            continue
+        # MB426 reports these.
+        if claim.site.form in REMAP_FORMS and wide and wide.intersection(_plugins_around(claim)):
+            continue
+        if claim_is_fixed(subject, claim):
+            message = f"{tag_of(claim)} {name!r} is absolute: a namespace does not move it"
+            hint = f"{name[1:]!r} follows the robot's namespace"
+            yield Problem(claim.element, message, claim.attribute, hint)
+
+
+def _plugins_around(claim: Claim) -> Iterator[_Element]:
+    return claim.element.iterancestors("plugin")
+
+
+def _target(claim: Claim) -> str:
+    """The topic that a claim names; of a remap rule, its target."""
+    if claim.site.form not in REMAP_FORMS:
+        return claim.value.strip()
+    found = split_remap(claim.value)
+    return found.target if found else ""
+
+
+@rule(
+    "MB402",
+    "gz-topic-shared",
+    NOTE,
+    what="A sensor or system of gz-sim has a topic that is the same for every copy of the robot.",
+    why="gz topics are global in their partition and no ROS namespace reaches them: one command "
+    "drives both robots, both lidars publish on one topic and ros_gz_bridge cannot part them.",
+    fix="Leave the element out, gz then puts the model's name into the topic, or give each robot its "
+    "own through a xacro argument or urdf-postfix.",
+    bad='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar">'
+    "<topic>scan</topic></sensor></gazebo>",
+    good='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar"/></gazebo>',
+)
+def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
+    """Literal gz topics."""
+    claims = [it for it in claims_of(subject, ROS_KINDS) if _is_gz(it)]
+    if not claims or _is_classic(subject):
+        return
+    for claim in claims:
+        topic = claim.value.strip()
+        if not is_plain(topic) or topic.strip("/") in subject.settings.naming.shared_topics:
+            continue
+        if not claim_is_fixed(subject, claim):
+            continue
+        message = f"{tag_of(claim)} {topic!r} is one gz topic for every copy of the robot"
+        yield Problem(claim.element, message, claim.attribute, "leave it out or spell it per robot")
+
+
+def _is_gz(claim: Claim) -> bool:
+    return claim.site.section.startswith(GZ_SECTIONS)
+
+
+def _is_classic(subject: Subject) -> bool:
+    """Is it for Gazebo Classic, which puts the model's name before sensor topics itself?"""
+    hosts = (it.element for it in subject.inventory.hosts)
+    keys = [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
+    return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)
+
+
+@rule(
+    "MB413",
+    "default-topic-shared",
+    NOTE,
+    what="A plugin or hardware class uses a topic or name by its default, which a namespace does "
+    "not move.",
+    why="All robots' components of that class talk on the one absolute topic: each joint command "
+    "reaches every robot.",
+    fix="Say the name and give each robot its own; urdf-postfix inserts it.",
+    bad='<ros2_control name="h" type="system"><hardware><plugin>'
+    "topic_based_ros2_control/TopicBasedSystem</plugin>"
+    '<param name="joint_states_topic">states</param></hardware></ros2_control>',
+    good='<ros2_control name="h" type="system"><hardware><plugin>'
+    "topic_based_ros2_control/TopicBasedSystem</plugin>"
+    '<param name="joint_states_topic">states</param>'
+    '<param name="joint_commands_topic">commands</param></hardware></ros2_control>',
+)
+def default_topic_shared(subject: Subject) -> Iterator[Problem]:
+    """Topics, services and beginnings of names that would have to be inserted for a robot."""
+    for element, (kind, old, _) in inserted(subject):
+        if kind in ("topic", "service", "stem"):
+            message = f"without being told another {kind} it uses {old!r}, as every other robot's"
+            yield Problem(element, message, None, "say it for each robot")

@@ -1,0 +1,201 @@
+"""Names of links, joints and the robot that URDF, SDF or tf cannot take."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.names.shared import BLANK, name_of_robot, named
+
+WORLD = "world"
+
+
+@rule(
+    "MB302",
+    "empty-name",
+    ERROR,
+    what="A link or joint has an empty name.",
+    why="urdfdom refuses a joint to a link without a name, sdformat refuses the empty name of a "
+    "joint, and tf2 takes no transform whose frame is empty.",
+    fix="Give it a name; in xacro see which argument or property is empty.",
+    bad='<link name=""/>',
+    good='<link name="a"/>',
+)
+def empty_name(subject: Subject) -> Iterator[Problem]:
+    """Names that are empty or white space."""
+    for kind, name, element in named(subject):
+        if not name.strip():
+            yield Problem(element, f"a {kind} has an empty name", "name")
+
+
+@rule(
+    "MB303",
+    "blank-in-name",
+    WARNING,
+    what="The name of a link or joint holds white space.",
+    why="No ROS name may hold any: topics, nodes and namespaces made of it are refused by rcl. "
+    "Lists of names in plugins and hardware parameters are cut at blanks.",
+    fix="Write an underscore, or delete the blank around it, at every use as well.",
+    bad='<link name="left wheel"/>',
+    good='<link name="left_wheel"/>',
+)
+def blank_in_name(subject: Subject) -> Iterator[Problem]:
+    """White space in a name or around it."""
+    for kind, name, element in named(subject):
+        if name.strip() and BLANK.search(name):
+            where = "" if name == name.strip() else " around it"
+            near = "_".join(name.split())
+            yield Problem(
+                element, f"{kind} {name!r} holds white space{where}", "name", f"write {near!r}"
+            )
+
+
+@rule(
+    "MB305",
+    "double-colon",
+    ERROR,
+    what="The name of the robot, a link or a joint holds '::'.",
+    why="SDF keeps '::' for names inside of models: sdformat 13 and later turn the URDF into SDF "
+    "1.11 and refuse the whole model, older ones look for a model of the first part.",
+    fix="Write an underscore.",
+    bad='<link name="arm::hand"/>',
+    good='<link name="arm_hand"/>',
+)
+def double_colon(subject: Subject) -> Iterator[Problem]:
+    """Names that become names in SDF."""
+    for kind, name, element in named(subject):
+        if "::" in name:
+            hint = f"write {name.replace('::', '_')!r}"
+            yield Problem(element, f"{kind} {name!r} holds '::', which SDF keeps", "name", hint)
+    if "::" in (name_of_robot(subject) or ""):
+        yield Problem(subject.document.root, "the robot's name holds '::', which SDF keeps", "name")
+
+
+@rule(
+    "MB306",
+    "reserved-name",
+    ERROR,
+    what="A link, a joint or the robot has a name that SDF keeps for itself: __x__, or world for a "
+    "joint or the robot.",
+    why="sdformat refuses the model: 'The supplied joint name [world] is reserved'. Gazebo spawns "
+    "nothing.",
+    fix="Give it another name.",
+    bad='<link name="__base__"/>',
+    good='<link name="_base_"/>',
+)
+def reserved_name(subject: Subject) -> Iterator[Problem]:
+    """Links, joints and the robot; a link called world is MB307."""
+    for kind, name, element in named(subject):
+        if _is_reserved(name) or (kind == "joint" and name == WORLD):
+            yield Problem(element, f"SDF keeps {name!r} for itself: no {kind} may have it", "name")
+    robot = name_of_robot(subject)
+    if robot is not None and (_is_reserved(robot) or robot == WORLD):
+        message = f"SDF keeps {robot!r} for itself: no model may have it"
+        yield Problem(subject.document.root, message, "name")
+
+
+def _is_reserved(name: str) -> bool:
+    return len(name) >= 4 and name.startswith("__") and name.endswith("__")
+
+
+@rule(
+    "MB307",
+    "world-link",
+    WARNING,
+    what="A link is called world and is more than the point to which the robot is fixed: it is not "
+    "the root, or it has mass or shapes.",
+    why="A root called world is the simulation's own world: sdformat leaves its mass and shapes out. "
+    "Elsewhere the name is reserved, and a world that moves with the robot breaks every tf tree.",
+    fix="Give a link with content another name; fix the robot to an empty root called world.",
+    bad='<link name="world"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
+    '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
+    good='<link name="world"/>'
+    '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
+)
+def world_link(subject: Subject) -> Iterator[Problem]:
+    """One finding, for the worst that is wrong with it."""
+    link = subject.robot.link.get(WORLD)
+    if link is None:
+        return
+    above = subject.robot.above.get(WORLD, ())
+    content = next(
+        (it.tag for it in link.element.iterchildren("inertial", "visual", "collision")), ""
+    )
+    if above:
+        message = f"link 'world' is not the root: joint {above[0].name!r} moves it with the robot"
+        yield Problem(link.element, message, "name")
+    elif content:
+        message = f"link 'world' has <{content}>, which Gazebo leaves out"
+        yield Problem(link.element, message, "name")
+
+
+@rule(
+    "MB308",
+    "link-and-joint-alike",
+    WARNING,
+    what="A link and a joint have one name, and both become parts of the simulated model.",
+    why="SDF has one set of names for them: sdformat says 'name collision' and refuses the model, "
+    "so Gazebo does not spawn it.",
+    fix="Rename the joint, to NAME_joint as a rule.",
+    bad='<link name="a"/><link name="b"/><joint name="b" type="continuous"><parent link="a"/>'
+    '<child link="b"/></joint>',
+    good='<link name="a"/><link name="b"/><joint name="b_joint" type="continuous">'
+    '<parent link="a"/><child link="b"/></joint>',
+)
+def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
+    """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""
+    robot = subject.robot
+    for joint in robot.joints:
+        if joint.name not in robot.link or joint.type == "fixed" or not joint.name.strip():
+            continue
+        if all(it.type != "fixed" or it.parent == WORLD for it in robot.above.get(joint.name, ())):
+            message = f"{joint.name!r} is a joint and a link"
+            yield Problem(joint.element, message, "name", f"call it {joint.name + '_joint'!r}")
+
+
+@rule(
+    "MB309",
+    "case-twins",
+    NOTE,
+    what="Two links or two joints differ in nothing but capitals.",
+    why="ROS and Gazebo tell them apart; a person, and files named after them on a disk that ignores "
+    "capitals, do not.",
+    fix="Give one another name.",
+    bad='<link name="arm"/><link name="Arm"/>',
+    good='<link name="arm"/><link name="arm_2"/>',
+)
+def case_twins(subject: Subject) -> Iterator[Problem]:
+    """The second of each pair."""
+    links = {it.name: it.element for it in subject.robot.links}
+    joints = {it.name: it.element for it in subject.robot.joints}
+    for kind, parts in (("link", links), ("joint", joints)):
+        if len({name.lower() for name in parts}) == len(parts):
+            continue
+        seen: dict[str, str] = {}
+        for name, element in parts.items():
+            first = seen.setdefault(name.lower(), name)
+            if first != name:
+                message = f"{kind} {name!r} differs from {first!r} in capitals alone"
+                yield Problem(element, message, "name")
+
+
+@rule(
+    "MB310",
+    "name-not-ascii",
+    NOTE,
+    what="The name of a link or joint holds a letter that is not ASCII.",
+    why="No ROS name may hold one: rcl refuses topics, nodes and namespaces made of it. Two letters "
+    "that look alike are two names.",
+    fix="Write letters from a to z.",
+    bad='<link name="fühler"/>',
+    good='<link name="fuehler"/>',
+)
+def name_not_ascii(subject: Subject) -> Iterator[Problem]:
+    """The message names the letter, which may look like another one."""
+    for kind, name, element in named(subject):
+        if not name.isascii():
+            letter = next(it for it in name if not it.isascii())
+            code = f"U+{ord(letter):04X}"
+            yield Problem(element, f"{kind} {name!r} holds {letter!r} ({code})", "name")

@@ -1,0 +1,166 @@
+"""Names that ROS cannot take: frames, topics, interfaces, the robot."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
+from multibot_rewrite.findings.rule import SRDF, URDF, rule
+from multibot_rewrite.lazy import regex
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.names.shared import BLANK, SUBSTITUTION, TOKEN, name_of_robot
+from multibot_rewrite.model import Claim
+from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN
+from multibot_rewrite.rosnames import check_topic_name, propose_token, split_remap
+from multibot_rewrite.steps.document import value_slot
+
+ROS_KINDS = frozenset({"topic", "service", "namespace"})
+# ROS 1, ROS 2 and both Gazebos agree on these.
+_ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
+
+
+@rule(
+    "MB301",
+    "leading-slash",
+    WARNING,
+    what="A frame is written with a slash in front.",
+    why="tf2 look-ups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
+    "link's name as it is, so a link written like that is a frame that nobody can ask for.",
+    fix="Drop the slash.",
+    bad='<link name="lidar"/><gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
+    "<frame_name>/lidar</frame_name></plugin></gazebo>",
+    good='<link name="lidar"/><gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
+    "<frame_name>lidar</frame_name></plugin></gazebo>",
+    formats=(URDF, SRDF),
+)
+def leading_slash(subject: Subject) -> Iterator[Problem]:
+    """With a fix where the frame without the slash is a link. Plugins know /world."""
+    shared = subject.settings.naming.shared_frames
+    for claim in subject.inventory.claims:
+        if claim.value[:1] != "/" or claim.site.form != "whole":
+            continue
+        name = claim.value[1:]
+        if claim.site.kinds[0] in FRAME_KINDS and name and name not in shared:
+            known = name in subject.inventory.declared["link"]
+            message = f"frame {claim.value!r} starts with a slash"
+            edits = _without_slash(subject, claim) if known else ()
+            yield Problem(claim.element, message, claim.attribute, "drop the slash", edits)
+
+
+def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
+    slot = value_slot(subject.document.source, claim.start, claim.attribute, claim.value)
+    if slot is None or subject.document.source[slot[0] : slot[0] + 1] != b"/":
+        return ()
+    return (Edit(slot[0], slot[0] + 1, b"", None),)
+
+
+@rule(
+    "MB304",
+    "slash-in-joint",
+    NOTE,
+    what="The name of a joint, sensor or gpio in <ros2_control> holds a slash.",
+    why="Its interfaces are called NAME/INTERFACE, and the controller manager cuts that at the "
+    "first slash: arm/j1/position belongs to the controller 'arm' as soon as there is one.",
+    fix="Write an underscore, in the URDF and in the controllers' parameters; or call no "
+    "controller what stands before the slash.",
+    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
+    '<joint name="arm/j1"><state_interface name="position"/></joint></ros2_control>',
+    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
+    '<joint name="arm_j1"><state_interface name="position"/></joint></ros2_control>',
+)
+def slash_in_joint(subject: Subject) -> Iterator[Problem]:
+    """Every component that has interfaces."""
+    for system in subject.elements.every("ros2_control"):
+        for part in system.iterchildren("joint", "sensor", "gpio"):
+            name = part.get("name", "")
+            if "/" in name and SUBSTITUTION not in name:
+                cut = name.partition("/")[0]
+                message = f"{part.tag} {name!r} holds a slash: its interfaces seem to be of {cut!r}"
+                yield Problem(part, message, "name", f"write {name.replace('/', '_')!r}")
+
+
+@rule(
+    "MB311",
+    "robot-name",
+    NOTE,
+    what="The robot's name is no ROS name: empty, or with blanks, hyphens, dots or a digit in front.",
+    why="Spawners take it for the model, and Gazebo puts it into topics like /model/NAME/odometry: "
+    "bridged to ROS these are refused, and as a namespace or node name it is, too.",
+    fix="Use letters, digits and underscores.",
+    bad='<robot name="my-robot"><link name="a"/></robot>',
+    good='<robot name="my_robot"><link name="a"/></robot>',
+)
+def robot_name(subject: Subject) -> Iterator[Problem]:
+    """Names with '::' are MB305."""
+    name = name_of_robot(subject)
+    if name is None or "::" in name or TOKEN.fullmatch(name):
+        return
+    hint = f"write {propose_token(name)!r}" if name.strip() else "give it one"
+    yield Problem(subject.document.root, f"robot name {name!r} is no ROS name", "name", hint)
+
+
+@rule(
+    "MB312",
+    "no-ros-name",
+    WARNING,
+    what="A topic, service, namespace or node name of a plugin is no name that ROS takes.",
+    why="rcl throws InvalidTopicNameError, or the node is not made: the plugin does not load, or "
+    "publishes nothing.",
+    fix="Use letters, digits, underscores and slashes, no digit in front.",
+    bad='<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><ros>'
+    "<namespace>my-robot</namespace></ros></plugin></gazebo>",
+    good='<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><ros>'
+    "<namespace>my_robot</namespace></ros></plugin></gazebo>",
+)
+def no_ros_name(subject: Subject) -> Iterator[Problem]:
+    """Values that are relative to a ROS namespace; those with a substitution are skipped."""
+    for claim in subject.inventory.claims:
+        site = claim.site
+        if not site.namespaced or site.kinds[0] not in ROS_KINDS:
+            continue
+        for name in _ros_names(claim):
+            if fault := _name_fault(name, site.section):
+                message = f"{site.kinds[0]} {name!r} is no ROS name: {fault}"
+                yield Problem(claim.element, message, claim.attribute)
+
+
+def _ros_names(claim: Claim) -> list[str]:
+    """The names in a value: itself, or both sides of a remap rule."""
+    sides = [claim.value] if claim.site.form == "whole" else []
+    if claim.site.form in ("remap", "argument"):
+        rule = split_remap(claim.value)
+        sides = [rule.source, rule.target] if rule and not rule.source.startswith("__") else []
+    return [it for it in sides if it.strip("/") and NOT_PLAIN.isdisjoint(it.replace(" ", ""))]
+
+
+def _name_fault(name: str, section: str) -> str:
+    """Why rcl refuses a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
+    if _ALLOWED_EVERYWHERE.fullmatch(name) and not section.startswith("block ros"):
+        return ""
+    fault = check_topic_name(name.rstrip("/"))
+    return fault.reason if fault else ""
+
+
+@rule(
+    "MB313",
+    "odd-interface-name",
+    WARNING,
+    what="A <ros2_control> component or interface has an empty name, or one with white space.",
+    why="Controllers ask for NAME/INTERFACE, spelled exactly: the parser strips blanks around a "
+    "name, those within it stay, and an empty one can be asked for by nobody.",
+    fix="Write the name without blanks.",
+    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
+    '<joint name="j"><state_interface name=""/></joint></ros2_control>',
+    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
+    '<joint name="j"><state_interface name="position"/></joint></ros2_control>',
+)
+def odd_interface(subject: Subject) -> Iterator[Problem]:
+    """Components and their interfaces; the name of a joint is reported at its declaration."""
+    for system in subject.elements.every("ros2_control"):
+        for it in system.iter(
+            "ros2_control", "sensor", "gpio", "command_interface", "state_interface"
+        ):
+            name = it.get("name")
+            if name is not None and (not name.strip() or BLANK.search(name.strip())):
+                yield Problem(it, f"<{it.tag}> has the name {name!r}", "name")

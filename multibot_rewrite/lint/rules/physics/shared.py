@@ -1,0 +1,76 @@
+"""What rules about mass, inertia and shapes share: how they are read, and examples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.lint.facts.numbers import numbers
+from multibot_rewrite.lint.facts.robot import Inertial, Link, Robot
+
+# What MuJoCo takes for nothing (mjMINVAL).
+NOTHING = 1e-15
+SHAPES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
+INERTIA = '<inertia ixx="0.1" ixy="0" ixz="0" iyy="0.1" iyz="0" izz="0.1"/>'
+BOX = '<geometry><box size="1 1 1"/></geometry>'
+
+
+def an_inertial(mass: str = "1", inertia: str = INERTIA) -> str:
+    """An example's mass and inertia."""
+    return f'<inertial><mass value="{mass}"/>{inertia}</inertial>'
+
+
+def diagonal(ixx: str, iyy: str, izz: str, ixy: str = "0") -> str:
+    """An inertia with these moments."""
+    return f'<inertia ixx="{ixx}" ixy="{ixy}" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/>'
+
+
+def one_link(inside: str) -> str:
+    """An example: a link."""
+    return f'<link name="a">{inside}</link>'
+
+
+def moving_link(inside: str) -> str:
+    """An example: a link on a wheel's joint."""
+    return (
+        f'{one_link(an_inertial())}<link name="b">{inside}</link><joint name="j" type="continuous">'
+        '<parent link="a"/><child link="b"/></joint>'
+    )
+
+
+def visual(shape: str) -> str:
+    """An example: a link that shows a shape."""
+    return one_link(f"<visual><geometry>{shape}</geometry></visual>")
+
+
+def inertials(robot: Robot) -> Iterator[tuple[Link, Inertial]]:
+    """The links that have an inertial, and it."""
+    for link in robot.links:
+        if link.inertial is not None:
+            yield link, link.inertial
+
+
+def part_of(inertial: Inertial, tag: str) -> _Element:
+    """A child of an inertial, the inertial itself where it has none."""
+    found = inertial.element.find(tag)
+    return inertial.element if found is None else found
+
+
+def moves(robot: Robot, name: str) -> bool:
+    """Is a link the child of a joint that is not fixed?"""
+    return name in robot.above and robot.above[name][0].type != "fixed"
+
+
+def parts_with_mass(robot: Robot) -> dict[str, int]:
+    """Body -> how many of its links have a mass."""
+    count = dict.fromkeys(robot.body.values(), 0)
+    for link, inertial in inertials(robot):
+        if link.name in robot.body and inertial.mass != 0:
+            count[robot.body[link.name]] += 1
+    return count
+
+
+def sizes_of(shape: _Element) -> tuple[float, ...]:
+    """The sizes of a shape; empty if one is missing or not a number."""
+    return numbers(" ".join([shape.get(name, "?") for name in SHAPES[str(shape.tag)]])) or ()

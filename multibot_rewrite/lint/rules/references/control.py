@@ -1,0 +1,171 @@
+"""Joints that <ros2_control> and transmissions drive, or should."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.robot import Joint
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.references.shared import ARM, PAIR, SYSTEM, name_of
+from multibot_rewrite.model import Claim
+
+# Types that no motor moves.
+UNDRIVEN = ("fixed", "floating", "planar", "")
+
+
+@rule(
+    "MB223",
+    "transmission-without-joint",
+    WARNING,
+    what="A <transmission> has no joint.",
+    why="transmission_interface and gazebo_ros_control of ROS 1 leave it out ('has no associated "
+    "joints'): nothing drives what it was made for.",
+    fix="Name the joint, or delete the transmission.",
+    bad='<transmission name="t"><actuator name="m"/></transmission>',
+    good=f'{ARM}<transmission name="t"><joint name="j"/><actuator name="m"/></transmission>',
+)
+def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
+    """Transmissions of the robot; those of the PR2 name joints by other tags."""
+    for it in subject.elements.tops("transmission"):
+        if not any("joint" in str(child.tag).lower() for child in it.iterchildren("*")):
+            message = f"transmission {it.get('name', '')!r} has no joint"
+            yield Problem(it, message, None, "name its joint")
+
+
+@rule(
+    "MB224",
+    "driven-fixed-joint",
+    ERROR,
+    what="A joint of a <ros2_control> is fixed.",
+    why="From Jazzy on the controller manager refuses the description ('Fixed joints do not make "
+    "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
+    fix="Take the joint out, or give it a type that moves.",
+    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="b"/></joint>' + SYSTEM.format('<joint name="j"/>'),
+    good=ARM + SYSTEM.format('<joint name="j"/>'),
+)
+def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
+    """Joints that ros2_control is to move and that cannot."""
+    for it in _components(subject.document.root):
+        joint = subject.robot.joint.get(it.get("name", ""))
+        if joint is not None and joint.type == "fixed":
+            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "take it out")
+
+
+@rule(
+    "MB225",
+    "fixed-transmission",
+    WARNING,
+    what="A transmission drives a fixed joint.",
+    why="Gazebo removes fixed joints, so gazebo_ros_control finds none of that name and loads no "
+    "hardware at all.",
+    fix="Delete the transmission, or give the joint a type that moves.",
+    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
+    '<child link="b"/></joint><transmission name="t"><joint name="j"/></transmission>',
+    good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
+)
+def fixed_transmission(subject: Subject) -> Iterator[Problem]:
+    """Joints of transmissions that cannot move."""
+    for transmission in subject.elements.tops("transmission"):
+        for it in transmission.iterchildren("joint"):
+            joint = subject.robot.joint.get(it.get("name", ""))
+            if joint is not None and joint.type == "fixed":
+                yield Problem(it, f"joint {joint.name!r} is fixed", "name", "nothing moves it")
+
+
+@rule(
+    "MB226",
+    "commanded-mimic",
+    WARNING,
+    what="A joint that mimics another one has a command interface in <ros2_control>.",
+    why="From Jazzy on the controller manager refuses the description ('Activated mimic joints "
+    'cannot have command interfaces\'), unless the joint says mimic="false".',
+    fix='Delete the command interface; mimic="false" if the hardware drives both.',
+    bad=PAIR.format('<mimic joint="j"/>')
+    + SYSTEM.format(
+        '<joint name="j"/><joint name="k"><command_interface name="position"/></joint>'
+    ),
+    good=PAIR.format('<mimic joint="j"/>')
+    + SYSTEM.format('<joint name="j"/><joint name="k"><state_interface name="position"/></joint>'),
+)
+def commanded_mimic(subject: Subject) -> Iterator[Problem]:
+    """Mimicking joints with a command interface of their own."""
+    for it, other in _mimicking(subject):
+        if it.find("command_interface") is not None:
+            message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
+            yield Problem(it, message, "name", 'delete the interface, or say mimic="false"')
+
+
+@rule(
+    "MB227",
+    "mimic-without-its-joint",
+    WARNING,
+    what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>.",
+    why="From Jazzy on the controller manager refuses the description ('Mimic joint ... not found "
+    "in <ros2_control> tag').",
+    fix='Put both joints in one <ros2_control>, or say mimic="false".',
+    bad=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="k"/>'),
+    good=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
+)
+def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
+    """Mimicking joints whose leader is not in the same <ros2_control>."""
+    beside: dict[_Element, set[str]] = {}
+    for it, other in _mimicking(subject):
+        system = it.getparent()
+        assert system is not None
+        if system not in beside:
+            beside[system] = {name_of(joint) for joint in system.iterchildren("joint")}
+        if other not in beside[system]:
+            message = f"joint {it.get('name')!r} mimics {other!r}, which is not in here"
+            yield Problem(it, message, "name", "put both in one <ros2_control>")
+
+
+@rule(
+    "MB228",
+    "undriven-joint",
+    NOTE,
+    what="Other joints are driven by <ros2_control>, transmissions or plugins, and this one is not.",
+    why="Nothing moves it; unless somebody publishes its state all the same, "
+    "robot_state_publisher does not send its transform and tf has no link behind it.",
+    fix="Add it to <ros2_control>; if it is passive, let somebody publish its state.",
+    bad=PAIR.format("") + SYSTEM.format('<joint name="j"/>'),
+    good=PAIR.format("") + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
+)
+def undriven_joint(subject: Subject) -> Iterator[Problem]:
+    """One finding a robot: the joints that were forgotten, or are passive."""
+    if not subject.elements.tops("ros2_control", "transmission"):
+        return
+    claims = subject.inventory.claims
+    named = {it.value for it in claims if it.site.plain == "joint" and _drives_a_joint(it)}
+    left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
+    if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
+        names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
+        message = f"{len(left)} joints that move are driven by nothing: {names}"
+        yield Problem(left[0].element, message, "name", "passive joints need a state, too")
+
+
+def _drives_a_joint(claim: Claim) -> bool:
+    return claim.site.role == "uses" and claim.site.section != "element joint"
+
+
+def _needs_a_drive(joint: Joint) -> bool:
+    return joint.type not in UNDRIVEN and joint.element.find("mimic") is None
+
+
+def _mimicking(subject: Subject) -> Iterator[tuple[_Element, str]]:
+    """Joints in <ros2_control> that follow another one, and which."""
+    for it in _components(subject.document.root):
+        joint = subject.robot.joint.get(it.get("name", ""))
+        mimic = None if joint is None else joint.element.find("mimic")
+        if mimic is not None and it.get("mimic", "").strip().lower() not in ("false", "0"):
+            yield it, mimic.get("joint", "")
+
+
+def _components(root: _Element) -> Iterator[_Element]:
+    """The joints in <ros2_control>."""
+    for system in root.iterchildren("ros2_control"):
+        yield from system.iterchildren("joint")

@@ -1,0 +1,109 @@
+"""Frames that are no link of the robot."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.checks.references import COMPARED, HINTED, fold, where
+from multibot_rewrite.findings.finding import NOTE, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.references.lookup import references
+from multibot_rewrite.lint.rules.references.shared import PLUGIN
+from multibot_rewrite.model import Claim
+from multibot_rewrite.naming import FRAME_KINDS
+from multibot_rewrite.rewriters.spelling import must_be_declared, names_in
+
+# Frames that exist at run time though nothing in the file declares them.
+AT_RUN_TIME = ("odom", "map", "world")
+
+
+@rule(
+    "MB217",
+    "misspelled-frame",
+    WARNING,
+    what="A frame is not declared, and a link has almost the same name.",
+    why="The data is stamped with a frame that tf does not have: every consumer drops it "
+    "('frame does not exist').",
+    fix="Correct the name; if another node publishes that frame, silence the finding.",
+    bad='<link name="base_link"/>'
+    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_lnik</frame_name>"),
+    good='<link name="base_link"/>'
+    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_link</frame_name>"),
+)
+def misspelled_frame(subject: Subject) -> Iterator[Problem]:
+    """Frames that differ from a link by one typing mistake."""
+    for claim, name, near in _frames(subject):
+        if near:
+            message = f"{where(claim)} names the frame {name!r}, which no link has"
+            yield Problem(claim.element, message, claim.attribute, f"did you mean {near!r}?")
+
+
+@rule(
+    "MB218",
+    "foreign-frame",
+    NOTE,
+    what="A sensor or plugin stamps its data with a frame that is no link of the robot.",
+    why="Unless another node publishes that frame, tf does not have it and every consumer drops "
+    "the data.",
+    fix="Name a link, or be sure that somebody publishes the frame.",
+    bad='<link name="a"/><gazebo reference="a"><sensor name="s" type="imu"><frame_id>imu_frame'
+    "</frame_id></sensor></gazebo>",
+    good='<link name="a"/><gazebo reference="a"><sensor name="s" type="imu"><frame_id>a</frame_id>'
+    "</sensor></gazebo>",
+)
+def foreign_frame(subject: Subject) -> Iterator[Problem]:
+    """Frames that the robot does not have, and that no localisation publishes."""
+    for claim, name, near in _frames(subject):
+        if not near and not claim.site.default and not name.endswith(AT_RUN_TIME):
+            message = f"{where(claim)} names the frame {name!r}, which no link has"
+            yield Problem(claim.element, message, claim.attribute, "somebody else must publish it")
+
+
+def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:
+    """Frames that nothing declares, and the link that was meant, if one is near enough."""
+    declared = subject.inventory.declared
+    links = declared["link"]
+    meant: dict[str, str] = {}
+    for claim in references(subject).doubtful if links else ():
+        site = claim.site
+        if FRAME_KINDS.isdisjoint(site.kinds) or "frame" not in site.kinds:
+            continue
+        if must_be_declared(site) or site.form != "whole":
+            continue
+        for name in (part.text for part in names_in(claim, declared)):
+            # A frame_prefix or namespace may come before the link's name at run time.
+            own = name.rpartition("/")[2]
+            known = (it in declared[kind] for it in (own, name) for kind in ("link", *site.kinds))
+            if own in AT_RUN_TIME or f"/{own}" in links or any(known):
+                continue
+            if name not in meant:
+                meant[name] = _meant_link(own, links) if len(meant) < HINTED else ""
+            yield claim, name, meant[name]
+
+
+def _meant_link(name: str, known: Iterable[str]) -> str:
+    """The known name that differs from ``name`` by one typing mistake in one word."""
+    folded = fold(name)
+    for it, _ in zip(known, range(COMPARED), strict=False):
+        other = fold(it)
+        if folded == other or _one_typo(folded.split("_"), other.split("_")):
+            return it
+    return ""
+
+
+def _one_typo(words: list[str], others: list[str]) -> bool:
+    """Do they differ in one long word without digits, by a letter or two letters swapped?"""
+    if len(words) != len(others):
+        return False
+    pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
+    if len(pairs) != 1:
+        return False
+    one, two = pairs[0]
+    if not (one.isalpha() and two.isalpha()) or max(len(one), len(two)) < 4:
+        return False
+    while one and two and one[0] == two[0]:
+        one, two = one[1:], two[1:]
+    while one and two and one[-1] == two[-1]:
+        one, two = one[:-1], two[:-1]
+    return max(len(one), len(two)) == 1 or (len(one) == 2 and one == two[::-1])

@@ -1,0 +1,5 @@
+"""MB5: the kinematic tree and its joints."""
+
+from multibot_rewrite.lint.rules.structure import joints, limits, mimic, safety, tree
+
+THEMES = (tree, limits, joints, mimic, safety)

@@ -1,0 +1,51 @@
+"""What rules about the tree and its joints share: the types of joints, and examples."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.lint.facts.robot import Joint, Robot
+
+TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")
+# The types with one position, which have an axis; the types that need a limit.
+ONE_AXIS = frozenset(("revolute", "continuous", "prismatic"))
+BOUNDED = frozenset(("revolute", "prismatic"))
+TOLERANCE = 1e-3
+SHOWN = 8
+TWO_LINKS = '<link name="a"/><link name="b"/>'
+ENDS = '<parent link="a"/><child link="b"/>'
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+
+
+def one_joint(kind: str, inside: str = "") -> str:
+    """An example: two links and a joint."""
+    return f'{TWO_LINKS}<joint name="j" type="{kind}">{ENDS}{inside}</joint>'
+
+
+def two_joints(inside: str, first: str = "") -> str:
+    """An example: a revolute joint, and another with something in it."""
+    return (
+        f'{one_joint("revolute", LIMIT + first)}<link name="c"/><joint name="k" type="revolute">'
+        f'<parent link="b"/><child link="c"/>{LIMIT}{inside}</joint>'
+    )
+
+
+def fixed_joint(name: str, parent: str, child: str) -> str:
+    """An example: a fixed joint."""
+    return f'<joint name="{name}" type="fixed"><parent link="{parent}"/><child link="{child}"/></joint>'
+
+
+def first_names(names: Iterable[str]) -> str:
+    """The first of many names, quoted."""
+    all_ = [repr(it) for it in names]
+    more = f" and {len(all_) - SHOWN} more" if len(all_) > SHOWN else ""
+    return ", ".join(all_[:SHOWN]) + more
+
+
+def joints_with(robot: Robot, tag: str) -> Iterator[tuple[Joint, _Element]]:
+    """The joints that have such an element."""
+    for joint in robot.joints:
+        if tag in joint.parts:
+            yield joint, joint.parts[tag]

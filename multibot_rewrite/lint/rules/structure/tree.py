@@ -1,0 +1,205 @@
+"""The kinematic tree: one root, no loops, every link reached."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from lxml.etree import _Element
+
+from multibot_rewrite.checks.audit import nearest
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.robot import loops, reached, roots
+from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.structure.shared import (
+    SHOWN,
+    TWO_LINKS,
+    first_names,
+    fixed_joint,
+    one_joint,
+)
+
+# With more than this many pairs of names a search for the nearest one takes too long.
+MANY = 50
+# Files of nothing else are not for urdfdom.
+WITHOUT_LINKS = frozenset(("material", "webots"))
+
+
+@rule(
+    "MB501",
+    "several-roots",
+    ERROR,
+    what="More than one link has no parent: the robot is in several pieces.",
+    why="urdfdom refuses the file ('Two root links found'): no robot_state_publisher, no tf.",
+    fix="Add the joint that holds the pieces together.",
+    bad=TWO_LINKS,
+    good=one_joint("fixed"),
+)
+def several_roots(subject: Subject) -> Iterator[Problem]:
+    """Every root but the one with most links below it; a misspelled child link is MB202."""
+    robot = subject.robot
+    found = roots(robot)
+    if len(found) < 2:
+        return
+    seen: set[str] = set()
+    sizes = [len(reached(robot, [it.name], seen)) for it in found]
+    main = found[sizes.index(max(sizes))]
+    lost = [it for it in robot.above if it not in robot.link]
+    search = lost if len(found) * len(lost) <= MANY else ()
+    for link in found:
+        if link is main or nearest(link.name, search):
+            continue
+        said = f"link {link.name!r} is a second root beside {main.name!r}: it is no joint's child"
+        yield Problem(link.element, said, "name", "add the joint that it hangs on")
+
+
+@rule(
+    "MB502",
+    "no-link",
+    WARNING,
+    what="The robot has no link. Files of materials alone or for Webots need none.",
+    why="urdfdom refuses the file ('No link elements found in urdf file').",
+    fix="Add the links, directly below <robot>.",
+    bad='<robot name="r"/>',
+    good='<link name="a"/>',
+)
+def no_link(subject: Subject) -> Iterator[Problem]:
+    """A robot without links that is no expansion: files of macros have no links of their own."""
+    root = subject.document.root
+    if root.tag != "robot" or subject.robot.links or subject.origins:
+        return
+    tags = [str(it.tag) for it in root.iterchildren("*")]
+    if not any("xacro}" in it for it in tags) and (not tags or not WITHOUT_LINKS.issuperset(tags)):
+        yield Problem(root, "the robot has no link")
+
+
+@rule(
+    "MB503",
+    "kinematic-loop",
+    ERROR,
+    what="Joints close a loop: a link is below itself.",
+    why="urdfdom accepts a loop beside the tree: nothing of it gets a frame in tf, and pinocchio "
+    "leaves it out; where all links are on loops it refuses the file ('No root link found').",
+    fix="Turn round or delete one joint; close a real loop in the simulator.",
+    bad='<link name="a"/><link name="b"/><link name="c"/>'
+    + fixed_joint("j", "b", "c")
+    + fixed_joint("k", "c", "b"),
+    good='<link name="a"/><link name="b"/><link name="c"/>'
+    + fixed_joint("j", "a", "b")
+    + fixed_joint("k", "b", "c"),
+)
+def kinematic_loop(subject: Subject) -> Iterator[Problem]:
+    """Each loop, at the last of its joints in the file."""
+    order: dict[_Element, int] = {}
+    for joints in loops(subject.robot):
+        order = order or {it.element: at for at, it in enumerate(subject.robot.joints)}
+        last = max(joints, key=lambda it: order[it.element])
+        at = joints.index(last) + 1
+        names = [it.child for it in joints[at:] + joints[:at]]
+        way = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
+        yield Problem(
+            last.element,
+            f"joint {last.name!r} closes a loop of {len(joints)} joints: {last.child!r} is below "
+            f"itself ({names[-1]!r} -> {way})",
+        )
+
+
+@rule(
+    "MB504",
+    "several-parents",
+    ERROR,
+    what="A link is the child of two joints.",
+    why="urdfdom keeps one of the joints, by name; sdformat refuses the file (two links of one "
+    "name) and MuJoCo, too ('body has multiple parents').",
+    fix="Delete one of the joints, or add a link of its own for it.",
+    bad='<link name="a"/><link name="b"/>'
+    + fixed_joint("j", "a", "b")
+    + fixed_joint("k", "a", "b"),
+    good='<link name="a"/><link name="b"/><link name="c"/>'
+    + fixed_joint("j", "a", "b")
+    + fixed_joint("k", "a", "c"),
+)
+def several_parents(subject: Subject) -> Iterator[Problem]:
+    """Every joint but the first that has the link as its child; copies of a joint are MB201."""
+    for name, joints in subject.robot.above.items():
+        if len(joints) == 1:
+            continue
+        for joint in joints[1:]:
+            if joint.name != joints[0].name and joint.parent != name:
+                yield Problem(
+                    joint.parts["child"],
+                    f"link {name!r} is the child of {joint.name!r} and of {joints[0].name!r}",
+                    "link",
+                )
+
+
+@rule(
+    "MB505",
+    "unreachable-link",
+    ERROR,
+    what="Links hang on a loop, or on a joint from a link to itself: no way leads to them from the "
+    "root.",
+    why="urdfdom accepts the file and nobody sees the links: they get no frame in tf, and Gazebo "
+    "and pinocchio leave them out.",
+    fix="Mend the loop that they hang on.",
+    bad='<link name="a"/><link name="b"/><link name="c"/><link name="d"/>'
+    + fixed_joint("j", "b", "c")
+    + fixed_joint("k", "c", "b")
+    + fixed_joint("l", "c", "d"),
+    good='<link name="a"/><link name="b"/>' + fixed_joint("j", "a", "b"),
+)
+def unreachable_link(subject: Subject) -> Iterator[Problem]:
+    """One finding, at the first link; links in the loop itself are MB503."""
+    robot = subject.robot
+    seen: set[str] = set()
+    reached(robot, (it for it in (*robot.link, *robot.below) if it not in robot.above), seen)
+    if not seen or all(it in seen for it in robot.link):
+        return
+    seen.update(it.child for joints in loops(robot) for it in joints)
+    seen.update(it.child for it in robot.joints if it.child == it.parent)
+    lost = [it for name, it in robot.link.items() if name not in seen]
+    if lost:
+        names = first_names(it.name for it in lost)
+        yield Problem(lost[0].element, f"no way from the root leads to {names}", "name")
+
+
+@rule(
+    "MB506",
+    "joint-to-itself",
+    ERROR,
+    what="A joint's parent is its child.",
+    why="For urdfdom the link has a parent and is no root: with the root it refuses the file ('No "
+    "root link found'), any other link is left out of tf and Gazebo.",
+    fix="Name the link that the joint hangs on as its parent.",
+    bad='<link name="a"/>' + fixed_joint("j", "a", "a"),
+    good=one_joint("fixed"),
+)
+def joint_to_itself(subject: Subject) -> Iterator[Problem]:
+    """Joints from a link to itself."""
+    for joint in subject.robot.joints:
+        if joint.parent == joint.child and joint.parent:
+            message = f"joint {joint.name!r} has {joint.child!r} as its parent and as its child"
+            yield Problem(joint.parts["child"], message, "link")
+
+
+@rule(
+    "MB507",
+    "joint-without-ends",
+    ERROR,
+    what="A joint does not say its parent or its child link.",
+    why="urdfdom refuses the file ('missing a parent and/or child link specification').",
+    fix='Add <parent link="..."/> and <child link="..."/>.',
+    bad='<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>',
+    good=one_joint("fixed"),
+)
+def joint_without_ends(subject: Subject) -> Iterator[Problem]:
+    """Joints without an end, each at the element that lacks it."""
+    for joint in subject.robot.joints:
+        if joint.parent and joint.child:
+            continue
+        for tag, name in (("parent", joint.parent), ("child", joint.child)):
+            part = joint.parts.get(tag)
+            if not name and part is None:
+                yield Problem(joint.element, f"joint {joint.name!r} has no <{tag}>")
+            elif not name and part is not None:
+                yield Problem(part, f"<{tag}> of joint {joint.name!r} names no link", "link")

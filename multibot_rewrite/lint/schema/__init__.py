@@ -1,0 +1,1 @@
+"""The shape of a URDF: what its readers look for (``urdf.schema``), and every fault against it."""

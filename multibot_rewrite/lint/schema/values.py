@@ -1,0 +1,75 @@
+"""What an attribute's value must be by its type in ``urdf.schema``, and what is wrong with it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from math import isfinite
+
+from multibot_rewrite.lazy import regex
+
+_SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
+_UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
+# What most values look like. urdfdom takes blanks before a lone number and none after it.
+FINE = {
+    "number": regex(rf" *{_SCALAR}", re.ASCII),
+    "numbers": regex(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
+    "rgba": regex(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
+    "version": regex(r"0*1\.0+", re.ASCII),
+}
+_LONG = 200
+COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
+_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_INFINITE = regex(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
+_UNITS = regex(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
+
+
+def is_fine(kind: str, value: str) -> bool:
+    """Does a value look like most correct ones? (Others may be correct as well.)"""
+    return len(value) <= _LONG and kind in FINE and bool(FINE[kind].fullmatch(value))
+
+
+def shortened(text: str) -> str:
+    """A text that fits into a message."""
+    return text if len(text) < 60 else f"{text[:56]} ..."
+
+
+def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
+    """(kind of fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
+    words = value.split()
+    odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
+    if not words:
+        return "not-a-number", ", which is no number", ""
+    if odd is not None and not _INFINITE.fullmatch(odd):
+        return (
+            "not-a-number",
+            f": {shortened(odd)!r} is no number" * (odd != value),
+            _number_hint(value, odd),
+        )
+    if odd is not None or not all(isfinite(float(word)) for word in words):
+        return "not-finite", ", which is not finite", "write a large number, or leave it out"
+    return _miscounted(value, [float(word) for word in words], kind)
+
+
+def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, str, str]:
+    """The same for a value of nothing but numbers."""
+    wanted = COUNTS[kind]
+    if len(numbers) != wanted:
+        count = f"{len(numbers)} numbers" if len(numbers) != 1 else "1 number"
+        return "wrong-count", f": {count} of {wanted}", ""
+    if kind == "rgba" and not all(0 <= it <= 1 for it in numbers):
+        return kind, ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
+    if kind == "number" and value.endswith(" "):
+        return "blank-behind-number", ", with a blank behind it", "delete the blank"
+    return "", "", ""
+
+
+def _number_hint(value: str, odd: str) -> str:
+    if "," in value:
+        alone = re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
+        return "write a point for the comma" if alone else "separate numbers by blanks, not commas"
+    if "$" in value:
+        return "expand it with xacro first"
+    if _UNITS.fullmatch(odd):
+        return "leave the unit out: lengths are metres, angles radians, masses kilograms"
+    return ""

@@ -1,0 +1,40 @@
+"""The groups of rules are complete, and what rules share of one document stays with it."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pkgutil import walk_packages
+
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.lint import rules
+from multibot_rewrite.lint.files.subjects import read_subjects
+from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.lint.registry import GROUPS, RULES, rules_of
+from multibot_rewrite.lint.rules.meshes.shared import used_files
+from multibot_rewrite.lint.settings import Settings
+
+MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl"/></geometry>
+</visual></link></robot>"""
+
+
+def test_every_rule_is_in_its_group() -> None:
+    homes = {rule.code: start for start, _, group in GROUPS for rule in rules_of(group)}
+    assert homes == {code: code[:3] for code in RULES}
+
+
+def test_no_file_of_rules_is_left_out_of_its_group() -> None:
+    names = [it.name for it in walk_packages(rules.__path__, f"{rules.__name__}.")]
+    written = (vars(import_module(name)).values() for name in names)
+    declared = {it.code for values in written for it in values if isinstance(it, Rule)}
+    assert declared == set(RULES)
+
+
+def test_memos_are_of_one_subject_each() -> None:
+    """Two documents that are alike are not one: what is found must be elements of the right one."""
+    first, second = (next(read_subjects("a.urdf", MESHES, Settings())) for _ in range(2))
+    assert isinstance(first, Subject)
+    assert isinstance(second, Subject)
+    found = used_files(first)
+    assert [it.element for it in found] == list(first.document.root.iter("mesh"))
+    assert used_files(first) is found
+    assert [it.element for it in used_files(second)] == list(second.document.root.iter("mesh"))

@@ -1,0 +1,215 @@
+"""MB8: an SRDF finds its URDF, and what is compared with it."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.files.pairing import robot_name
+from multibot_rewrite.lint.run import lint_files
+from multibot_rewrite.lint.settings import Settings
+
+SHAPE = "<collision><geometry><sphere radius='1'/></geometry></collision>"
+LINK = '<link name="{}">{}</link>'
+JOINT = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/>{}</joint>'
+LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
+URDF = (
+    '<robot name="{}">'
+    + LINK.format("base", SHAPE)
+    + LINK.format("left", SHAPE)
+    + LINK.format("right", SHAPE)
+    + LINK.format("tool", "")
+    + JOINT.format("jl", "revolute", "base", "left", LIMIT)
+    + JOINT.format("jr", "continuous", "base", "right", "")
+    + JOINT.format("jt", "fixed", "left", "tool", "")
+    + "</robot>"
+)
+ARM = '<group name="arm"><chain base_link="base" tip_link="tool"/></group>'
+STATE = ARM + '<group_state name="s" group="arm"><joint name="{}" value="{}"/></group_state>'
+VIRTUAL = '<virtual_joint name="v" type="{}" parent_frame="odom" child_link="base"/>'
+PAIR = '<disable_collisions link1="{}" link2="{}" reason="Never"/>'
+ALL = PAIR.format("base", "left") + PAIR.format("right", "base")
+WHEELS = '<group name="base"><joint name="v"/></group><group_state name="s" group="base">'
+AT = '<joint name="v" value="{}"/></group_state>'
+
+
+def write(folder: Path, name: str, text: str) -> str:
+    path = folder / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return str(path)
+
+
+def lint(folder: Path, body: str, urdf: str = "") -> list[str]:
+    file = write(folder, "in.srdf", f'<robot name="r">{body}</robot>')
+    write(folder, "r.urdf", urdf or URDF.format("r"))
+    return [it.code for it in lint_file(file, Settings(select=("MB8",)))]
+
+
+@pytest.mark.parametrize(
+    ("body", "codes"),
+    [
+        ("", []),
+        (ARM, []),
+        # white space around a name counts for nothing in srdfdom
+        (ARM.replace('"base"', '" base "'), []),
+        # a chain may go up and down again
+        ('<group name="g"><chain base_link="right" tip_link="tool"/></group>', []),
+        ('<group name="g"><chain base_link="tool" tip_link="base"/></group>', []),
+        ('<group name="g"><chain base_link="tool" tip_link="tool"/></group>', ["MB810"]),
+        # one wrong name is one finding
+        ('<group name="g"><chain base_link="bsae" tip_link="tool"/></group>', ["MB803"]),
+        (ARM + '<group name="g"><link name="jl"/></group>', ["MB803"]),
+        (ARM + '<group name="g"><joint name="left"/></group>', ["MB804"]),
+        (ARM + '<group name="g"/>', ["MB811"]),
+        (ARM + '<group name="g"><!-- later --></group>', ["MB811"]),
+        (ARM + '<group name="g"><group name="g"/></group>', []),
+        (ARM + VIRTUAL.format("fixed") * 2, ["MB806"]),
+        # states: in the group, in the limits, one number a degree of freedom
+        (STATE.format("jl", "1"), []),
+        (STATE.format("jl", "1.00009"), []),
+        (STATE.format("jl", "1.001"), ["MB813"]),
+        (STATE.format("jl", "-1.001"), ["MB813"]),
+        (STATE.format("jr", "100"), ["MB812"]),
+        (STATE.format("jl", "0 0"), ["MB814"]),
+        (STATE.format("jl", ""), ["MB814"]),
+        (STATE.format("jl", "nan"), ["MB814"]),
+        (STATE.format("jl", "1e400"), ["MB814"]),
+        (STATE.format("jt", "0"), []),
+        (VIRTUAL.format("planar") + WHEELS + AT.format("0 0 0"), []),
+        (VIRTUAL.format("planar") + WHEELS + AT.format("0 0"), ["MB814"]),
+        (VIRTUAL.format("Floating") + WHEELS + AT.format("0 0 0 0 0 0 1"), []),
+        (VIRTUAL.format("moving"), ["MB823"]),
+        (VIRTUAL.format("fixed").replace("base", "left"), ["MB815"]),
+        # pairs
+        (ALL, []),
+        (ALL + PAIR.format("left", "base"), ["MB809"]),
+        (ALL + PAIR.format("left", "base") * 3, ["MB809"]),
+        (ALL + PAIR.format("left", "left"), ["MB818"]),
+        (ALL + PAIR.format("left", "tool"), ["MB819"]),
+        (ALL + PAIR.format("left", "lost") + PAIR.format("base", "lost"), ["MB807"]),
+        (PAIR.format("left", "right"), ["MB820"]),
+        (PAIR.format("left", "right") + '<disable_default_collisions link="base"/>', []),
+        # what other tools have in an SRDF stays out of it
+        (ARM + "<gripper name='g'/><calibration_info/>", []),
+        (ARM + '<disable_collision link1="a"/>', ["MB821"]),
+        (ARM.replace("base_link", "baselink"), ["MB817", "MB821"]),
+        (ARM + "<end_effector/>", ["MB817"] * 3),
+        (ARM + '<joint_property joint_name="jl"/>', ["MB817"] * 2),
+        # nothing falls over
+        ("<group/><group_state/><virtual_joint/><enable_collisions/>", ["MB811"] + ["MB817"] * 9),
+        ('<passive_joint name="jl"><x/></passive_joint>', []),
+    ],
+)
+def test_what_is_found(tmp_path: Path, body: str, codes: list[str]) -> None:
+    assert sorted(lint(tmp_path, body)) == sorted(codes)
+
+
+def test_a_fixed_joint_to_a_world_link_is_what_gazebo_wants(tmp_path: Path) -> None:
+    world = LINK.format("world", "") + JOINT.format("w", "fixed", "world", "base", "")
+    urdf = URDF.format("r").replace("</robot>", f"{world}</robot>")
+    assert lint(tmp_path, ARM + VIRTUAL.format("fixed"), urdf) == []
+    assert lint(tmp_path, ARM + VIRTUAL.format("planar"), urdf) == ["MB815"]
+
+
+def test_a_circle_of_links_ends(tmp_path: Path) -> None:
+    circle = JOINT.format("back", "fixed", "tool", "base", "")
+    urdf = URDF.format("r").replace("</robot>", f"{circle}</robot>")
+    body = ARM.replace('"tool"', '"right"') + STATE.replace("arm", "arm2").format("jl", "0")
+    assert "MB810" not in lint(tmp_path, body, urdf)
+
+
+def codes_of(found: object, file: str) -> list[str]:
+    return [it.code for it in found if it.file == file]  # type: ignore[attr-defined]
+
+
+def test_the_nearest_urdf_of_the_name_is_taken(tmp_path: Path) -> None:
+    srdf = write(tmp_path, "one/moveit/r.srdf", f'<robot name="r">{STATE.format("jl", 2)}</robot>')
+    wide = URDF.format("r").replace('upper="1"', 'upper="3"')
+    paths = [
+        write(tmp_path, "one/description/r.urdf", wide),
+        write(tmp_path, "two/r.urdf", URDF.format("r")),
+        write(tmp_path, "one/moveit/other.urdf", URDF.format("other")),
+        srdf,
+    ]
+    settings = Settings(select=("MB8",))
+    assert lint_files(paths, settings, jobs=1) == []
+    assert [it.code for it in lint_files(paths[1:], settings, jobs=1)] == ["MB813"]
+
+
+def test_the_urdf_that_has_the_names_is_taken(tmp_path: Path) -> None:
+    srdf = write(tmp_path, "a/r.srdf", f'<robot name="r">{ARM}</robot>')
+    near = write(tmp_path, "a/r.urdf", '<robot name="r"><link name="base"/></robot>')
+    far = write(tmp_path, "b/c/r.urdf", URDF.format("r"))
+    settings = Settings(select=("MB8",))
+    assert lint_files([srdf, near, far], settings, jobs=1) == []
+    # One that lacks nearly all is that of another robot.
+    write(tmp_path, "a/r.urdf", '<robot name="r"><link name="x"/></robot>')
+    assert codes_of(lint_files([srdf, near], settings, jobs=1), srdf) == ["MB801"]
+
+
+def test_workers_find_the_same(tmp_path: Path) -> None:
+    paths = []
+    for n in range(14):
+        text = f'<robot name="r{n}">{STATE.format("jl", n)}</robot>'
+        paths += [write(tmp_path, f"s/r{n}.srdf", text)]
+        paths += [write(tmp_path, f"u/r{n}.urdf", URDF.format(f"r{n}"))]
+    settings = Settings(select=("MB8",))
+    alone, many = (lint_files(paths, settings, jobs=jobs) for jobs in (1, 2))
+    assert alone == many
+    assert len(alone) == 12
+
+
+@pytest.mark.parametrize("place", ["config", "urdf", "../arm_description/urdf"])
+def test_a_urdf_beside_is_found(tmp_path: Path, place: str) -> None:
+    srdf = write(tmp_path, "arm_moveit/config/a.srdf", f'<robot name="r">{ARM}</robot>')
+    write(tmp_path, f"arm_moveit/{place}/arm.urdf", URDF.format("r"))
+    assert lint_file(srdf, Settings(select=("MB8",))) == []
+    shutil.rmtree(tmp_path / "arm_moveit" / place)
+    write(tmp_path, "arm_moveit/config/a.srdf", f'<robot name="r">{ARM}</robot>')
+    assert codes_of(lint_file(srdf, Settings(select=("MB8",))), srdf) == ["MB801"]
+
+
+def test_a_urdf_of_the_same_file_name_tells_the_other_name(tmp_path: Path) -> None:
+    srdf = write(tmp_path, "arm.srdf", f'<robot name="r">{ARM}</robot>')
+    write(tmp_path, "arm.urdf", URDF.format("arm"))
+    assert codes_of(lint_file(srdf, Settings(select=("MB8",))), srdf) == ["MB802"]
+
+
+def test_an_srdf_of_xacro_is_expanded_and_named_by_its_source(tmp_path: Path) -> None:
+    head = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    body = '<xacro:property name="tip" value="tol"/>\n<group name="g">\n'
+    chain = '<chain base_link="base" tip_link="${tip}"/></group></robot>'
+    srdf = write(tmp_path, "r.srdf.xacro", head + body + chain)
+    write(tmp_path, "r.urdf", URDF.format("r"))
+    (it,) = lint_file(srdf, Settings(select=("MB8",)))
+    assert (it.code, it.file, it.line) == ("MB803", srdf, 3)
+    assert it.hint == "did you mean 'tool'?"
+
+
+def test_without_a_urdf_its_own_names_are_looked_at(tmp_path: Path) -> None:
+    body = STATE.format("jl", "x") + '<group name="h"><group name="amr"/></group>'
+    srdf = write(tmp_path, "in.srdf", f'<robot name="r">{body}</robot>')
+    found = lint_file(srdf, Settings(select=("MB8",)))
+    assert sorted(it.code for it in found) == ["MB801", "MB805", "MB814"]
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ('<?xml version="1.0"?>\n<!-- c -->\n<robot\n xmlns:x="y" name = "arm">', "arm"),
+        ("<robot name='a b'>", "a b"),
+        ('<robot name="$(arg name)">', ""),
+        ("<robot>", ""),
+        ('<robot filename="x">', ""),
+    ],
+)
+def test_the_name_of_a_robot_is_read_from_its_head(tmp_path: Path, text: str, name: str) -> None:
+    assert robot_name(write(tmp_path, "x.urdf", text)) == name
+
+
+def test_a_file_that_is_not_there_has_no_name(tmp_path: Path) -> None:
+    assert robot_name(str(tmp_path / "nothing.urdf")) == ""
