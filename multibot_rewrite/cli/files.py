@@ -123,11 +123,17 @@ def explained(path: str) -> Iterator[None]:
 
 
 def _reason(error: OSError, path: str) -> str:
-    folder = os.path.dirname(path) or "."
-    if not os.path.exists(folder):
-        return f"the folder {folder} does not exist, create it first"
-    if not os.path.isdir(folder):
-        return f"{folder} is a file, not a folder; choose another output"
+    above = existing_folder(path)
+    if not os.path.isdir(above):
+        return f"{above} is a file, not a folder; choose another output"
     if os.path.isdir(path):
         return "it is a folder, name a file in it"
     return f"{error.strerror or error}, choose another output"
+
+
+def existing_folder(path: str) -> str:
+    """The nearest of the folders above ``path`` that is there; it may turn out to be a file."""
+    above = os.path.dirname(path) or "."
+    while not os.path.lexists(above):
+        above = os.path.dirname(above) or "."
+    return above

@@ -1,6 +1,6 @@
-"""Options as data, and those that several commands share: each means the same everywhere.
+"""Options and commands as data, and how they are written down.
 
-This module and ``commands`` import nothing heavy: a help text is made of them alone.
+This module and ``declared`` import nothing heavy: a help text is made of them alone.
 """
 
 from __future__ import annotations
@@ -10,15 +10,6 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.findings.finding import LEVELS
-from multibot_rewrite.findings.formats import FORMATS
-from multibot_rewrite.naming import (
-    DEFAULT_LAYOUT,
-    LAYOUTS,
-    SEPARATORS,
-    SHARED_FRAMES,
-    SHARED_TOPICS,
-)
 
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 
@@ -106,115 +97,12 @@ def output(about: str, **more: Any) -> Option:
     return value("-o", "--output", metavar="PATH", about=text, type=values.path, **more)
 
 
-_LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
-_LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
-_SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
-
-NAMING = Group(
-    "how names become a robot's own (the options a description was rewritten with)",
-    (
-        choice("--layout", "NAME", _LAYOUT_NAMES, f"{_LAYOUTS}; default: {DEFAULT_LAYOUT}"),
-        choice(
-            "--affix",
-            "SIDE",
-            ("postfix", "prefix"),
-            "the robot's name goes behind names (postfix, the default) or in front (prefix)",
-        ),
-        choice(
-            "--topics",
-            "HOW",
-            ("postfix", "prefix", "namespace"),
-            "postfix, prefix or namespace; default: what the layout implies",
-        ),
-        several(
-            "--separator",
-            "KIND=SEP",
-            "what stands between a name and the robot's; SEP alone is for all names of the"
-            f" description, not for ROS nodes and topics; defaults: {_SEPARATORS}",
-            [],
-        ),
-        several(
-            "--shared-frames",
-            "A,B",
-            f"frames that all robots share; default: {','.join(SHARED_FRAMES)}",
-        ),
-        several(
-            "--shared-topics",
-            "A,B",
-            f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
-        ),
-        choice(
-            "--groups",
-            "HOW",
-            ("keep", "rename"),
-            "groups and end effectors of an SRDF: keep (default) or rename",
-        ),
-    ),
-)
-ROBOTS = several("--robots", "A,B", "names of robots", [])
-VOCABULARY = several(
-    "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
-)
-URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
-FINDINGS = Group(
-    "findings",
-    (
-        several("--select", "CODES", "only these codes, or codes that begin so: MB2,MG102", []),
-        several("--ignore", "CODES", "not these; the longer of two that match wins", []),
-        choice(
-            "--fail-on",
-            "LEVEL",
-            LEVELS,
-            "the lowest level that makes the exit code 1: error (default; urdf-lint: warning),"
-            " warning or note",
-        ),
-        choice(
-            "--format",
-            "FORMAT",
-            tuple(FORMATS),
-            f"how findings are written: {', '.join(FORMATS)}; default: text",
-            default="text",
-        ),
-    ),
-)
-GENERAL = Group(
-    "general",
-    (
-        switch("-q", "--quiet", about="findings and errors only: no summary, no notes"),
-        switch(
-            "-v",
-            "--verbose",
-            about="each robot's findings by themselves, the files written, the time it took",
-        ),
-        choice(
-            "--color",
-            "WHEN",
-            ("auto", "always", "never"),
-            "auto (default: on a terminal, unless NO_COLOR is set), always or never",
-            default="auto",
-        ),
-    ),
-)
-LIVE = Group(
-    "live graph",
-    (
-        value(
-            "--timeout",
-            metavar="S",
-            about="look S seconds (default: 15)",
-            type=values.seconds,
-        ),
-        value(
-            "--domain",
-            metavar="N",
-            about=f"instead of ROS_DOMAIN_ID, 0 to {values.MAX_DOMAIN}",
-            type=values.domain,
-        ),
-    ),
-)
-
-
 def form(known: tuple[str, ...], about: str) -> Option:
     """``--form``: the shape of a command's result, the first one by default."""
     text = f"{about}: {', '.join(known)}; default: {known[0]}"
     return choice("--form", "FORM", known, text, default=known[0])
+
+
+def output_group(*options: Option) -> Group:
+    """The options about what is written."""
+    return Group("output", options)

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 
-from multibot_rewrite.cli.commands import POSTFIX
+from multibot_rewrite.cli.declared.description import POSTFIX
 from multibot_rewrite.cli.process import guarded, start
 
 

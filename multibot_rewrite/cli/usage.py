@@ -25,6 +25,9 @@ def policy(options: argparse.Namespace) -> Policy:
 def separators(options: argparse.Namespace) -> dict[str, str]:
     """``--separator`` as kind -> mark; one with a kind counts more than one without."""
     pairs = [it.partition("=") for it in options.separator]
+    word = next((it for it, equals, _ in pairs if not equals and it.isalnum()), None)
+    if word is not None:
+        raise UsageError(f"--separator {word}: write KIND=SEP, for example link=_, or SEP alone: _")
     alone = {kind: it for it, equals, _ in pairs if not equals for kind in OF_DESCRIPTION}
     return {**alone, **{kind: mark for kind, equals, mark in pairs if equals}}
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
+from multibot_rewrite.cli.files import existing_folder
 from multibot_rewrite.model import InputError, UsageError
 
 
@@ -76,8 +77,6 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--output") -
 
 def check_folder(target: str) -> None:
     """Raise UsageError where the folder of ``target`` cannot be made, before the work."""
-    above = os.path.dirname(target) or "."
-    while not os.path.lexists(above):
-        above = os.path.dirname(above) or "."
+    above = existing_folder(target)
     if not os.path.isdir(above):
         raise UsageError(f"{target}: cannot be written: {above} is a file, not a folder")

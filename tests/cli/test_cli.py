@@ -284,10 +284,10 @@ def test_quiet_leaves_only_findings(folder: Path) -> None:
     [
         pytest.param(("rover.urdf", "robot1"), 0, id="done"),
         pytest.param(
-            ("rover.urdf", "robot1", "--fail-on", "warning"), 0, id="strict-nothing-found"
+            ("rover.urdf", "robot1", "--fail-on", "warning"), 0, id="fail-on-nothing-found"
         ),
         pytest.param(("siblings.urdf", "robot1"), 0, id="warning"),
-        pytest.param(("siblings.urdf", "robot1", "--fail-on", "warning"), 1, id="strict-warning"),
+        pytest.param(("siblings.urdf", "robot1", "--fail-on", "warning"), 1, id="fail-on-warning"),
         pytest.param(
             ("siblings.urdf", "robot1", "--affix", "prefix", "--fail-on", "warning"),
             0,

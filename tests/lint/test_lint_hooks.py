@@ -18,7 +18,7 @@ import yaml
 from junitparser import JUnitXml
 from paths import ROOT
 
-from multibot_rewrite.cli.commands import LINT
+from multibot_rewrite.cli.declared.description import LINT
 from multibot_rewrite.cli.lint_use import check_use
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.urdf_lint import main
