@@ -10,7 +10,7 @@ from multibot_rewrite.checks.remarks import Remark
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
 from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, TWO
+from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
 from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import HOLE
@@ -112,7 +112,7 @@ off_the_shared_tf = rule(
     bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>/tf:=tf'
     "</remapping></ros></plugin></gazebo>",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
-    options={"robots": TWO},
+    options={"robots": TWO, "naming": ONE_TF},
 )(partial(_if_robots, hazards.moved_tf))
 
 
