@@ -33,13 +33,19 @@ def start(command: Command, words: Sequence[str], prog: str = "") -> int:
 
 def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
     """Report why a rewrite is not possible, which no ``--ignore`` changes."""
-    from multibot_rewrite.cli.report import About, report_beside, report_first
+    from multibot_rewrite.cli.report import (
+        NO_ROBOTS,
+        About,
+        by_themselves,
+        report_beside,
+        report_first,
+    )
+    from multibot_rewrite.cli.usage import robots
 
     given = vars(options)
     read = given.get("input") or given.get("fleet") or given.get("plan") or ""
-    (report_first if options.findings_first else report_beside)(
-        options, error.findings, About([read])
-    )
+    about = About([read], by_themselves(robots(options)) if "robots" in given else NO_ROBOTS)
+    (report_first if options.findings_first else report_beside)(options, error.findings, about)
     return STOPPED
 
 
