@@ -23,13 +23,13 @@ from pairs import Row, child, paired, seconds, table
 from robots import robot
 
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.params.rewrite import params
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.artefacts import Artefacts, make_artefacts
-from multibot_rewrite.fleets.companions import kin_of
+from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import plan_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleets.robot_groups import group_robots
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-build.md"
 ROBOTS = 100
@@ -157,12 +157,12 @@ def write_fleets(folder: Path) -> tuple[str, str]:
     return str(paths[0]), str(paths[1])
 
 
-def made(fleet: str) -> Artefacts:
+def made(fleet: str) -> Outputs:
     """All files of a fleet, in memory."""
-    return make_artefacts(plan_fleet(read_fleet(fleet)))
+    return make_outputs(plan_fleet(read_fleet(fleet)))
 
 
-def write_raw(files: Artefacts, folder: str) -> None:
+def write_raw(files: Outputs, folder: str) -> None:
     """The same bytes into a fresh folder, and nothing else."""
     shutil.rmtree(folder, ignore_errors=True)
     for path, data, _ in files.files:
@@ -240,12 +240,14 @@ def rows(folder: Path) -> list[Row]:
 
 def least(folder: Path, runs: int = 100) -> float:
     """Milliseconds for the parameter file of the first robot, at best."""
-    kin = next(iter(kin_of(plan_fleet(read_fleet(str(folder / "one.yaml"))))))
+    kin = next(iter(group_robots(plan_fleet(read_fleet(str(folder / "one.yaml"))))))
     data = (folder / "params.yaml").read_bytes()
     context = make_context(kin.context.names.declared, kin.context.names.naming, kin.facts)
 
     def first() -> str:
-        return fill(params(read_yaml(data, "params.yaml"), context).template, "robot1", "robot1")
+        return fill_template(
+            rewrite_params(read_yaml(data, "params.yaml"), context).template, "robot1", "robot1"
+        )
 
     gc.collect()
     return 1000 * min(seconds(first) for _ in range(runs))

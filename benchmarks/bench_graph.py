@@ -26,7 +26,7 @@ import live_fleet  # the nodes of the tests
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.snapshot import (
     Environment,
@@ -37,7 +37,7 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
@@ -82,7 +82,7 @@ def row(what: str, fleet: object, values: Sequence[float], unit: str, goal: str)
     return Row(what, str(fleet), statistics.median(values), spread, unit, goal)
 
 
-def ends(size: Size) -> Iterator[Wanted]:
+def ends(size: Size) -> Iterator[PlannedEndpoint]:
     """Every endpoint of a fleet: a topic has its publisher and its subscription in one node."""
     for robot in range(size.robots):
         for node in range(size.nodes):
@@ -91,12 +91,14 @@ def ends(size: Size) -> Iterator[Wanted]:
                 full = f"/robot{robot}/{name}"
                 type_ = f"std_msgs/msg/{TYPES[topic % 2]}"
                 for role in (PUBLISHES, SUBSCRIBES):
-                    yield Wanted(f"/robot{robot}/node{node}", TOPIC, role, full, type_, name)
+                    yield PlannedEndpoint(
+                        f"/robot{robot}/node{node}", TOPIC, role, full, type_, name
+                    )
 
 
 def plan_of(size: Size) -> Expectation:
     robots = tuple(
-        WantedRobot(
+        PlannedRobot(
             f"robot{robot}",
             tuple(f"/robot{robot}/node{node}" for node in range(size.nodes)),
             (),

@@ -20,8 +20,8 @@ import yaml
 from pairs import Row, paired, seconds, table
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.rewrite import params
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.stacks import load_stack
@@ -44,8 +44,8 @@ def context(layout: str, affix: str) -> Context:
 
 def first(data: bytes, setting: Context) -> str:
     """A file for its first robot."""
-    companion = params(read_yaml(data, "nav2_params.yaml"), setting)
-    return fill(companion.template, "robot1", "robot1")
+    companion = rewrite_params(read_yaml(data, "nav2_params.yaml"), setting)
+    return fill_template(companion.template, "robot1", "robot1")
 
 
 def load_and_dump(data: bytes) -> str:
@@ -62,9 +62,9 @@ def raw_write(data: bytes, path: str) -> None:
 def rows(data: bytes) -> list[Row]:
     """All measurements."""
     l2, l4 = context("L2", "prefix"), context("L4", "postfix")
-    template = params(read_yaml(data, "nav2_params.yaml"), l2).template
+    template = rewrite_params(read_yaml(data, "nav2_params.yaml"), l2).template
     again, composed = "fill(template)", "yaml.compose, which reads it"
-    second = partial(fill, template, "robot2", "robot2")
+    second = partial(fill_template, template, "robot2", "robot2")
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "raw.yaml")
         return [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -19,6 +20,16 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("repeatable")
+# A shell that starts the tests with & has it ignored, and so would every process that they interrupt.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``."""
+    for item in items:
+        if item.get_closest_marker("deep"):
+            item.add_marker("slow")
 
 
 @pytest.fixture(scope="session")

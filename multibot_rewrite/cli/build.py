@@ -13,18 +13,19 @@ from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.fleets.artefacts import Artefact, make_artefacts
+from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
     NOTE,
-    Changes,
-    changes,
+    OutputChanges,
     hash_of,
     manifest,
+    output_changes,
     read_manifest,
 )
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
@@ -35,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     check_report(options, printed=False)
     plan = plan_fleet(read_fleet(options.fleet))
-    made = make_artefacts(plan)
+    made = make_outputs(plan)
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)
         return STOPPED
@@ -43,7 +44,7 @@ def run(options: argparse.Namespace) -> int:
     with locked(options.output):
         known = _known(options.output)
         there = _there(options.output, {*known, *(it.path for it in files)})
-        found = changes(files, known, there)
+        found = output_changes(files, known, there)
         return _stale(options, found) if options.check else _written(options, files, found)
 
 
@@ -55,7 +56,7 @@ def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Find
     return report_beside(options, chosen(options, ordered), about)
 
 
-def _read(plan: FleetPlan, files: Iterable[Artefact]) -> dict[str, bytes]:
+def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
     """The files that a build was made from."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     return {path: read_file(path) for path in paths}
@@ -87,7 +88,7 @@ def _there(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
     return {path: hash_of(read_file(it)) for path, it in full.items() if os.path.isfile(it)}
 
 
-def _stale(options: argparse.Namespace, found: Changes) -> int:
+def _stale(options: argparse.Namespace, found: OutputChanges) -> int:
     lines = [
         *(f"{path}: stale" for path in found.write),
         *(f"{it}: left over" for it in found.remove),
@@ -101,7 +102,7 @@ def _stale(options: argparse.Namespace, found: Changes) -> int:
     return DONE
 
 
-def _written(options: argparse.Namespace, files: Sequence[Artefact], found: Changes) -> int:
+def _written(options: argparse.Namespace, files: Sequence[OutputFile], found: OutputChanges) -> int:
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")

@@ -58,10 +58,10 @@ def _plan(path: str) -> Expectation:
     if not is_fleet(data):
         return from_yaml(data, path)
     from multibot_rewrite.fleets.fleet import expected
-    from multibot_rewrite.fleets.plan import plan_fleet
-    from multibot_rewrite.fleets.started import started
+    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    return expected(started(plan_fleet(read_fleet(path))))
+    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path))))
 
 
 def conclude(
@@ -94,7 +94,7 @@ def plan_name(options: argparse.Namespace) -> str:
 
 def _words(plan: Expectation) -> dict[str, str]:
     """The words that stand for each robot of a plan."""
-    return {word: it.name for it in plan.robots for word in (it.name, it.spelled) if word}
+    return {word: it.name for it in plan.robots for word in (it.name, it.frame_tag) if word}
 
 
 def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdict: Verdict) -> int:
@@ -116,7 +116,7 @@ def _watch(options: argparse.Namespace, plan: Expectation) -> int:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
     if options.output:
-        findings = list(map(from_graph, last.found))
+        findings = list(map(from_graph, last.findings))
         report_first(options, findings, About([options.plan], _words(plan)))
-    pictures.deliver(options, plan, last.graph, last.found)
-    return _sum_up(options, plan, len(last.found), final(last))
+    pictures.deliver(options, plan, last.graph, last.findings)
+    return _sum_up(options, plan, len(last.findings), final(last))

@@ -49,13 +49,13 @@ def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
 
 def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     from multibot_rewrite.fleets.fleet_file import read_fleet  # one description needs none of it
-    from multibot_rewrite.fleets.plan import plan_fleet
-    from multibot_rewrite.fleets.started import started
+    from multibot_rewrite.fleets.fleet_plan import plan_fleet
+    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    return started(plan_fleet(read_fleet(options.input), also))
+    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also))
 
 
 def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
@@ -81,7 +81,7 @@ def about(options: argparse.Namespace, made: Fleet) -> About:
 
 def words_of(made: Fleet) -> dict[str, str]:
     """The words that stand for each robot of a fleet."""
-    prefixes = {word: robot for robot, word in made.words.items()}
+    prefixes = {tag: robot for robot, tag in made.tags.items()}
     return {**{it: it for it in made.inventories}, **prefixes}
 
 

@@ -10,8 +10,8 @@ from multibot_rewrite.cli.output import deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.graph.check import doubts
-from multibot_rewrite.graph.learning.choosing import choose, strays
-from multibot_rewrite.graph.learning.learn import Learned, learn
+from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner
+from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.live.child import RosUnusable, observe
 from multibot_rewrite.graph.live.request import Request
@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
     for caveat in doubtful:
         say(f"incomplete: {caveat.message}", PROGRAM)
     namespace = options.namespace or "/"
-    names = choose(graph, options.node, namespace)
+    names = choose_nodes(graph, options.node, namespace)
     library = built_in()
     learned = learn(graph, names, namespace, library)
     deliver(options, to_yaml(learned, options.stack, library).encode())
@@ -54,10 +54,10 @@ def _graph(options: argparse.Namespace) -> Snapshot:
     return from_json(read_file(options.snapshot), options.snapshot)
 
 
-def _notes(graph: Snapshot, learned: Sequence[Learned], namespace: str | None) -> Iterator[str]:
+def _notes(graph: Snapshot, learned: Sequence[LearnedNode], namespace: str | None) -> Iterator[str]:
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)
-    lost = strays(graph, [node.seen for node in learned])
+    lost = helpers_without_owner(graph, [node.seen for node in learned])
     if lost:
         yield f"whose helpers these are is not seen, they are left out: {', '.join(lost)}"
     first = {node.facts.name.partition("/")[0] for node in learned if "/" in node.facts.name}

@@ -14,18 +14,18 @@ from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import Fleet, expected
-from multibot_rewrite.graph.environment import listed
-from multibot_rewrite.graph.live.child import PLAY, RosUnusable, observe, running
+from multibot_rewrite.graph.live.child import RUN_STUBS, RosUnusable, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.rehearsal import (
-    Actor,
-    as_played,
-    cast,
-    dealt,
+    StubNode,
+    split_over_processes,
+    stub_nodes,
     to_order,
+    with_substitutes,
 )
 from multibot_rewrite.graph.snapshot import Snapshot, to_json
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, with_odometry
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.plural import plural
 
 # Below the ports that a system gives away by itself.
@@ -37,19 +37,19 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     made = fleet.build(options, also=[STATE_PUBLISHER])
     table = fleet.findings(options, made)
-    actors = list(cast(made.table, _edges(options, made), not options.without_rules))
+    nodes = list(stub_nodes(made.table, _edges(options, made), not options.without_rules))
     environ = stage(options.domain)
     try:
-        with _playing(dealt(actors), environ) as replaced:
-            note(options, f"{plural(len(actors), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
-            graph = _look(Request(options.timeout or live.LOOK_SECONDS, stand_ins=True), environ)
+        with _running(split_over_processes(nodes), environ) as replaced:
+            note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
+            graph = _look(Request(options.timeout or live.LOOK_SECONDS, substitutes=True), environ)
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
-    _note_replaced(options, replaced)
-    return conclude(options, as_played(expected(made), replaced), graph, table)
+    _note_substitutes(options, replaced)
+    return conclude(options, with_substitutes(expected(made), replaced), graph, table)
 
 
 def _check_use(options: argparse.Namespace) -> None:
@@ -87,20 +87,22 @@ _ELSEWHERE = ("ROS_STATIC_PEERS", "ROS_DISCOVERY_SERVER", "ROS_SUPER_CLIENT", "R
 
 
 @contextmanager
-def _playing(hands: list[list[Actor]], environ: dict[str, str]) -> Iterator[dict[str, str]]:
-    """The actors on the graph, and which types stand in for which."""
+def _running(processes: list[list[StubNode]], environ: dict[str, str]) -> Iterator[dict[str, str]]:
+    """The stub nodes in the graph; yields which types are replaced by which."""
     with ExitStack() as stack:
         children = [
-            stack.enter_context(running(PLAY, to_text(to_order(hand)), environ)) for hand in hands
+            stack.enter_context(running(RUN_STUBS, to_text(to_order(nodes)), environ))
+            for nodes in processes
         ]
         replaced: dict[str, str] = {}
         for child in children:
-            replaced |= json.loads(child.next() or b"{}")
+            replaced |= json.loads(child.next_message() or b"{}")
         yield replaced
 
 
-def _note_replaced(options: argparse.Namespace, replaced: dict[str, str]) -> None:
+def _note_substitutes(options: argparse.Namespace, replaced: dict[str, str]) -> None:
     if replaced:
-        missing = "type is" if len(replaced) == 1 else "types are"
-        text = f"{len(replaced)} {missing} not installed here and replaced by a stand-in"
-        note(options, f"note: {text}: {listed(sorted(replaced))}; the names are tried all the same")
+        what = "type is" if len(replaced) == 1 else "types are"
+        types = shorten(sorted(replaced), SEVERAL)
+        text = f"{len(replaced)} {what} not installed here and replaced by others: {types}"
+        note(options, f"note: {text}; this does not change the names")

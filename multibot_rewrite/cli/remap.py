@@ -10,9 +10,9 @@ from multibot_rewrite.cli.output import deliver, goes_to_file, note
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.remap.bridge import as_yaml, bridge
-from multibot_rewrite.remap.forms import EVERY_ROBOT, FORMS
+from multibot_rewrite.remap.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.remap.records import Table
+from multibot_rewrite.remap.table_formats import EVERY_ROBOT, FORMS
 
 TABLE, BRIDGE = "table", "bridge"
 
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:
-    carried, left = bridge(made.inventories, made.naming)
+    carried, left = bridged_topics(made.inventories, made.naming)
     for item in left:
         message = f"line {item.line}: {item.what} has no topic, its default depends on the world"
         note(options, f"{item.robot}: warning: {message} (write the element)")

@@ -11,7 +11,7 @@ from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
-from multibot_rewrite.graph.watching import Moment, Verdict, next_moment
+from multibot_rewrite.graph.watching import Verdict, WatchState, next_state
 from multibot_rewrite.plural import plural
 
 WORDS = {
@@ -21,31 +21,31 @@ WORDS = {
 }
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
-Show = Callable[[Moment], None]
+Show = Callable[[WatchState], None]
 
 
-def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> Moment | None:
+def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
-    moment: Moment | None = None
+    state: WatchState | None = None
     with ExitStack() as stack:
         stack.enter_context(closing(snapshots))
         show = stack.enter_context(_screen()) if sys.stdout.isatty() else _print_lines
         try:
             for graph in snapshots:
-                moment = next_moment(plan, graph, moment)
-                show(moment)
+                state = next_state(plan, graph, state)
+                show(state)
         except KeyboardInterrupt:
             # The usual way to end it.
-            return moment
-    return moment
+            return state
+    return state
 
 
-def _print_lines(moment: Moment) -> None:
+def _print_lines(state: WatchState) -> None:
     """What changed, for a log: findings come with + and go with -."""
-    at = f"{moment.graph.environment.seconds:7.1f} s"
-    changes = (("+", moment.appeared), ("-", moment.solved)) if moment.whole else ()
+    at = f"{state.graph.environment.seconds:7.1f} s"
+    changes = (("+", state.appeared), ("-", state.solved)) if state.complete else ()
     told = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
-    print_lines([*told, f"{at}  {_headline(moment)}"])
+    print_lines([*told, f"{at}  {_headline(state)}"])
 
 
 @contextmanager
@@ -55,27 +55,27 @@ def _screen() -> Iterator[Show]:
     from rich.text import Text
 
     with Live(auto_refresh=False) as live:
-        yield lambda moment: live.update(
-            Text.from_ansi(render(_parts(moment), live.console.width, colour=True)), refresh=True
+        yield lambda state: live.update(
+            Text.from_ansi(render(_parts(state), live.console.width, colour=True)), refresh=True
         )
 
 
-def _parts(moment: Moment) -> Iterator[str | Grid]:
-    yield _headline(moment)
+def _parts(state: WatchState) -> Iterator[str | Grid]:
+    yield _headline(state)
     yield ""
-    per_robot = {robot.robot: 0 for robot in moment.robots}
-    for finding in moment.found:
+    per_robot = {robot.robot: 0 for robot in state.robots}
+    for finding in state.findings:
         per_robot[finding.robot] = per_robot.get(finding.robot, 0) + 1
     rows = [
-        (it.robot, _of(it.nodes), _of(it.names), str(per_robot[it.robot])) for it in moment.robots
+        (it.robot, _of(it.nodes), _of(it.names), str(per_robot[it.robot])) for it in state.robots
     ]
     # Those with findings first: a screen does not hold a hundred.
     rows.sort(key=lambda row: row[3] == "0")
     yield Grid(("robot", "nodes", "names", "findings"), rows[:_SHOWN])
     yield from _more(len(rows), "robots")
     yield ""
-    yield from map(str, _worst_first(moment.found)[:_SHOWN])
-    yield from _more(len(moment.found), "findings")
+    yield from map(str, _worst_first(state.findings)[:_SHOWN])
+    yield from _more(len(state.findings), "findings")
 
 
 def _worst_first(found: tuple[GraphFinding, ...]) -> list[GraphFinding]:
@@ -87,13 +87,13 @@ def _more(count: int, what: str) -> Iterator[str]:
         yield f"and {count - _SHOWN} more {what}"
 
 
-def _headline(moment: Moment) -> str:
+def _headline(state: WatchState) -> str:
     """One line: how much is there, and what it comes to."""
-    nodes = _of(_sum(it.nodes for it in moment.robots))
-    names = _of(_sum(it.names for it in moment.robots))
-    moving = moment.graph.environment.settled == CHANGING
-    said = "still changing" if moving else WORDS[moment.verdict]
-    found = plural(len(moment.found), "finding")
+    nodes = _of(_sum(it.nodes for it in state.robots))
+    names = _of(_sum(it.names for it in state.robots))
+    moving = state.graph.environment.settled == CHANGING
+    said = "still changing" if moving else WORDS[state.verdict]
+    found = plural(len(state.findings), "finding")
     return f"{nodes} nodes, {names} names, {found}: {said}"
 
 

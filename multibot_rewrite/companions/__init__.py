@@ -1,1 +1,1 @@
-"""Files beside a description that name what it declares: the same rename map, the same care."""
+"""Files that use the names of a description (parameters, RViz, MoveIt ...): renamed for each robot."""

@@ -1,7 +1,7 @@
-"""Nav2's behavior trees for any number of robots: the ports that name services, topics and frames.
+"""Nav2 behavior trees for any number of robots: ports that hold services, topics and frames.
 
-A name in a port is remapped by rcl as any other of the BT navigator's. ``{entry}`` is an entry of
-the blackboard and stays; what is put into one is followed into the subtrees that read it.
+rcl remaps a name in a port like any other name of the BT navigator. ``{entry}`` is a blackboard
+entry and stays; a value put into an entry is renamed like the ports of the subtrees that read it.
 """
 
 from __future__ import annotations
@@ -13,11 +13,19 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.sax.saxutils import escape
 
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.params.known import in_release
-from multibot_rewrite.companions.params.spelled import SPELLERS, is_plain
-from multibot_rewrite.companions.params.topics import FROM_NODE, topic
-from multibot_rewrite.companions.params.undeclared import lacks, mentions, renamed, said_of
-from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
+from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
+from multibot_rewrite.companions.names.node_topics import FROM_NODE, spell_topic
+from multibot_rewrite.companions.names.undeclared import (
+    holds_a_name,
+    is_undeclared,
+    renamed_names,
+    undeclared_message,
+)
+from multibot_rewrite.companions.params.known_nodes import in_release
+from multibot_rewrite.companions.template import (
+    check_no_slots,
+    make_template,
+)
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.rosnames import check_topic_name
@@ -36,8 +44,7 @@ _GRAPH_KINDS = {"service": "service", "topic": "topic", "action": "topic"}
 
 
 class _Port(NamedTuple):
-    """A value: the element it stands at, where that starts, and what it names; empty for nothing
-    that is known."""
+    """A value: its element, where that starts, and the kind of name; empty if that is not known."""
 
     element: _Element
     start: int
@@ -47,32 +54,33 @@ class _Port(NamedTuple):
 
 
 class _Trees(NamedTuple):
-    """The trees of a file by their id; ``braces`` tells that only ``{entry}`` is an entry (4.x)."""
+    """The trees of a file by id; ``braces`` is true if only ``{entry}`` is an entry (BT.CPP 4)."""
 
     by_id: Mapping[str, _Element]
     braces: bool
 
 
-def behavior_tree(data: bytes, file: str, context: Context) -> Companion:
-    """A behavior tree with holes for a robot, and what a person should know about it.
+def rewrite_behavior_tree(data: bytes, file: str, context: Context) -> Companion:
+    """A behavior tree with slots for a robot, and the findings about it.
 
-    Raises InputError, in one line, for what is no behavior tree.
+    Raises InputError for a file that is not a behavior tree.
     """
     if not data.strip():
         raise InputError(f"{file}:1: the file is empty; a behavior tree starts with <root>")
     document = read_document(data, file)
     if document.root.tag != "root":
         place = f"{file}:{document.root.sourceline or 1}"
-        raise InputError(f"{place}: no behavior tree: it starts with <{document.root.tag}>")
-    if any(hole.encode() in data for hole in (GRAPH, SPELLED)):
-        raise InputError(f"{file}: the words {GRAPH} and {SPELLED} are this tool's own")
+        raise InputError(f"{place}: not a behavior tree: the root is <{document.root.tag}>")
+    check_no_slots(data.decode(), file)
     ports = list(_ports(document))
-    splices = [*_spliced(document, context, ports), *_defaults(document, context)]
-    return Companion(cut(data.decode(), splices), tuple(_findings(document, context, ports)))
+    splices = [*_value_splices(document, context, ports), *_default_splices(document, context)]
+    return Companion(
+        make_template(data.decode(), splices), tuple(_findings(document, context, ports))
+    )
 
 
 @cache
-def _known() -> Mapping[str, Any]:
+def _port_data() -> Mapping[str, Any]:
     import yaml
 
     text = files("multibot_rewrite.companions").joinpath("behavior_tree.yaml").read_text()
@@ -80,14 +88,14 @@ def _known() -> Mapping[str, Any]:
 
 
 def _ports(document: Document) -> Iterator[_Port]:
-    """Every literal with what it names, those of models for editors aside."""
+    """Every literal with the kind of name it is; models for editors are left out."""
     trees = _trees(document.root)
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         if _is_model(element):
             yield from _model_default(element, start, trees)
             continue
         for attribute, value in element.items():
-            if not _entry(element, str(value), trees):
+            if not _blackboard_entry(element, str(value), trees):
                 kind = _kind(element, str(attribute), trees)
                 yield _Port(element, start, str(attribute), str(value), kind)
 
@@ -107,91 +115,97 @@ def _model_default(element: _Element, start: int, trees: _Trees) -> Iterator[_Po
     if above is None or above.tag not in _SUBTREES or "default" not in element.attrib:
         return
     name, value = str(element.get("name", "")), str(element.get("default"))
-    kind = _entries(trees, str(above.get("ID", "")), ()).get(name) or _known()["ports"].get(name)
+    kind = _entry_kinds(trees, str(above.get("ID", "")), ()).get(name) or _port_data()["ports"].get(
+        name
+    )
     yield _Port(element, start, "default", value, kind or "")
 
 
 def _kind(element: _Element, attribute: str, trees: _Trees) -> str:
-    """What a literal names; empty where that is not known."""
+    """The kind of name that a literal is; empty if that is not known."""
     if element.tag == "SetBlackboard" and attribute == "value":
         tree = next((it for it in element.iterancestors("BehaviorTree")), None)
-        entries = _entries(trees, str(tree.get("ID", "")) if tree is not None else "", ())
+        entries = _entry_kinds(trees, str(tree.get("ID", "")) if tree is not None else "", ())
         return entries.get(str(element.get("output_key", "")).strip("{}"), "")
-    if attribute in _known()["keep"]:
+    if attribute in _port_data()["keep"]:
         return ""
     return _port_kind(element, attribute, trees, ())
 
 
 def _port_kind(element: _Element, attribute: str, trees: _Trees, above: tuple[str, ...]) -> str:
     if element.tag in _SUBTREES:
-        inside = _entries(trees, str(element.get("ID", "")), above).get(attribute)
-        return inside or _known()["ports"].get(attribute, "")
-    own = _known()["nodes"].get(_node_name(element), {})
-    return str(own.get(attribute) or _known()["ports"].get(attribute, ""))
+        inside = _entry_kinds(trees, str(element.get("ID", "")), above).get(attribute)
+        return inside or _port_data()["ports"].get(attribute, "")
+    own = _port_data()["nodes"].get(_node_name(element), {})
+    return str(own.get(attribute) or _port_data()["ports"].get(attribute, ""))
 
 
 def _node_name(element: _Element) -> str:
     return str(element.get("ID", "")) if element.tag in _FORMS else str(element.tag)
 
 
-def _entry(element: _Element, value: str, trees: _Trees) -> str:
-    """The entry of the blackboard that a value is; empty for a literal."""
+def _blackboard_entry(element: _Element, value: str, trees: _Trees) -> str:
+    """The blackboard entry that a value stands for; empty for a literal."""
     if value.startswith("{") and value.endswith("}"):
         return value[1:-1]
     # A plain SubTree of BT.CPP 3 maps entries by their bare names.
     return value if element.tag == "SubTree" and not trees.braces else ""
 
 
-def _entries(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, str]:
-    """What the entries that a tree reads are used as, in it and in the subtrees below."""
+def _entry_kinds(trees: _Trees, name: str, above: tuple[str, ...]) -> dict[str, str]:
+    """The kind of name in each entry that a tree reads, by its use there and in subtrees."""
     tree = trees.by_id.get(name)
     if tree is None or name in above:
         return {}
     found: dict[str, str] = {}
     for element in tree.iter("*"):
         for attribute, value in element.items():
-            entry = _entry(element, str(value), trees)
+            entry = _blackboard_entry(element, str(value), trees)
             if entry and attribute not in ("ID", "name", *_SHARED):
                 kind = _port_kind(element, str(attribute), trees, (*above, name))
                 found |= {entry: kind} if kind and entry not in found else {}
         if any(element.get(it) in ("true", "1") for it in _SHARED):
-            below = _entries(trees, str(element.get("ID", "")), (*above, name))
+            below = _entry_kinds(trees, str(element.get("ID", "")), (*above, name))
             found = {**below, **found}
     return found
 
 
-def _respelled(context: Context, kind: str, value: str) -> str:
+def _new_text(context: Context, kind: str, value: str) -> str:
     if kind in _GRAPH_KINDS:
-        # Spelled out even where a rule of the navigator's would do: rules miss its helper nodes.
-        return topic(context, NAVIGATOR, _GRAPH_KINDS[kind], value, FROM_NODE, {}).text
+        # Written out even if a rule would do: rules do not reach the navigator's helper nodes.
+        return spell_topic(context, NAVIGATOR, _GRAPH_KINDS[kind], value, FROM_NODE, {}).text
     if not is_plain(value):
         return value
     return SPELLERS[kind](context, value)
 
 
-def _spliced(document: Document, context: Context, ports: Iterable[_Port]) -> Iterator[Splice]:
+def _value_splices(
+    document: Document, context: Context, ports: Iterable[_Port]
+) -> Iterator[Splice]:
     for port in ports:
-        new = _respelled(context, port.kind, port.value) if port.kind else port.value
+        new = _new_text(context, port.kind, port.value) if port.kind else port.value
         if new == port.value:
             continue
         slot = value_slot(document.source, port.start, port.attribute, port.value)
         if slot is None:
             place = f"{document.file}:{port.element.sourceline}"
-            raise InputError(f"{place}: {port.attribute} cannot be edited; write it on one line")
+            raise InputError(
+                f"{place}: {port.attribute} cannot be edited in place; write it on one line"
+            )
         written = document.source[slot[0] : slot[1]].decode() == port.value
         text = new if written else escape(new, {'"': "&quot;", "'": "&apos;"})
         first, last = (_character(document, at) for at in slot)
         yield Splice(first, last, text)
 
 
-def _defaults(document: Document, context: Context) -> Iterator[Splice]:
-    """Ports whose default is every robot's: they are written out."""
+def _default_splices(document: Document, context: Context) -> Iterator[Splice]:
+    """Ports that are left out and whose default all robots would share: they are added."""
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         name = _node_name(element)
-        for it in _known()["defaults"] if not _is_model(element) else ():
+        for it in _port_data()["defaults"] if not _is_model(element) else ():
             if it["node"] != name or it["port"] in element.attrib or it["unless"] in element.attrib:
                 continue
-            new = _respelled(context, it["kind"], it["value"])
+            new = _new_text(context, it["kind"], it["value"])
             if in_release(it["distros"], context.distro) and new != it["value"]:
                 at = _character(document, start + 1 + len(str(element.tag).encode()))
                 yield Splice(at, at, f' {it["port"]}="{new}"')
@@ -204,35 +218,38 @@ def _character(document: Document, at: int) -> int:
 
 
 def _findings(document: Document, context: Context, ports: Iterable[_Port]) -> Iterator[Finding]:
-    told: set[tuple[str, str]] = set()
-    names = renamed(context)
+    reported: set[tuple[str, str]] = set()
+    names = renamed_names(context)
     for port in ports:
-        said = _said(context, port, names)
-        if said is None or (said[0] == "MF401" and (port.kind, port.value) in told):
+        problem = _problem_with(context, port, names)
+        if problem is None or (problem[0] == "MF401" and (port.kind, port.value) in reported):
             continue
-        told.add((port.kind, port.value))
+        reported.add((port.kind, port.value))
         slot = value_slot(document.source, port.start, port.attribute, port.value)
-        code, message, hint = said
+        code, message, hint = problem
         yield finding(document, slot[0] if slot else port.start, code, WARNING, message, hint)
 
 
-def _said(context: Context, port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
-    """What is to be said of one value."""
+def _problem_with(
+    context: Context, port: _Port, names: frozenset[str]
+) -> tuple[str, str, str] | None:
+    """Code, message and hint about one value, if there is anything to report."""
     if port.element.tag == "include":
-        message = f"another tree is included: {port.value!r}"
-        return "MF403", message, "give it as a behavior tree as well, for each robot"
+        message = f"includes another tree, {port.value!r}"
+        return "MF403", message, "list that file under behavior_trees as well"
     if port.kind == "frame":
-        known = not lacks(context, "frame", port.value)
-        return None if known else ("MF401", *said_of(context, "frame", port.value))
+        known = not is_undeclared(context, "frame", port.value)
+        return None if known else ("MF401", *undeclared_message(context, "frame", port.value))
     if port.kind in _GRAPH_KINDS:
         fault = check_topic_name(port.value) if is_plain(port.value) else None
-        message = f"{port.kind} {port.value!r} is none: {fault.reason if fault else ''}"
-        return ("MF404", message, "it stays as it is: correct it") if fault else None
+        reason = fault.reason if fault else ""
+        message = f"{port.value!r} is not a valid {port.kind} name: {reason}"
+        return ("MF404", message, "it stays unchanged; correct it") if fault else None
     return None if port.kind else _mention(port, names)
 
 
 def _mention(port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
-    known = _known()
+    known = _port_data()
     text = port.value
     if port.attribute in known["keep"]:
         return None
@@ -240,8 +257,8 @@ def _mention(port: _Port, names: frozenset[str]) -> tuple[str, str, str] | None:
         words = [it.strip() for it in text.replace('"', "'").split("'")[1::2]]
     else:
         words = [text]
-    held = next((it for it in words if mentions(it, names)), "")
+    held = next((it for it in words if holds_a_name(it, names)), "")
     if not held:
         return None
-    message = f"unclaimed mention: {port.attribute} holds {held!r}, and nothing says what it means"
-    return "MF402", message, "it stays as it is: see whether it has to name one robot's"
+    message = f"{port.attribute} holds the name {held!r}, but its use here is not known"
+    return "MF402", message, "it stays unchanged; if each robot needs its own, rename it by hand"

@@ -1,12 +1,12 @@
-"""What a companion file is rewritten with: the same for every robot of one description."""
+"""What a companion file is rewritten with; the same for every robot of one description."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.companions.respell import Names
-from multibot_rewrite.companions.template import GRAPH, SPELLED, Template
+from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.records import NodeFacts
@@ -17,21 +17,21 @@ JAZZY, KILTED = "jazzy", "kilted"
 
 
 class Context(NamedTuple):
-    """``names`` spells links, joints and frames, ``topics`` the names of the ROS graph, both with a
-    hole for the robot. ``nodes`` maps the stack's name of a node to the full name it runs under;
-    nodes that one runs of for all robots keep theirs. ``distro`` is the ROS release.
+    """``names`` is the rename map of links, joints and frames, ``topics`` that of ROS names, both
+    with a slot for the robot. ``nodes`` maps a node's name in the stack to the full name it runs
+    under; nodes that serve all robots keep theirs. ``distro`` is the ROS release.
     """
 
-    names: Names
-    topics: Names
+    names: RenameMap
+    topics: RenameMap
     nodes: Mapping[str, str]
     distro: str = JAZZY
 
 
 class Companion(NamedTuple):
-    """A companion file ready for any number of robots, and what a person should know about it."""
+    """A companion file as a template for any robot, and the findings about it."""
 
-    template: Template
+    template: FileTemplate
     findings: tuple[Finding, ...]
 
 
@@ -40,11 +40,11 @@ def make_context(
 ) -> Context:
     """The context of a description (not rewritten) and the nodes that its robots run."""
     nodes = {it.name: f"/{it.name}" if it.shared else full_name(it.name, naming) for it in facts}
-    names, topics = (Names(declared, naming, hole) for hole in (SPELLED, GRAPH))
+    names, topics = (RenameMap(declared, naming, slot) for slot in (TAG_SLOT, NAMESPACE_SLOT))
     return Context(names, topics, nodes, distro)
 
 
 def full_name(node: str, naming: Naming) -> str:
-    """The full name that a robot's node runs under, with a hole for the robot."""
-    namespace, name = placed(GRAPH, node, naming)
+    """The full name that a robot's node runs under, with a slot for the robot."""
+    namespace, name = placed(NAMESPACE_SLOT, node, naming)
     return f"{namespace.rstrip('/')}/{name}"

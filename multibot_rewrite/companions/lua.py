@@ -1,7 +1,7 @@
-"""Cartographer's Lua options for any number of robots: frames that are plain strings are spelled.
+"""Cartographer's Lua options for any number of robots: frames in plain strings are renamed.
 
-Cartographer takes its frames from Lua only (cartographer_ros node_options, trajectory_options); its
-topics are fixed relative names, which remap rules move. Comments and other strings stay.
+Cartographer reads its frames from Lua only (cartographer_ros node_options, trajectory_options). Its
+topics are fixed relative names that remap rules move. Comments and other strings stay.
 """
 
 from __future__ import annotations
@@ -12,10 +12,18 @@ from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.params.spelled import frames_are_spelled, is_plain
-from multibot_rewrite.companions.params.undeclared import lacks, renamed, said_of
-from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
+from multibot_rewrite.companions.names.by_kind import frames_differ, is_plain
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.undeclared import (
+    is_undeclared,
+    renamed_names,
+    undeclared_message,
+)
+from multibot_rewrite.companions.template import (
+    TAG_SLOT,
+    check_no_slots,
+    make_template,
+)
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import WARNING, Finding, InputError
 
@@ -56,34 +64,34 @@ class Token(NamedTuple):
 
 
 class Option(NamedTuple):
-    """An assignment to one of the frames; ``value`` is None where it is no plain string."""
+    """An assignment to one of the frames; ``value`` is None if it is not a plain string."""
 
     name: Token
     value: Token | None
 
 
-def lua(text: str, file: str, context: Context) -> tuple[Finding, ...]:
-    """What has to become of a Lua file for a robot, for a person to do; ``lua_file`` does it."""
+def frames_to_edit(text: str, file: str, context: Context) -> tuple[Finding, ...]:
+    """The frames of a Lua file to edit by hand for a robot; ``rewrite_lua`` edits them instead."""
     changes = (_change(context, it) for it in _options(list(tokens_of(text, file))))
-    found = [_finding(text, file, at, *said) for at, said in filter(None, changes)]
-    return tuple(sorted((*found, *lua_file(text, file, context).findings), key=lambda it: it[5:]))
+    found = [_finding(text, file, at, *draft) for at, draft in filter(None, changes)]
+    return tuple(
+        sorted((*found, *rewrite_lua(text, file, context).findings), key=lambda it: it[5:])
+    )
 
 
-def lua_file(text: str, file: str, context: Context) -> Companion:
-    """A Lua file with holes for a robot, and what a person should know about it.
+def rewrite_lua(text: str, file: str, context: Context) -> Companion:
+    """A Lua file with slots for a robot, and the findings about it.
 
-    Only ``name = "frame"`` is rewritten; what else is assigned is reported. Raises InputError for
+    Only ``name = "frame"`` is rewritten; any other assignment is reported. Raises InputError for
     strings and comments that do not end.
     """
-    for hole in (GRAPH, SPELLED):
-        if hole in text:
-            raise InputError(f"{file}: the word {hole} is this tool's own; write another")
+    check_no_slots(text, file)
     tokens = list(tokens_of(text, file))
     options = list(_options(tokens))
     splices = [_splice(context, it.value) for it in options if it.value]
     found = [*_about(context, options), *_includes(tokens), *_mentions(context, tokens, options)]
-    placed = (_finding(text, file, at, *said) for at, said in sorted(found))
-    return Companion(cut(text, [it for it in splices if it]), tuple(placed))
+    placed = (_finding(text, file, at, *draft) for at, draft in sorted(found))
+    return Companion(make_template(text, [it for it in splices if it]), tuple(placed))
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
@@ -92,7 +100,7 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
         kind = found.lastgroup or "mark"
         if kind == "open":
             place = f"{file}:{text.count(chr(10), 0, found.start()) + 1}"
-            raise InputError(f"{place}: no Lua: what {found[0]} starts does not end; close it")
+            raise InputError(f"{place}: not valid Lua: {found[0]} is not closed; close it")
         if kind not in _SILENT:
             yield Token(kind, found[0], found.start())
 
@@ -118,7 +126,7 @@ def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
 
 
 def _ends(tokens: Sequence[Token], at: int) -> bool:
-    """Does an expression end before this token? Else it is more than one string."""
+    """Does an expression end before this token? If not, it is more than one string."""
     if at >= len(tokens) or tokens[at].text in (",", ";", "}"):
         return True
     return tokens[at].kind == "name" and tokens[at].text not in ("and", "or")
@@ -126,56 +134,57 @@ def _ends(tokens: Sequence[Token], at: int) -> bool:
 
 def _splice(context: Context, value: Token) -> Splice | None:
     old = value.text[1:-1]
-    new = respell(context.names, "frame", old)
+    new = spell(context.names, "frame", old)
     end = value.at + len(value.text) - 1
     return Splice(value.at + 1, end, new) if new != old else None
 
 
-_Said = tuple[int, tuple[str, str, str]]
+_Draft = tuple[int, tuple[str, str, str]]
 
 
-def _change(context: Context, option: Option) -> _Said | None:
+def _change(context: Context, option: Option) -> _Draft | None:
     there = _splice(context, option.value) if option.value else None
     if option.value is None or there is None:
         return None
-    new = there.new.replace(SPELLED, "ROBOT")
-    message = f"{option.name.text} = {option.value.text} is every robot's"
-    return option.value.at, ("MF455", message, f"write {new!r}, with what is spelled for ROBOT")
+    new = there.new.replace(TAG_SLOT, "ROBOT")
+    message = f"{option.name.text} = {option.value.text} is the same for all robots"
+    hint = f"write {new!r}, with the robot's prefix or postfix instead of ROBOT"
+    return option.value.at, ("MF455", message, hint)
 
 
-def _about(context: Context, options: Sequence[Option]) -> Iterator[_Said]:
+def _about(context: Context, options: Sequence[Option]) -> Iterator[_Draft]:
     for name, value in options:
         if value is None:
-            if frames_are_spelled(context):
-                message = f"{name.text} is no plain string: it stays as it is"
-                hint = "it has to be the robot's own frame: write the name here in quotes"
+            if frames_differ(context):
+                message = f"{name.text} is not a plain string, so it stays unchanged"
+                hint = "each robot needs its own frame here; write the name in quotes"
                 yield name.at, ("MF451", message, hint)
-        elif lacks(context, "frame", value.text[1:-1]):
-            yield value.at, ("MF452", *said_of(context, "frame", value.text[1:-1]))
+        elif is_undeclared(context, "frame", value.text[1:-1]):
+            yield value.at, ("MF452", *undeclared_message(context, "frame", value.text[1:-1]))
 
 
-def _includes(tokens: Sequence[Token]) -> Iterator[_Said]:
+def _includes(tokens: Sequence[Token]) -> Iterator[_Draft]:
     for at, token in enumerate(tokens):
         behind = [it for it in tokens[at + 1 : at + 3] if it.text != "("][:1]
         if token.text != "include" or not behind or behind[0].kind not in ("string", "long"):
             continue
         if behind[0].text.strip("\"'[]=") not in OWN_FILES:
-            message = f"include {behind[0].text}: what that file names is not looked at"
-            yield token.at, ("MF453", message, "if it sets frames, give it as a Lua file as well")
+            message = f"the included file {behind[0].text} is not checked"
+            yield token.at, ("MF453", message, "if it sets frames, list it under lua as well")
 
 
 def _mentions(
     context: Context, tokens: Sequence[Token], options: Sequence[Option]
-) -> Iterator[_Said]:
-    names = renamed(context)
+) -> Iterator[_Draft]:
+    names = renamed_names(context)
     claimed = {it.value.at for it in options if it.value}
     for token in tokens:
         if token.kind not in ("string", "long") or token.at in claimed:
             continue
         text = token.text.strip("\"'[]=")
         if is_plain(text) and mentioned(text, names):
-            message = f"unclaimed mention: {text!r}, and nothing known says what it means"
-            hint = "it stays as it is: see whether it has to name one robot's"
+            message = f"{text!r} is a name of the robot, but its use here is not known"
+            hint = "it stays unchanged; if each robot needs its own, rename it by hand"
             yield token.at, ("MF454", message, hint)
 
 

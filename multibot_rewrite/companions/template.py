@@ -1,4 +1,4 @@
-"""A text with holes for a robot's two names: made once, filled for each robot."""
+"""A text with slots for a robot's namespace and tag: made once, filled for each robot."""
 
 from __future__ import annotations
 
@@ -7,35 +7,43 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from multibot_rewrite.companions.yaml_text import Splice
+from multibot_rewrite.model import InputError
 
-# Stand for the robot's name in the ROS graph, and for what is spelled into its frames and joints:
+# Stand for the robot's namespace, and for the tag (prefix or postfix) in its frames and joints:
 # ordinary letters, so that quoting and checks of names treat them as they will treat the names.
-GRAPH, SPELLED = "multibotGraphHole", "multibotSpelledHole"
-_HOLE = re.compile(f"({GRAPH}|{SPELLED})")
+NAMESPACE_SLOT, TAG_SLOT = "multibotNamespaceSlot", "multibotTagSlot"
+_SLOT = re.compile(f"({NAMESPACE_SLOT}|{TAG_SLOT})")
 
 
-class Template(NamedTuple):
-    """Pieces of text, every second one a hole."""
+class FileTemplate(NamedTuple):
+    """Pieces of text, every second one a slot."""
 
     pieces: tuple[str, ...]
 
 
-def cut(text: str, splices: Iterable[Splice]) -> Template:
-    """The text with the splices made; their new text may hold holes. They do not overlap."""
+def check_no_slots(text: str, file: str) -> None:
+    """Raise InputError for a file that already holds one of the words that slots are made of."""
+    for slot in (NAMESPACE_SLOT, TAG_SLOT):
+        if slot in text:
+            raise InputError(f"{file}: the word {slot} is reserved for this tool; use another word")
+
+
+def make_template(text: str, splices: Iterable[Splice]) -> FileTemplate:
+    """The text with the splices made; their new text may hold slots. They do not overlap."""
     held: list[str] = [""]
     at = 0
     for start, end, new in sorted(set(splices)):
         assert start >= at, "two splices overlap"
-        first, *rest = _HOLE.split(new)
+        first, *rest = _SLOT.split(new)
         held[-1] += text[at:start] + first
         held += rest
         at = end
     held[-1] += text[at:]
-    return Template(tuple(held))
+    return FileTemplate(tuple(held))
 
 
-def fill(template: Template, graph: str, spelled: str) -> str:
+def fill_template(template: FileTemplate, namespace: str, tag: str) -> str:
     """The text for a robot."""
     pieces = list(template.pieces)
-    pieces[1::2] = [graph if hole == GRAPH else spelled for hole in pieces[1::2]]
+    pieces[1::2] = [namespace if slot == NAMESPACE_SLOT else tag for slot in pieces[1::2]]
     return "".join(pieces)

@@ -1,4 +1,4 @@
-"""YAML as text with positions: parse to know where scalars stand, change those and nothing else.
+"""YAML as text with positions: parse to find the scalars, change those and nothing else.
 
 Comments, quoting, order and line ends stay. Positions are character offsets.
 """
@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.model import InputError
+from multibot_rewrite.model import Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
-# Reads back as the same text wherever it stands, and as no number, date, boolean or null.
+# Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")
 _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 _ANCHOR = re.compile(r"(?:^|[\s\[{,:-])[&*][^\s,\[\]{}]")
@@ -22,7 +22,7 @@ _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class YamlText(NamedTuple):
-    """A YAML file; ``root`` is PyYAML's node of its document, None where it holds nothing.
+    """A YAML file; ``root`` is PyYAML's node of its document, None if it is empty.
 
     ``bom`` is what stood before the text.
     """
@@ -57,7 +57,7 @@ def read_yaml(data: bytes, file: str) -> YamlText:
     except yaml.MarkedYAMLError as error:
         raise InputError(_broken(error, file, text)) from None
     except (yaml.YAMLError, RecursionError) as error:
-        raise InputError(f"{file}: not YAML: {' '.join(str(error).split())}; mend it") from None
+        raise InputError(f"{file}: not YAML: {' '.join(str(error).split())}; correct it") from None
     return YamlText(file, text, root, bom)
 
 
@@ -65,22 +65,34 @@ def _broken(error: yaml.MarkedYAMLError, file: str, text: str) -> str:
     mark = error.problem_mark or error.context_mark
     place = f":{mark.line + 1}:{mark.column + 1}" if mark else ""
     problem = " ".join(str(error.problem or error.context).split())
-    hint = "mend the YAML and try again"
+    hint = "correct the YAML"
     if "expected a single document" in str(error.context):
-        problem, hint = "there is more than one document", "delete what stands behind the ---"
+        problem, hint = (
+            "there is more than one document",
+            "delete everything from the second --- on",
+        )
     elif mark and text[mark.index : mark.index + 1] == "\t":
-        problem, hint = "a tab", "indent with spaces, YAML takes no tabs"
+        problem, hint = "a tab", "indent with spaces; YAML does not allow tabs"
     return f"{file}{place}: not YAML: {problem}; {hint}"
 
 
 def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
-    """Line and text of anchors and aliases, which rcl's parser refuses (rcl_yaml_param_parser)."""
+    """Line and text of anchors and aliases, which rcl's parser rejects (rcl_yaml_param_parser)."""
     if not _ANCHOR.search(document.text):
         return
     for token in yaml.scan(document.text, Loader=_LOADER):
         if isinstance(token, yaml.AnchorToken | yaml.AliasToken):
             mark = "&" if isinstance(token, yaml.AnchorToken) else "*"
             yield token.start_mark.line + 1, f"{mark}{token.value}"
+
+
+def refuse_anchors(document: YamlText) -> None:
+    """Raise InputError at the first anchor or alias."""
+    for line, anchor in anchors(document):
+        place = f"{document.file}:{line}"
+        raise InputError(
+            f"{place}: anchors and aliases are not allowed: {anchor}; write the value out"
+        )
 
 
 def pairs(node: yaml.Node | None) -> list[tuple[yaml.ScalarNode, yaml.Node]]:
@@ -98,7 +110,7 @@ def items(node: yaml.Node | None) -> list[yaml.Node]:
 
 
 def is_text(node: yaml.Node) -> bool:
-    """A scalar that rcl reads as a string, and that holds one: quoted, or no number and no word."""
+    """Does rcl read this scalar as a string: quoted, and not a number, boolean or null?"""
     if not isinstance(node, yaml.ScalarNode):
         return False
     return node.style in ("'", '"') or node.tag == "tag:yaml.org,2002:str"
@@ -109,10 +121,18 @@ def line_of(node: yaml.Node) -> int:
     return int(node.start_mark.line) + 1
 
 
-def replaced(node: yaml.ScalarNode, new: str) -> Splice:
-    """The splice that gives a scalar another value, quoted as it was or as it must be.
+def finding_at(
+    document: YamlText, node: yaml.Node, code: str, level: str, message: str, hint: str
+) -> Finding:
+    """A finding at the place of ``node``."""
+    mark = node.start_mark
+    return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
 
-    Raises ValueError for a block scalar, which has no one place.
+
+def replaced(node: yaml.ScalarNode, new: str) -> Splice:
+    """The splice that gives a scalar another value, with the quotes it had or now needs.
+
+    Raises ValueError for a block scalar, which spans several lines.
     """
     if node.style in ("|", ">"):
         raise ValueError("a block scalar is not one name")

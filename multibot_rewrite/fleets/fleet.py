@@ -1,4 +1,4 @@
-"""A description, its robots and the stacks they run -> their remap table and what to expect."""
+"""A description, its robots and their stacks -> the remap table and the expected graph."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
 from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import Rewrite, rewrite_all
 from multibot_rewrite.naming import Naming, Policy, make_naming
-from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes, plugin_places
+from multibot_rewrite.remap.node_library import stack_of
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes, plugin_places
 from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table, joined
@@ -23,21 +23,21 @@ NOTHING: Mapping[str, str] = {}
 
 
 class Member(NamedTuple):
-    """A robot of a fleet: its name in the ROS graph, what stands for it in frames, and what its
-    rewritten description holds; ``places`` are where in the source (``file:line``) its plugins are.
+    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
+    holds; ``places`` are the places of its plugins in the source (``file:line``).
     """
 
     robot: str
-    spelled: str
+    tag: str
     inventory: Inventory
     places: tuple[str, ...]
 
 
 class Fleet(NamedTuple):
-    """A fleet's table, what each robot's rewritten description holds, and the transforms that each
-    robot's nodes send. ``facts`` are of the stacks' nodes, ``sources`` where in its description
-    (``file:line``) a plugin's node comes from. ``words`` are what stands for a robot in its frames,
-    where that is not its name."""
+    """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
+    each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
+    description (``file:line``) of each plugin's node. ``tags`` are the robots whose prefix or postfix
+    differs from their namespace, with it."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -45,7 +45,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
-    words: dict[str, str]
+    tags: dict[str, str]
 
 
 def make_fleet(
@@ -60,7 +60,7 @@ def make_fleet(
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file of nodes and stacks beside the known ones. Raises as ``rewrite_all``, and
+    ``nodes`` is a file with more nodes and stacks. Raises as ``rewrite_all``, and
     UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes)
@@ -70,18 +70,18 @@ def make_fleet(
 
 
 def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
-    """What is known of the nodes of these stacks, each once; UsageError for an unknown one."""
+    """The nodes of these stacks, each once; UsageError for an unknown stack."""
     library = user_stack(nodes) if nodes else built_in()
     return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
 
 
-def member(source: Rewrite, data: bytes, spelled: str) -> Member:
-    """The robot of a rewrite; ``data`` is its description as it is in the end."""
+def member(source: Rewrite, data: bytes, tag: str) -> Member:
+    """The robot of a rewrite; ``data`` is its final description."""
     inventory, tree = source.template.inventory, source.template.tree
-    # Lines of the source: those of a rewritten text are moved by what was inserted.
+    # Lines of the source: inserted text moves those of the result.
     places = tuple(plugin_places(inventory))
     written = collect(read_document(data, inventory.document.file), tree)
-    return Member(source.robot, spelled, written, places)
+    return Member(source.robot, tag, written, places)
 
 
 def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
@@ -91,7 +91,7 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
-        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.spelled)
+        edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
     return Fleet(
         build_table([it.robot for it in members], facts, naming, plugins),
         inventories,
@@ -99,7 +99,7 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
         edges,
         facts,
         _sources(members, plugins),
-        {it.robot: it.spelled for it in members if it.spelled != it.robot},
+        {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
 
@@ -112,7 +112,7 @@ def _sources(members: Sequence[Member], plugins: Plugins) -> dict[str, str]:
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:
-    """Robots of different kinds as one fleet, whose names may not meet either."""
+    """Robots of different descriptions as one fleet; their names may not collide either."""
     first, *others = fleets
     for other in others:
         first = Fleet(
@@ -122,13 +122,13 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.sources, **other.sources},
-            {**first.words, **other.words},
+            {**first.tags, **other.tags},
         )
     return first
 
 
 def expected(fleet: Fleet) -> Expectation:
-    """What the graph of the fleet is to look like."""
+    """The graph that the fleet should have."""
     sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -137,4 +137,4 @@ def expected(fleet: Fleet) -> Expectation:
         for robot, found in fleet.inventories.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.words)
+    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.tags)

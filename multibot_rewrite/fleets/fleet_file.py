@@ -1,4 +1,4 @@
-"""The fleet file: YAML -> frozen records, or one line that says what is wrong and where."""
+"""The fleet file: YAML -> records, or one line that says what is wrong and where."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from importlib.resources import files
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
-from multibot_rewrite.fleets.by_schema import Path, read_fitting
+from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
@@ -23,7 +23,8 @@ LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
 Places = Mapping[Path, tuple[str, int]]
-# What stands behind ``robots:``, empty lines and comments aside.
+EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
+# What follows ``robots:``, empty lines and comments aside.
 _ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
 
 
@@ -41,9 +42,9 @@ class Pose(NamedTuple):
 class RobotSpec(NamedTuple):
     """One robot of a fleet file; paths are absolute or relative to the working directory.
 
-    ``namespace`` has no slash in front; ``spelled`` is what stands before or behind its frames and
-    joints; ``pose`` is None where the file says none. ``companions`` maps a kind of ``KINDS`` to
-    files. ``line`` is where it is in ``file``.
+    ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
+    ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
+    is its line in ``file``.
     """
 
     name: str
@@ -51,7 +52,7 @@ class RobotSpec(NamedTuple):
     srdf: str
     arguments: Mapping[str, str]
     namespace: str
-    spelled: str
+    tag: str
     model: str
     pose: Pose | None
     colour: str | tuple[int, ...]
@@ -62,8 +63,8 @@ class RobotSpec(NamedTuple):
 
 
 class FleetFile(NamedTuple):
-    """A fleet file as it is meant; ``policy`` are the options of ``make_naming`` that it gives,
-    ``files`` all that was read or will be beside the robots' own: it, what it includes, nodes,
+    """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
+    ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary."""
 
     file: str
@@ -78,7 +79,7 @@ class FleetFile(NamedTuple):
 
 
 class _Read(NamedTuple):
-    """One file's data, file and line of each of its values by path, and the files it is made of."""
+    """One file's data, the file and line of each value by path, and the files that were read."""
 
     file: str
     data: dict[str, Any]
@@ -93,7 +94,7 @@ def read_fleet(path: str) -> FleetFile:
     policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
     naming = _naming(read, policy)
     robots = tuple(_robot(read, naming, at) for at in range(len(data["robots"])))
-    _check_apart(robots)
+    _check_robots_differ(robots)
     _check_world(read, naming)
     nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
     vocabulary = tuple(_listed(data.get("vocabulary", [])))
@@ -111,7 +112,7 @@ def read_fleet(path: str) -> FleetFile:
 
 
 def is_fleet(data: bytes) -> bool:
-    """Is this a fleet file? Its robots are a list; those of a plan have their names as keys."""
+    """Is this a fleet file? Its robots are a list; in a plan they are keys."""
     found = _ROBOTS.search(data)
     return found is not None and found[1][:1] in (b"-", b"[")
 
@@ -120,29 +121,29 @@ def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
     real = os.path.realpath(path)
     if real in above:
         ring = " -> ".join(os.path.basename(it) for it in (*above, real))
-        raise InputError(f"{path}: it includes itself ({ring}); leave one out")
+        raise InputError(f"{path}: the file includes itself ({ring}); remove one include")
     read = _read(path)
     for other in _listed(read.data.pop("include", [])):
         under = _with_includes(other, (*above, real))
         both = {**under.data, **read.data}, {**under.places, **read.places}
         read = _Read(path, *both, (*read.files, *under.files))
     if not above and "robots" not in read.data:
-        raise InputError(f"{path}: there is no list of robots; write robots: with a name each")
+        raise InputError(f"{path}: there are no robots; write {EXAMPLE}")
     return read
 
 
 def _read(path: str) -> _Read:
-    # A file that is included may leave the robots to the one that includes it.
+    # An included file need not list robots.
     wanted = {key: value for key, value in schema().items() if key != "required"}
-    data, lines = read_fitting(path, wanted, "write robots: with a name each")
+    data, lines = read_checked(path, wanted, f"write {EXAMPLE}")
     places = {at: (path, line) for at, line in lines.items()}
-    seen = _from(os.path.dirname(path), data)
-    _check_files(seen, (), places)
-    return _Read(path, seen, places, (path,))
+    resolved = _from(os.path.dirname(path), data)
+    _check_files(resolved, (), places)
+    return _Read(path, resolved, places, (path,))
 
 
 def _check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
-    """Every file that is named is there; what it holds is looked at later."""
+    """Check that every named file exists; its content is checked later."""
     for key in (*PATHS, "companions", "robots"):
         value = data.get(key, ())
         if key == "robots":
@@ -154,8 +155,8 @@ def _check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
             here = (*at, key, kind) if kind else (*at, key)
             for path in (it for it in _listed(paths) if not os.path.isfile(it)):
                 file, line = places[here]
-                what = "a folder" if os.path.isdir(path) else "not there"
-                raise InputError(f"{file}:{line}: {path} is {what}; name a file")
+                what = "is a folder, not a file" if os.path.isdir(path) else "does not exist"
+                raise InputError(f"{file}:{line}: {path} {what}; correct the path")
 
 
 @cache
@@ -169,17 +170,19 @@ def schema() -> dict[str, Any]:
 
 
 def _from(folder: str, data: dict[str, Any]) -> dict[str, Any]:
-    """The data with every path seen from the working directory."""
+    """The data with every path relative to the working directory."""
 
-    def seen(value: Any) -> Any:
-        return os.path.join(folder, value) if isinstance(value, str) else [seen(it) for it in value]
+    def resolve(value: Any) -> Any:
+        return (
+            os.path.join(folder, value) if isinstance(value, str) else [resolve(it) for it in value]
+        )
 
     result = dict(data)
     for key in PATHS:
         if key in result:
-            result[key] = seen(result[key])
+            result[key] = resolve(result[key])
     if "companions" in result:
-        result["companions"] = {kind: seen(it) for kind, it in result["companions"].items()}
+        result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
     if "robots" in result:
         result["robots"] = [_from(folder, robot) for robot in result["robots"]]
     return result
@@ -197,7 +200,7 @@ def _naming(read: _Read, policy: Policy) -> Naming:
     try:
         return make_naming(**policy)
     except UsageError as error:
-        # What the schema cannot say is about separators.
+        # The schema covers everything except separators.
         file, line = read.places.get(("separators",), (read.file, 1))
         raise InputError(f"{file}:{line}: {error}") from None
 
@@ -207,8 +210,8 @@ def _check_world(read: _Read, naming: Naming) -> None:
     if world and world not in naming.shared_frames:
         file, line = read.places["world",]
         shared = ", ".join(sorted(naming.shared_frames)) or "none"
-        hint = "put it into shared_frames"
-        raise InputError(f"{file}:{line}: world {world!r} is no shared frame ({shared}); {hint}")
+        hint = "add it to shared_frames"
+        raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
 
 
 def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
@@ -227,7 +230,7 @@ def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
         own.get("srdf", data.get("srdf", "")),
         _arguments(data, own, description, place),
         own.get("namespace", name).strip("/"),
-        _spelled(own, naming.affix, place),
+        _tag(own, naming.affix, place),
         own.get("model", name),
         _pose(own, place),
         _colour(own, place),
@@ -250,12 +253,12 @@ def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...]) -> None:
 def _arguments(
     data: Mapping[str, Any], own: Mapping[str, Any], description: str, place: str
 ) -> dict[str, str]:
-    """A robot's own xacro arguments over those of the fleet, which are for those that are xacro."""
+    """The xacro arguments of a robot, over those of the fleet; only for xacro files."""
     files = (description, own.get("srdf", data.get("srdf", "")))
     if not any(it.endswith(".xacro") for it in files):
         if own.get("arguments"):
-            hint = "take them out, or name a file ….xacro"
-            raise InputError(f"{place}: {own['name']!r} has arguments and no xacro; {hint}")
+            hint = "remove them, or give a file that ends in .xacro"
+            raise InputError(f"{place}: {own['name']!r} has arguments but no xacro file; {hint}")
         return {}
     arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
     return {key: _argument(value) for key, value in arguments.items()}
@@ -282,32 +285,32 @@ def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
 
 
 def _argument(value: object) -> str:
-    """As xacro takes it: YAML's true is xacro's true."""
+    """The text for xacro: YAML's true is xacro's true."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _spelled(own: Mapping[str, Any], side: str, place: str) -> str:
+def _tag(own: Mapping[str, Any], side: str, place: str) -> str:
     other = "postfix" if side == "prefix" else "prefix"
     if other in own:
-        what = f"{own['name']!r} has a {other}, and the fleet's affix is {side}"
-        raise InputError(f"{place}: {what}; write {side}:")
+        what = f"{own['name']!r} has a {other}, but the fleet's affix is {side}"
+        raise InputError(f"{place}: {what}; write {side}: instead")
     return str(own.get(side, own["name"]))
 
 
-def _check_apart(robots: Sequence[RobotSpec]) -> None:
-    """No two robots of one name, namespace, spelling or model, nor at one place."""
-    for what in ("name", "namespace", "spelled", "model", "pose"):
+def _check_robots_differ(robots: Sequence[RobotSpec]) -> None:
+    """No two robots may have the same name, namespace, prefix or postfix, model or pose."""
+    for what in ("name", "namespace", "tag", "model", "pose"):
         seen: dict[object, RobotSpec] = {}
         for robot in robots:
             value = getattr(robot, what)
             first = seen.setdefault(value, robot) if value is not None else robot
             if first is robot:
                 continue
-            word = {"spelled": "prefix or postfix"}.get(what, what)
+            word = {"tag": "prefix or postfix"}.get(what, what)
             shown = "the pose" if what == "pose" else f"the {word} {value!r}"
             both = f"{robot.name!r} has {shown} of {first.name!r} (line {first.line})"
             both = (
-                f"{robot.name!r} is there twice, first at line {first.line}"
+                f"robot {robot.name!r} is repeated, first in line {first.line}"
                 if what == "name"
                 else both
             )

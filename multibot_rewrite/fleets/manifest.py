@@ -1,4 +1,4 @@
-"""What a build made, with hashes: what a second one has to change, and what somebody else changed."""
+"""The hashes of what a build read and wrote: what the next build must change, and what it must not."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from typing import NamedTuple
 
-from multibot_rewrite.fleets.artefacts import Artefact
+from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import InputError
 
 MANIFEST = "manifest.json"
-# The manifest of a build that replaces files one by one, until it is done.
+# The manifest of a build in progress that replaces files one by one.
 NOTE = ".manifest.next.json"
 FORMAT = "multibot build 1"
 NOTHING: Mapping[str, str] = {}
 
 
-class Changes(NamedTuple):
-    """Paths below the output folder: ``write`` is new or differs, ``remove`` an earlier build made
-    and this one does not. ``foreign`` would be overwritten and no build made them; ``edited`` were
-    changed since an earlier build made them."""
+class OutputChanges(NamedTuple):
+    """Paths below the output folder. ``write``: new or different. ``remove``: written by an earlier
+    build, not by this one. ``foreign``: to be overwritten, but not written by a build. ``edited``:
+    changed since an earlier build wrote them."""
 
     write: tuple[str, ...]
     remove: tuple[str, ...]
@@ -34,41 +34,41 @@ def hash_of(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-def manifest(files: Iterable[Artefact], inputs: Mapping[str, bytes], folder: str) -> Artefact:
+def manifest(files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str) -> OutputFile:
     """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path."""
     data = {
         "format": FORMAT,
         "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
         "outputs": {it.path: hash_of(it.data) for it in files},
     }
-    return Artefact(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
+    return OutputFile(MANIFEST, json.dumps(data, indent=1).encode() + b"\n")
 
 
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
-    """The hashes of what a build made, by path; raises InputError for a file that is none."""
+    """The hashes of what a build wrote, by path; InputError for a file that is not a manifest."""
     try:
         found = json.loads(data)
         if found["format"] != FORMAT:
             raise ValueError(found["format"])
         outputs = {str(path): str(hash_) for path, hash_ in found["outputs"].items()}
-        # What is named here may be deleted: nothing outside of the folder is.
+        # Files that are named here may be deleted, so none may be outside of the folder.
         if any(os.path.isabs(path) or ".." in path.split("/") for path in outputs):
             raise ValueError(outputs)
         return outputs
     except (ValueError, KeyError, TypeError, AttributeError):
-        hint = "delete it to build anew, or name another folder"
-        raise InputError(f"{file}: this is no manifest of multibot build; {hint}") from None
+        hint = "delete it to build again, or choose another folder"
+        raise InputError(f"{file}: not a manifest of multibot build; {hint}") from None
 
 
-def changes(
-    files: Iterable[Artefact], known: Mapping[str, str], there: Mapping[str, str]
-) -> Changes:
-    """What a build has to change; ``known`` are the hashes of the last one, ``there`` of what is
-    on the disk now, of the paths that are there."""
+def output_changes(
+    files: Iterable[OutputFile], known: Mapping[str, str], there: Mapping[str, str]
+) -> OutputChanges:
+    """What a build must change; ``known`` are the hashes of the last build, ``there`` those of the
+    files on disk."""
     wanted = {it.path: hash_of(it.data) for it in files}
     write = [path for path, hash_ in wanted.items() if there.get(path) != hash_]
     remove = [path for path in known if path not in wanted and path in there]
     foreign = [path for path in write if path in there and path not in known]
     touched = (path for path in (*write, *remove) if path in there and path in known)
     edited = [path for path in touched if there[path] != known[path]]
-    return Changes(tuple(write), tuple(remove), tuple(foreign), tuple(edited))
+    return OutputChanges(tuple(write), tuple(remove), tuple(foreign), tuple(edited))

@@ -1,4 +1,4 @@
-"""A fleet file as a launch script uses it: plain values for each robot, and no file written.
+"""A fleet file for launch scripts: plain values for each robot, without writing files.
 
 from multibot_rewrite import load_fleet
 
@@ -14,34 +14,35 @@ from functools import cached_property
 from typing import Any, NamedTuple, NoReturn
 
 from multibot_rewrite.arguments import checked
-from multibot_rewrite.companions.graph_names import known_topics, robot_topic
-from multibot_rewrite.companions.respell import respell
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.fleets import spawn, teleop, transforms
-from multibot_rewrite.fleets.artefacts import Artefact, Artefacts, make_artefacts
-from multibot_rewrite.fleets.describe import Described, Jobs, Sources
+from multibot_rewrite.fleets import spawn, start_poses, teleop
+from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, read_fleet
-from multibot_rewrite.fleets.node_params import (
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.output_file import OutputFile
+from multibot_rewrite.fleets.rcl_parameters import (
     Value,
     check_values,
     exact_nodes,
     node_parameters,
 )
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.started import started
+from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot, Sources
+from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.remap.marked import unknown
 from multibot_rewrite.remap.records import TOPIC, NodeFacts, NodeTable, Problem, Table
 from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.remap.yaml_with_lines import unknown
 from multibot_rewrite.sources.read import read_file
 
 Rules = list[tuple[str, str]]
 
 
 class NodeNames(NamedTuple):
-    """What the nodes of a robot are called and remapped to, by the names their stacks give them.
+    """Names and remappings of a robot's nodes, by their names in the stacks.
 
     ``hosted`` maps a node to those that always run in its process, as costmaps do.
     """
@@ -54,7 +55,7 @@ class NodeNames(NamedTuple):
     def for_node(self, node: str) -> Rules:
         """The node's remappings, as ``launch_ros.actions.Node`` takes them.
 
-        Rules for one node of those it hosts come first: rcl takes the first that matches. Raises
+        Rules for nodes that it hosts come first: rcl applies the first rule that matches. Raises
         UsageError for a node that no stack of the fleet has.
         """
         own = self._found(node)
@@ -83,27 +84,27 @@ class NodeNames(NamedTuple):
     def _found(self, node: str) -> NodeTable:
         if node in self.nodes:
             return self.nodes[node]
-        where = f"robot {self.robot!r}" if self.robot else "what serves all robots"
-        hint = "its stack goes under stack: of the fleet file"
+        where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
+        hint = "add its stack to stack: in the fleet file"
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 
 class LoadedRobot:
     """One robot of a fleet: what its nodes, its simulator and its tf need, as plain values.
 
-    ``namespace`` starts at the root; ``spelled`` is what stands in its frames and joints; ``pose`` is
-    None where the fleet file has none. It can be copied and pickled, with its fleet.
+    ``namespace`` is absolute; ``tag`` is the prefix or postfix of its frames and joints; ``pose`` is
+    None if the fleet file has none. It can be copied and pickled, with its fleet.
     """
 
-    def __init__(self, fleet: LoadedFleet, described: Described) -> None:
-        self._fleet, self._described = fleet, described
-        spec = described.spec
+    def __init__(self, fleet: LoadedFleet, robot: RewrittenRobot) -> None:
+        self._fleet, self._robot = fleet, robot
+        spec = robot.spec
         self._graph = spec.namespace
         self.name: str = spec.name
         self.model: str = spec.model
-        self.spelled: str = spec.spelled
+        self.tag: str = spec.tag
         self.pose: Pose | None = spec.pose
-        namespaced = described.topics.naming.topics == NAMESPACE
+        namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 
     def __repr__(self) -> str:
@@ -115,13 +116,13 @@ class LoadedRobot:
     @property
     def description(self) -> str:
         """Its rewritten description, for ``robot_description``; raises nothing."""
-        return self._described.description.decode()
+        return self._robot.description.decode()
 
     @property
     def srdf(self) -> str:
-        """Its rewritten SRDF, for ``robot_description_semantic``; empty where it has none. Raises
+        """Its rewritten SRDF, for ``robot_description_semantic``; empty if it has none. Raises
         nothing."""
-        return self._described.srdf.decode()
+        return self._robot.srdf.decode()
 
     @cached_property
     def table(self) -> NodeNames:
@@ -134,7 +135,7 @@ class LoadedRobot:
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
 
-        ``files`` are parameter files of the fleet; where it starts is added for its localisation.
+        ``files`` are parameter files of the fleet; amcl gets its start pose as well.
         Raises UsageError for a node that no stack has, and as ``params`` for a file.
         """
         given = [self.params(file, node) for file in files]
@@ -147,10 +148,10 @@ class LoadedRobot:
 
     @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
-        """What a parameter file of the fleet says for a node, once rewritten, by dotted names.
+        """The parameters of a node in a rewritten parameter file of the fleet, by dotted names.
 
-        ``node`` is its name in the stack, or in the file. A node of a stack that the file does not
-        mention gets nothing. Raises UsageError for any other node, and as ``text`` and
+        ``node`` is its name in the stack or in the file. A node of a stack without a section gets an
+        empty dict. Raises UsageError for an unknown node, and as ``text`` and
         ``LoadedFleet.parameters`` for the file.
         """
         document = self._read(file)
@@ -164,7 +165,7 @@ class LoadedRobot:
 
     @checked
     def text(self, file: str) -> str:
-        """A file of the fleet as this robot has it: ``params.yaml``, ``bridge.yaml``, RViz's.
+        """This robot's version of a file of the fleet, such as ``params.yaml`` or ``bridge.yaml``.
 
         Raises as ``LoadedFleet.text``.
         """
@@ -174,27 +175,27 @@ class LoadedRobot:
 
     @checked
     def frame(self, name: str) -> str:
-        """A frame or link of the description, as this robot has it; raises UsageError for a name
-        that is no str."""
-        return respell(self._described.names, "frame", name)
+        """This robot's name of a frame or link of the description; raises UsageError for a name
+        that is not a str."""
+        return spell(self._robot.names, "frame", name)
 
     @checked
     def joint(self, name: str) -> str:
-        """A joint of the description, as this robot has it; raises as ``frame``."""
-        return respell(self._described.names, "joint", name)
+        """This robot's name of a joint of the description; raises as ``frame``."""
+        return spell(self._robot.names, "joint", name)
 
     @checked
     def topic(self, name: str) -> str:
-        """The full name of a topic that one robot alone has under ``name``; raises as ``frame``."""
+        """This robot's absolute name of a single robot's topic ``name``; raises as ``frame``."""
         plan = self._fleet.plan
-        known = known_topics(plan.fleet.table, plan.fleet.facts, self._graph)
-        full = robot_topic(self._described.topics, name, known)
+        known = fleet_topics(plan.fleet.table, plan.fleet.facts, self._graph)
+        full = robot_topic(self._robot.topics, name, known)
         return full if full.startswith("/") else f"/{full}"
 
     @property
     def tf_remappings(self) -> Rules:
-        """The rules that a node of no stack needs to hear this robot's tf; raises nothing."""
-        names = self._described.topics
+        """The remappings with which a node outside the stacks reads this robot's tf; raises nothing."""
+        names = self._robot.topics
         targets = {
             f"/{it}": target_of(f"/{it}", TOPIC, self._graph, names.naming) for it in TF_TOPICS
         }
@@ -218,25 +219,25 @@ class LoadedRobot:
     @property
     def teleop_arguments(self) -> list[str]:
         """``arguments`` of ``teleop_twist_keyboard``; raises nothing."""
-        return teleop.arguments(teleop.teleop(self._fleet.plan, self._described))
+        return teleop.arguments(teleop.teleop(self._fleet.plan, self._robot))
 
     @property
     def transform_arguments(self) -> list[str]:
         """``arguments`` of the ``static_transform_publisher`` of its pose, empty if it needs none;
         raises nothing."""
         made = self._fleet.placed.transforms
-        return next((transforms.arguments(it) for it in made if it.robot == self._graph), [])
+        return next((start_poses.arguments(it) for it in made if it.robot == self._graph), [])
 
     @checked
     def start_parameters(self, node: str) -> dict[str, Any]:
-        """Parameters that give ``node`` the robot's start, empty where it takes none; raises as
+        """Parameters with the start pose for ``node``, empty if it does not use them; raises as
         ``frame``."""
         made = self._fleet.placed.initial
         own = (it for it in made if it.robot == self._graph and it.node == node)
         return next((dict(it.values) for it in own), {})
 
     def _placed(self, node: str) -> str:
-        namespace, name = placed(self._graph, node, self._described.topics.naming)
+        namespace, name = placed(self._graph, node, self._robot.topics.naming)
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:
@@ -246,8 +247,8 @@ class LoadedRobot:
 class LoadedFleet:
     """A fleet file, ready for a launch script; ``robots`` are in its order.
 
-    ``findings`` are what a person should know about the descriptions and the table. It can be copied
-    and pickled: the descriptions go along as they were read, other files are read where they are.
+    ``findings`` are warnings about the descriptions and the remap table. It can be copied
+    and pickled: the descriptions are included as they were read, other files are read again.
     """
 
     def __init__(self, plan: FleetPlan) -> None:
@@ -278,33 +279,33 @@ class LoadedFleet:
 
     @cached_property
     def planned(self) -> Fleet:
-        """The fleet with the nodes that hold its robots where they start; raises nothing."""
-        return started(self.plan)
+        """The fleet with the nodes that publish start poses; raises nothing."""
+        return with_start_pose_nodes(self.plan)
 
     @cached_property
-    def placed(self) -> transforms.Placed:
-        """Where its robots are in the world; raises nothing."""
-        return transforms.place(self.plan)
+    def placed(self) -> start_poses.StartPoses:
+        """The start poses of its robots; raises nothing."""
+        return start_poses.start_poses(self.plan)
 
     @cached_property
-    def made(self) -> Artefacts:
-        """Everything that ``multibot build`` would write, made when it is asked for.
+    def made(self) -> Outputs:
+        """Everything that ``multibot build`` would write, made on first use.
 
         Raises InputError for a companion that cannot be read, RewriteRefused for one that cannot be
         rewritten.
         """
-        made = make_artefacts(self.plan)
+        made = make_outputs(self.plan)
         _refuse(made.findings)
         return made
 
     @cached_property
-    def files(self) -> Mapping[str, Artefact]:
-        """The same by path: ``robot1/params.yaml``; raises as ``made``."""
+    def files(self) -> Mapping[str, OutputFile]:
+        """The same files by path, such as ``robot1/params.yaml``; raises as ``made``."""
         return {it.path: it for it in self.made.files}
 
     @checked
     def text(self, path: str) -> str:
-        """One of these files; raises UsageError for one that is not there, else as ``made``."""
+        """The text of one of these files; raises UsageError for an unknown path, else as ``made``."""
         if path not in self.files:
             _no_file(self, path)
         return self.files[path].data.decode()
@@ -312,7 +313,7 @@ class LoadedFleet:
     @checked
     def parameters(self, path: str) -> YamlText:
         """One of these files as a parameter file. Raises as ``text``, and InputError with the line of
-        the source for values that rcl refuses."""
+        the source for values that rcl rejects."""
         if path not in self._parameters:
             text = self.text(path)
             for source in self.files[path].sources:
@@ -325,7 +326,7 @@ class LoadedFleet:
 def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
 
-    Raises InputError and UsageError for what cannot be read or used, RewriteRefused where two
+    Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
     robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
     fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
@@ -334,7 +335,7 @@ def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
 
 
 def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
-    """The fleet of a pickle: rewritten again from the descriptions that went along."""
+    """The fleet of a pickle: rewritten again from the descriptions that it includes."""
     return LoadedFleet(plan_fleet(file, jobs=jobs))
 
 
@@ -351,9 +352,9 @@ def _names(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:
 
 
 def _findings(plan: FleetPlan) -> tuple[Finding, ...]:
-    told = (it for robot in plan.robots for it in robot.findings)
+    found = (it for robot in plan.robots for it in robot.findings)
     problems = (_as_finding(plan.file.file, it) for it in plan.fleet.table.problems)
-    return tuple(dict.fromkeys((*told, *problems)))
+    return tuple(dict.fromkeys((*found, *problems)))
 
 
 def _as_finding(file: str, it: Problem) -> Finding:
@@ -368,5 +369,5 @@ def _refuse(findings: Iterable[Finding]) -> None:
 
 
 def _no_file(fleet: LoadedFleet, path: str) -> NoReturn:
-    hint = "list it under companions of the fleet file"
+    hint = "list it under companions: in the fleet file"
     raise UsageError(f"{fleet.file}: {unknown('file', path, fleet.files)}; {hint}")

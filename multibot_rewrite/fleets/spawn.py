@@ -1,4 +1,4 @@
-"""How the robots of a fleet come into Gazebo: arguments of the two spawners.
+"""Spawning the robots of a fleet in Gazebo: arguments of the two spawners.
 
 Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spawn_entity.py`` and
 ``gazebo_ros_factory.cpp``.
@@ -11,23 +11,23 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.companions.graph_names import NOTHING, known_topics, robot_topic
-from multibot_rewrite.fleets.describe import Described
+from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.fleets.fleet_file import Pose
-from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
 DESCRIPTION = "/robot_description"
-# What a plugin of Gazebo Classic that is a ROS node is called.
+# File names of Gazebo Classic plugins that are ROS nodes start like this.
 CLASSIC_PLUGIN = "libgazebo_ros"
 
 
 class Spawn(NamedTuple):
-    """A robot to be spawned. ``namespace`` is what Gazebo Classic has to put it in, empty where its
-    description says so itself: the spawner would overwrite what stands in each plugin."""
+    """A robot to be spawned. ``namespace`` is for the spawner of Gazebo Classic; it is empty if the
+    plugins of the description have one, which the spawner would overwrite."""
 
     robot: str
     model: str
@@ -37,22 +37,22 @@ class Spawn(NamedTuple):
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
-    """How each robot is spawned, and what stands in the way of a namespace from the spawner."""
+    """How each robot is spawned, and a finding if only some of its plugins have a namespace."""
     made, findings = [], []
     for robot in plan.robots:
-        known = known_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
+        known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
         made.append(spawn(robot, known.get(DESCRIPTION, "")))
-        told, untold = _namespaces(robot)
-        if told and untold:
-            findings.append(_half(robot, untold))
+        named, bare = _namespaces(robot)
+        if named and bare:
+            findings.append(_half(robot, bare))
     return tuple(made), tuple(findings)
 
 
-def spawn(robot: Described, topic: str = "") -> Spawn:
-    """How one robot is spawned; ``topic`` is where its description is, if another than usual."""
+def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
+    """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
     spec = robot.spec
-    told, untold = _namespaces(robot)
-    needed = robot.topics.naming.topics == NAMESPACE and untold and not told
+    named, bare = _namespaces(robot)
+    needed = robot.topics.naming.topics == NAMESPACE and bare and not named
     return Spawn(
         spec.namespace,
         spec.model,
@@ -65,8 +65,8 @@ def spawn(robot: Described, topic: str = "") -> Spawn:
 def gz_arguments(it: Spawn) -> list[str]:
     """What follows ``ros_gz_sim create``.
 
-    Its flags are those of gflags, where ``-allow_renaming false`` would be true: a word of its own
-    is no value of a flag that is on or off.
+    It uses gflags, where ``-allow_renaming false`` means true: a boolean flag takes its value only
+    after an equals sign.
     """
     return ["-name", it.model, "-topic", it.topic, *_pose(it.pose), "-allow_renaming=false"]
 
@@ -78,17 +78,17 @@ def classic_arguments(it: Spawn) -> list[str]:
 
 
 def gz_command(it: Spawn) -> str:
-    """The line that spawns a robot in gz-sim."""
+    """The command that spawns a robot in gz-sim."""
     return shlex.join(["ros2", "run", *GZ, *gz_arguments(it)])
 
 
 def classic_command(it: Spawn) -> str:
-    """The line that spawns a robot in Gazebo Classic."""
+    """The command that spawns a robot in Gazebo Classic."""
     return shlex.join(["ros2", "run", *CLASSIC, *classic_arguments(it)])
 
 
-def either(it: Spawn, robot: Described) -> str:
-    """The line for the simulator that the description is written for, the other one as a comment."""
+def either(it: Spawn, robot: RewrittenRobot) -> str:
+    """The command for the description's simulator, with the other simulator's as a comment."""
     gz, classic = gz_command(it), classic_command(it)
     if CLASSIC_PLUGIN.encode() in robot.description:
         return f"{classic}\n# gz-sim: {gz}\n"
@@ -100,23 +100,23 @@ def _pose(pose: Pose) -> list[str]:
     return [word for key, flag in FLAGS.items() for word in (flag, str(values[key]))]
 
 
-def _namespaces(robot: Described) -> tuple[list[str], list[str]]:
+def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
     """The Gazebo Classic plugins of a description: those with a namespace, those without."""
-    told: list[str] = []
-    untold: list[str] = []
+    named: list[str] = []
+    bare: list[str] = []
     for plugin in robot.member.inventory.document.root.iter("plugin"):
         if CLASSIC_PLUGIN in (plugin.get("filename") or ""):
-            (told if _namespace(plugin) else untold).append(plugin.get("name") or "")
-    return told, untold
+            (named if _namespace(plugin) else bare).append(plugin.get("name") or "")
+    return named, bare
 
 
 def _namespace(plugin: etree._Element) -> str:
-    # Without a <ros> the plugin itself is read (gazebo_ros node.cpp).
+    # Without <ros> gazebo_ros reads the plugin element itself (node.cpp).
     return (plugin.findtext("ros/namespace") or plugin.findtext("namespace") or "").strip()
 
 
-def _half(robot: Described, untold: list[str]) -> Finding:
+def _half(robot: RewrittenRobot, bare: list[str]) -> Finding:
     spec = robot.spec
-    message = f"robot {spec.name!r}: plugins without a namespace beside others: {', '.join(untold)}"
-    hint = "-robot_namespace would overwrite the others' too; write <ros><namespace> in each"
+    message = f"robot {spec.name!r}: some plugins have a namespace, but not {', '.join(bare)}"
+    hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
     return Finding("MF706", WARNING, message, hint, spec.file, spec.line, 1)

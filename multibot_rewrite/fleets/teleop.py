@@ -1,4 +1,4 @@
-"""How a person drives each robot of a fleet from the keyboard.
+"""Keyboard teleoperation of each robot of a fleet.
 
 Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes ``cmd_vel``).
 """
@@ -9,9 +9,9 @@ import shlex
 from collections.abc import Collection
 from typing import NamedTuple
 
-from multibot_rewrite.companions.graph_names import robot_topic
-from multibot_rewrite.fleets.describe import Described
-from multibot_rewrite.fleets.plan import FleetPlan
+from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.transforms import description_edges
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
@@ -20,7 +20,7 @@ COMMAND = "cmd_vel"
 
 
 class Teleop(NamedTuple):
-    """Where the commands of a robot go, and how; ``frame`` only counts where they are stamped."""
+    """The command topic of a robot and its type; ``frame`` counts only if commands are stamped."""
 
     robot: str
     topic: str
@@ -29,12 +29,12 @@ class Teleop(NamedTuple):
 
 
 def teleops(plan: FleetPlan, stamped: Collection[str] = ()) -> tuple[Teleop, ...]:
-    """How each robot is driven; ``stamped`` are topics that a bridge carries with a stamp."""
+    """How each robot is driven; ``stamped`` are topics that are bridged with a stamp."""
     return tuple(teleop(plan, robot, stamped) for robot in plan.robots)
 
 
-def teleop(plan: FleetPlan, robot: Described, stamped: Collection[str] = ()) -> Teleop:
-    """The robot's ``cmd_vel`` if a node listens to it, else the first that one does listen to."""
+def teleop(plan: FleetPlan, robot: RewrittenRobot, stamped: Collection[str] = ()) -> Teleop:
+    """The robot's ``cmd_vel`` if a node subscribes to it, else the first one with a subscriber."""
     name, usual = robot.spec.namespace, robot_topic(robot.topics, f"/{COMMAND}")
     heard = _listeners(plan, name)
     fed = usual in heard or usual in stamped or not heard
@@ -51,13 +51,13 @@ def arguments(it: Teleop) -> list[str]:
 
 
 def command(it: Teleop) -> str:
-    """The line that drives a robot."""
+    """The command that drives a robot."""
     run = ["ros2", "run", "teleop_twist_keyboard", "teleop_twist_keyboard"]
     return shlex.join([*run, *arguments(it)])
 
 
 def _listeners(plan: FleetPlan, robot: str) -> dict[str, set[str]]:
-    """Where velocity commands end, and their types: what is heard as ``cmd_vel`` and nobody sends."""
+    """Subscribed ``cmd_vel`` topics without a publisher in the plan, with their types."""
     own = [it for it in plan.fleet.table.names if it.robot == robot and it.endpoint.kind == TOPIC]
     sent = {it.name for it in own if it.endpoint.role == PUBLISHES}
     heard: dict[str, set[str]] = {}
@@ -68,7 +68,7 @@ def _listeners(plan: FleetPlan, robot: str) -> dict[str, set[str]]:
     return heard
 
 
-def _base(robot: Described) -> str:
+def _base(robot: RewrittenRobot) -> str:
     """The root link of the rewritten description."""
     inventory = robot.member.inventory
     children = {edge.child for edge in description_edges(inventory)}

@@ -1,1 +1,1 @@
-"""The live ROS graph: what it looks like, told so that a program without ROS can judge it."""
+"""The live ROS graph as records, and its comparison with a plan; only ``live`` needs ROS."""

@@ -1,6 +1,6 @@
-"""Expectation and snapshot -> findings: one function a rule, all of them pure.
+"""Expectation and snapshot -> findings: one pure function for each rule.
 
-Nothing is called missing in a view that may be incomplete: such a finding is *inconclusive*.
+Where the view of the graph may be incomplete, a finding about something missing is *inconclusive*.
 """
 
 from __future__ import annotations
@@ -9,52 +9,54 @@ from collections.abc import Callable, Iterator
 
 from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.rules import ends, frames, names, nodes
+from multibot_rewrite.graph.rules import frames, nodes, topics, type_and_qos
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding, View, make_view
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
-Rule = Callable[[View], Iterator[GraphFinding]]
-RULES: tuple[Rule, ...] = (
+GraphRule = Callable[[View], Iterator[GraphFinding]]
+RULES: tuple[GraphRule, ...] = (
     nodes.missing_nodes,
-    names.missing_endpoints,
-    names.leaks,
-    names.planned_leaks,
-    names.deaf_listeners,
-    names.cross_talk,
-    nodes.same_names,
-    ends.type_clashes,
-    ends.qos_clashes,
+    topics.missing_endpoints,
+    topics.leaks,
+    topics.planned_leaks,
+    topics.wrong_tf_listeners,
+    topics.cross_talk,
+    nodes.duplicate_node_names,
+    type_and_qos.type_conflicts,
+    type_and_qos.incompatible_qos,
     nodes.unexpected_nodes,
-    names.captured_topics,
-    names.unheard,
+    topics.topics_below_own_namespace,
+    topics.subscriptions_without_publisher,
     frames.two_parents,
     frames.colliding_frames,
-    frames.torn_trees,
+    frames.disconnected_trees,
     frames.undeclared_frames,
     frames.wrong_tf_topics,
-    frames.bare_frames,
+    frames.frames_without_robot_name,
 )
 WAITED_FOR = "expected-not-seen"
-# What an incomplete view cannot tell.
+# Findings about something missing: an incomplete view cannot prove them.
 ABSENCE = ("MG101", "MG102", "MG109", "MG110", "MG111", "MG203", "MG207")
 
 
 def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:
-    """Everything that is wrong, in the order of the rules; empty for a healthy fleet."""
+    """All findings in the order of the rules; empty for a fleet as planned."""
     with uncollected():
         view = make_view(plan, graph)
         found = [finding for rule in RULES for finding in rule(view)]
     if not doubts(graph):
         return found
-    return [_softened(finding) if finding.code in ABSENCE else finding for finding in found]
+    return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
 
 
 def doubts(graph: Snapshot) -> tuple[Caveat, ...]:
-    """Why something may be missing in the view. What was waited for and did not come is no doubt:
-    where nothing changed any more it is the answer."""
+    """The caveats that make a view incomplete.
+
+    That an expected node did not come is not one of them: once the graph is quiet it is missing.
+    """
     return tuple(caveat for caveat in incomplete(graph) if caveat.code != WAITED_FOR)
 
 
-def _softened(finding: GraphFinding) -> GraphFinding:
-    cause = "the view is incomplete: see the snapshot's caveats"
+def _inconclusive(finding: GraphFinding) -> GraphFinding:
+    cause = "the view of the graph may be incomplete: see the caveats of the snapshot"
     return finding._replace(level=INCONCLUSIVE, cause=cause)

@@ -1,4 +1,4 @@
-"""What the graph of a fleet is to look like, made of its remap table and its descriptions."""
+"""What the graph of a fleet should look like, by its remap table and its descriptions."""
 
 from __future__ import annotations
 
@@ -6,24 +6,24 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
-from multibot_rewrite.remap.records import Name, NodeFacts, Table
+from multibot_rewrite.remap.records import NodeFacts, ResolvedName, Table
 from multibot_rewrite.steps.collect import Inventory
 
-# What every node has, and what nobody misses.
+# Topics of every node, which the plan leaves out.
 ALWAYS = ("/rosout", "/parameter_events")
-# Every node with use_sim_time hears the clock, whatever is called shared.
+# With use_sim_time every node subscribes to the clock, even if /clock is not a shared topic.
 EVERYWHERE = (*ALWAYS, "/clock")
-# Frames that nearly every robot has, whether or not anything here names them (REP 105).
+# Frames that nearly every robot has, whether or not a description or stack names them (REP 105).
 USUAL_FRAMES = ("map", "odom", "base_footprint", "base_link")
 NOTHING: Mapping[str, Sequence[str]] = {}
 NOWHERE: Mapping[str, str] = {}
 
 
-class Wanted(NamedTuple):
-    """An endpoint that is to be there; ``node`` and ``name`` are fully qualified.
+class PlannedEndpoint(NamedTuple):
+    """An endpoint of the plan; ``node`` and ``name`` are fully qualified.
 
-    ``type`` is empty where it is not known; ``also`` are others it may have, by parameter or
-    release. ``asked`` is the name in the node's code.
+    ``type`` is empty where it is not known; ``also`` are other types it may have, by parameter or
+    release. ``code_name`` is the name in the node's code, before any remap rule.
     """
 
     node: str
@@ -31,15 +31,16 @@ class Wanted(NamedTuple):
     role: str
     name: str
     type: str
-    asked: str
+    code_name: str
     also: tuple[str, ...] = ()
 
 
-class WantedRobot(NamedTuple):
-    """One robot: its nodes, the frames its description declares, the topic its tf is on.
+class PlannedRobot(NamedTuple):
+    """One robot: its nodes, the frames of its description, its tf topic.
 
-    ``other_frames`` are names its nodes may use besides. ``optional`` are those of its nodes that
-    are started under a condition. ``spelled`` stands for the robot in frames, empty for its name.
+    ``other_frames`` are further frames that its nodes may send. ``optional`` are those of its
+    nodes that may be missing. ``frame_tag`` is the robot's name in frames, where that is another
+    one than its name; else it is empty.
     """
 
     name: str
@@ -48,19 +49,22 @@ class WantedRobot(NamedTuple):
     tf: str
     other_frames: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
-    spelled: str = ""
+    frame_tag: str = ""
 
 
 class Expectation(NamedTuple):
-    """The plan of a fleet. ``ignored_nodes`` are patterns of nodes that may come and go, beside the
-    usual tools; ``sources`` tell where in its description (``file:line``) a node comes from."""
+    """The plan of a fleet.
+
+    ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
+    ``sources`` has for a node ``file:line`` of the plugin that starts it.
+    """
 
     layout: str
-    robots: tuple[WantedRobot, ...]
+    robots: tuple[PlannedRobot, ...]
     shared_nodes: tuple[str, ...]
     shared_topics: tuple[str, ...]
     shared_frames: tuple[str, ...]
-    endpoints: tuple[Wanted, ...]
+    endpoints: tuple[PlannedEndpoint, ...]
     ignored_nodes: tuple[str, ...] = ()
     sources: tuple[tuple[str, str], ...] = ()
 
@@ -74,9 +78,12 @@ def expect(
     sources: Mapping[str, str] = NOWHERE,
     words: Mapping[str, str] = NOWHERE,
 ) -> Expectation:
-    """The expectation of a table; ``frames`` are each robot's, as its description declares them,
-    ``named`` those it names besides. ``facts`` are of the nodes that every robot runs. ``words``
-    are what stands for a robot in its frames, where that is not its name."""
+    """The plan that follows from a remap table.
+
+    ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
+    ``facts`` describe the nodes that every robot runs. ``words`` has the name of a robot in its
+    frames, where that is another one than its name.
+    """
     known = tuple(facts)
     nodes = _nodes(table)
     optional = {node.name for node in known if node.when}
@@ -87,24 +94,24 @@ def expect(
         word = words.get(name, name)
         others = (*named.get(name, ()), *(spelled(frame, word, naming) for frame in usual))
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
-        perhaps = tuple(full for asked, full in nodes[name] if asked in optional)
+        may_miss = tuple(full for stack_name, full in nodes[name] if stack_name in optional)
         full = tuple(dict.fromkeys(full for _, full in nodes[name]))
         tf = tf_topic(name, naming)
-        said = word if word != name else ""
-        robots.append(WantedRobot(name, full, own, tf, tuple(left), perhaps, said))
+        tag = word if word != name else ""
+        robots.append(PlannedRobot(name, full, own, tf, tuple(left), may_miss, tag))
     return Expectation(
         table.layout,
         tuple(robots),
         tuple(full for _, full in nodes.get("", ())),
         tuple(sorted(f"/{topic}" for topic in naming.shared_topics)),
         tuple(sorted(naming.shared_frames)),
-        tuple(dict.fromkeys(_wanted(table.names))),
+        tuple(dict.fromkeys(_planned(table.names))),
         sources=tuple(sources.items()),
     )
 
 
 def _nodes(table: Table) -> dict[str, list[tuple[str, str]]]:
-    """By robot: the stack's name of each node, and its full name."""
+    """By robot: the name of each node in the stack, and its full name."""
     found: dict[str, list[tuple[str, str]]] = {}
     for node in table.nodes:
         full = f"{node.namespace.rstrip('/')}/{node.name}"
@@ -113,7 +120,7 @@ def _nodes(table: Table) -> dict[str, list[tuple[str, str]]]:
 
 
 def _defaults(facts: Iterable[NodeFacts]) -> Iterator[str]:
-    """The frames that parameters hold unless they are set; one in <> is another parameter's."""
+    """The default frames of parameters; a name in <> stands for another parameter."""
     for node in facts:
         names = (frame.default.strip("/") for frame in node.frames)
         yield from (name for name in names if name and "<" not in name)
@@ -135,17 +142,17 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, values)))
 
 
-def _wanted(names: Iterable[Name]) -> Iterator[Wanted]:
-    """Endpoints that are there whatever the parameters say."""
+def _planned(names: Iterable[ResolvedName]) -> Iterator[PlannedEndpoint]:
+    """The endpoints that do not depend on parameters."""
     for name in names:
-        asked = name.endpoint
-        if not (asked.when or asked.helper) and asked.role and name.name not in ALWAYS:
-            own = (name.node, asked.kind, asked.role, name.name)
-            yield Wanted(*own, asked.type, asked.name, asked.also)
+        end = name.endpoint
+        if not (end.when or end.helper) and end.role and name.name not in ALWAYS:
+            own = (name.node, end.kind, end.role, name.name)
+            yield PlannedEndpoint(*own, end.type, end.name, end.also)
 
 
 def tf_topic(robot: str, naming: Naming) -> str:
-    """The topic that a robot's tf is on under this layout."""
+    """The tf topic of a robot in this layout."""
     topic = f"/{TF_TOPICS[0]}"
     if not naming.layout.tf_per_robot:
         return topic

@@ -1,4 +1,4 @@
-"""The expectation as a YAML file that people read and edit."""
+"""The plan of a fleet as a YAML file, which people read and edit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
@@ -21,14 +21,19 @@ HEAD = """\
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
-# May be left out.
-MORE_KEYS = ("ignored_nodes", "sources")
-MORE_ROBOT_KEYS = ("other_frames", "optional", "spelled")
+OPTIONAL_KEYS = ("ignored_nodes", "sources")
+# Key -> field of PlannedRobot.
+OPTIONAL_ROBOT_KEYS = {
+    "other_frames": "other_frames",
+    "optional": "optional",
+    "spelled": "frame_tag",
+}
 FIELDS = 5
-# Between the types an endpoint may have.
+# Between several types of an endpoint.
 OR = " | "
-Spell = Callable[[str], str]
-# Reads back as the same text between brackets and elsewhere, and as no number, boolean or null.
+Quote = Callable[[str], str]
+_REMEDY = "use the file that multibot plan wrote"
+# Text that YAML reads back unchanged without quotes, in brackets too.
 _PLAIN = re.compile(r"[A-Za-z_/~](?:[A-Za-z0-9_./~-]|:(?=[A-Za-z0-9_/])| \| )*")
 _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 
@@ -36,39 +41,39 @@ _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y",
 def to_yaml(plan: Expectation) -> str:
     """The file's text."""
     rows: dict[str, list[list[str]]] = defaultdict(list)
-    for wanted in plan.endpoints:
-        types = OR.join((wanted.type, *wanted.also))
-        rows[wanted.node].append([wanted.role, wanted.kind, wanted.name, types, wanted.asked])
-    spell = cache(_quoted)
+    for end in plan.endpoints:
+        types = OR.join((end.type, *end.also))
+        rows[end.node].append([end.role, end.kind, end.name, types, end.code_name])
+    quote = cache(_quoted)
     parts = [HEAD]
     for key in (*KEYS[:-1], "ignored_nodes"):
         value = getattr(plan, key)
-        parts.append(f"{key}: {spell(value) if isinstance(value, str) else _flow(value, spell)}\n")
+        parts.append(f"{key}: {quote(value) if isinstance(value, str) else _flow(value, quote)}\n")
     parts.append("robots:\n" if plan.robots else "robots: {}\n")
     for robot in plan.robots:
-        parts += _robot(robot, rows, spell)
-    # One a line: that is how people look them up.
+        parts += _robot(robot, rows, quote)
+    # One on each line, so that people find them.
     parts += ["sources:\n"] * bool(plan.sources)
-    parts += [f"  {spell(node)}: {spell(place)}\n" for node, place in plan.sources]
+    parts += [f"  {quote(node)}: {quote(place)}\n" for node, place in plan.sources]
     return "".join(parts)
 
 
-def _robot(robot: WantedRobot, rows: Mapping[str, list[list[str]]], spell: Spell) -> Iterator[str]:
-    yield f"  {spell(robot.name)}:\n    tf: {spell(robot.tf)}\n"
-    yield f"    frames: {_flow(robot.frames, spell)}\n"
-    for key in MORE_ROBOT_KEYS:
-        value = getattr(robot, key)
+def _robot(robot: PlannedRobot, rows: Mapping[str, list[list[str]]], quote: Quote) -> Iterator[str]:
+    yield f"  {quote(robot.name)}:\n    tf: {quote(robot.tf)}\n"
+    yield f"    frames: {_flow(robot.frames, quote)}\n"
+    for key, field in OPTIONAL_ROBOT_KEYS.items():
+        value = getattr(robot, field)
         if value:
-            yield f"    {key}: {spell(value) if isinstance(value, str) else _flow(value, spell)}\n"
+            yield f"    {key}: {quote(value) if isinstance(value, str) else _flow(value, quote)}\n"
     yield "    nodes:\n" if robot.nodes else "    nodes: {}\n"
     for node in dict.fromkeys(robot.nodes):
         own = rows.get(node, ())
-        yield f"      {spell(node)}:\n" if own else f"      {spell(node)}: []\n"
-        yield from (f"      - {_flow(row, spell)}\n" for row in own)
+        yield f"      {quote(node)}:\n" if own else f"      {quote(node)}: []\n"
+        yield from (f"      - {_flow(row, quote)}\n" for row in own)
 
 
-def _flow(values: Iterable[str], spell: Spell) -> str:
-    return f"[{', '.join(map(spell, values))}]"
+def _flow(values: Iterable[str], quote: Quote) -> str:
+    return f"[{', '.join(map(quote, values))}]"
 
 
 def _quoted(value: str) -> str:
@@ -79,30 +84,34 @@ def _quoted(value: str) -> str:
     return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
 
 
-def _fast(name: str) -> Any:
-    """PyYAML's class of this name, the one in C where there is one: ten times as fast."""
+def _yaml_class(name: str) -> Any:
+    """A class of PyYAML, in C where it has one, which is ten times as fast."""
     import yaml
 
     return getattr(yaml, f"C{name}", None) or getattr(yaml, name)
 
 
 def from_yaml(data: bytes, file: str) -> Expectation:
-    """Read what ``to_yaml`` wrote; raises InputError with file, place and what is allowed there."""
+    """Read what ``to_yaml`` wrote; raises InputError with file, place and what to write there."""
     import yaml
 
     try:
-        value = yaml.load(data, Loader=_fast("SafeLoader"))
+        value = yaml.load(data, Loader=_yaml_class("SafeLoader"))
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
         reason = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise InputError(f"{place}: not YAML: {reason}; use what multibot plan wrote") from None
+        raise InputError(
+            f"{place}: not valid YAML: {reason}; use the file that multibot plan wrote"
+        ) from None
     except (UnicodeDecodeError, RecursionError) as error:
-        raise InputError(f"{file}: not YAML: {error}; use what multibot plan wrote") from None
-    top = _mapping(value, KEYS, file, "the plan", MORE_KEYS)
+        raise InputError(
+            f"{file}: not valid YAML: {error}; use the file that multibot plan wrote"
+        ) from None
+    top = _mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
     nodes, topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[1:4])
-    robots: list[WantedRobot] = []
-    endpoints: list[Wanted] = []
+    robots: list[PlannedRobot] = []
+    endpoints: list[PlannedEndpoint] = []
     for name, given in _mapping(top["robots"], (), file, "robots").items():
         robot, ends = _read_robot(str(name), given, file)
         robots.append(robot)
@@ -119,36 +128,36 @@ def from_yaml(data: bytes, file: str) -> Expectation:
     )
 
 
-def _read_robot(name: str, given: object, file: str) -> tuple[WantedRobot, list[Wanted]]:
+def _read_robot(name: str, given: object, file: str) -> tuple[PlannedRobot, list[PlannedEndpoint]]:
     place = f"robots.{name}"
-    robot = _mapping(given, ROBOT_KEYS, file, place, MORE_ROBOT_KEYS)
+    robot = _mapping(given, ROBOT_KEYS, file, place, (*OPTIONAL_ROBOT_KEYS,))
     nodes = _mapping(robot["nodes"] or {}, (), file, f"{place}.nodes")
-    keys = ("frames", *MORE_ROBOT_KEYS[:-1])
+    keys = ("frames", "other_frames", "optional")
     frames, others, optional = (
         _texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys
     )
     endpoints = [
-        _wanted(node, row, f"{file}: {place}.nodes.{node}[{at}]")
+        _read_endpoint(node, row, f"{file}: {place}.nodes.{node}[{at}]")
         for node, rows in nodes.items()
         for at, row in enumerate(_rows(rows, f"{file}: {place}.nodes.{node}"))
     ]
     tf = _full_name(robot["tf"], f"{file}: {place}.tf")
     names = tuple(_full_name(node, f"{file}: {place}.nodes") for node in nodes)
-    spelled = robot.get("spelled", "")
-    if not isinstance(spelled, str):
+    frame_tag = robot.get("spelled", "")
+    if not isinstance(frame_tag, str):
         raise InputError(f"{file}: {place}.spelled: write one word")
-    return WantedRobot(name, names, frames, tf, others, optional, spelled), endpoints
+    return PlannedRobot(name, names, frames, tf, others, optional, frame_tag), endpoints
 
 
 def _full_name(value: object, place: str) -> str:
     if not isinstance(value, str) or not value.startswith("/"):
-        raise InputError(f"{place}: {value!r} is no full name, it starts with /")
+        raise InputError(f"{place}: {value!r} is not a full name; write it with a / in front")
     return value
 
 
 def _rows(value: object, place: str) -> Sequence[object]:
     if value is not None and not isinstance(value, list):
-        raise InputError(f"{place} is no list; write [] for a node without endpoints of note")
+        raise InputError(f"{place} is not a list; write [] for a node without planned endpoints")
     return value or []
 
 
@@ -162,29 +171,29 @@ def _sources(value: object, file: str) -> Iterator[tuple[str, str]]:
 def _mapping(
     value: object, keys: tuple[str, ...], file: str, what: str, more: tuple[str, ...] = ()
 ) -> Mapping[str, Any]:
-    """``value`` with all of ``keys``, and of ``more`` what it likes; with any, if there are none."""
+    """``value``, checked to have all of ``keys`` and otherwise only ``more``; any without ``keys``."""
     if not isinstance(value, dict):
-        raise InputError(f"{file}: {what} is no mapping; write it as multibot plan does")
-    wrong = [key for key in keys if key not in value]
-    wrong += [key for key in value if keys and key not in (*keys, *more)]
-    if wrong:
-        known = ", ".join((*keys, *more))
-        raise InputError(f"{file}: {what}: key {wrong[0]!r} is missing or unknown; it has {known}")
+        raise InputError(f"{file}: {what} is not a mapping; write it as multibot plan does")
+    missing = [key for key in keys if key not in value]
+    unknown = [key for key in value if keys and key not in (*keys, *more)]
+    if missing or unknown:
+        wrong = f"key {missing[0]!r} is missing" if missing else f"unknown key {unknown[0]!r}"
+        raise InputError(f"{file}: {what}: {wrong}; the keys are {', '.join((*keys, *more))}")
     return value
 
 
 def _texts(value: object, place: str) -> tuple[str, ...]:
     if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
-        raise InputError(f"{place} is no list of names")
+        raise InputError(f"{place} is not a list of names")
     return tuple(value)
 
 
-def _wanted(node: str, row: object, place: str) -> Wanted:
+def _read_endpoint(node: str, row: object, place: str) -> PlannedEndpoint:
     if not isinstance(row, list) or len(row) != FIELDS or not all(isinstance(x, str) for x in row):
         raise InputError(f"{place}: write [role, kind, name, type, name in the node's code]")
-    role, kind, name, type_, asked = row
+    role, kind, name, type_, code_name = row
     if role not in ROLES or kind not in KINDS:
-        allowed = f"{', '.join(ROLES)} and {', '.join(KINDS)}"
-        raise InputError(f"{place}: {role!r} {kind!r}: role and kind are of {allowed}")
+        allowed = f"a role ({', '.join(ROLES)}) and a kind ({', '.join(KINDS)})"
+        raise InputError(f"{place}: {role!r}, {kind!r}: write {allowed}")
     type_, *also = type_.split(OR)
-    return Wanted(node, kind, role, _full_name(name, place), type_, asked, tuple(also))
+    return PlannedEndpoint(node, kind, role, _full_name(name, place), type_, code_name, tuple(also))

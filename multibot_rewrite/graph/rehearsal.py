@@ -1,7 +1,7 @@
-"""A remap table -> nodes to play: each asks for its names as its code does, rcl gets its rules.
+"""A remap table -> stub nodes: each has the names of its node's code, rcl gets the remap rules.
 
-Pure; ``graph.live.play`` plays them. What is not known is not played: parameters are taken to be set as
-the layout says, QoS is the usual, and what hangs on a condition is left out.
+Pure; ``graph.live.stub_nodes`` runs them. Parameters are taken to be set as the layout needs them,
+QoS is the default, and endpoints that depend on a condition are left out.
 """
 
 from __future__ import annotations
@@ -9,9 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from multibot_rewrite.graph.expectation import Expectation, Wanted
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.transforms import Edge, Edges
-from multibot_rewrite.remap.forms import arguments
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -20,27 +19,28 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    Name,
     NodeTable,
+    ResolvedName,
     Table,
 )
 from multibot_rewrite.remap.table import ACTION_PARTS
+from multibot_rewrite.remap.table_formats import arguments
 
 TF = "tf2_msgs/msg/TFMessage"
-# What is played where a type is not installed.
-STAND_INS = {TOPIC: "std_msgs/msg/Empty", SERVICE: "std_srvs/srv/Empty", ACTION: ""}
-TF_STAND_IN = "geometry_msgs/msg/TransformStamped"
-# What an action's parts have for types that do not hang on the action's own.
+# The types used in place of one that is not installed.
+SUBSTITUTE_TYPES = {TOPIC: "std_msgs/msg/Empty", SERVICE: "std_srvs/srv/Empty", ACTION: ""}
+TF_SUBSTITUTE = "geometry_msgs/msg/TransformStamped"
+# Types of an action's parts that are the same for every action.
 PART_TYPES = {
     "_action/cancel_goal": "action_msgs/srv/CancelGoal",
     "_action/status": "action_msgs/msg/GoalStatusArray",
 }
-# Participants are few under LOCALHOST; so many robots' nodes share one.
+# Fast DDS finds only 32 participants under LOCALHOST: larger fleets share these processes.
 PROCESSES = 8
 
 
-class Part(NamedTuple):
-    """A name that a node asks for, as its code writes it; ``helper`` as in ``Endpoint``."""
+class StubEndpoint(NamedTuple):
+    """An endpoint with the name in its node's code; ``helper`` as in ``Endpoint``."""
 
     kind: str
     role: str
@@ -49,108 +49,114 @@ class Part(NamedTuple):
     helper: bool
 
 
-class Actor(NamedTuple):
-    """A node to play: its name in the code, what rcl is told, what it asks for and sends."""
+class StubNode(NamedTuple):
+    """A stub: its name in the code, its arguments for rcl, its endpoints, what it sends on tf."""
 
     name: str
     arguments: tuple[str, ...]
-    parts: tuple[Part, ...]
+    endpoints: tuple[StubEndpoint, ...]
     edges: tuple[Edge, ...]
 
 
-def cast(table: Table, edges: Edges, rules: bool = True) -> Iterator[tuple[str, Actor]]:
-    """The actors, each with its robot (empty for all robots).
+def stub_nodes(table: Table, edges: Edges, rules: bool = True) -> Iterator[tuple[str, StubNode]]:
+    """The stub nodes, each with its robot (empty for all robots).
 
-    ``edges`` are by robot and node. Without ``rules`` a node keeps its namespace and its name only.
+    ``edges`` are by robot and node. Without ``rules`` a node gets only its namespace and its name.
     """
     types = {name.name: name.endpoint.type for name in table.names if name.endpoint.type}
-    asked: dict[str, list[Part]] = {}
+    endpoints: dict[str, list[StubEndpoint]] = {}
     for name in table.names:
         if not name.endpoint.when:
-            asked.setdefault(name.node, []).append(_part(name, types))
-    for node in _once(table.nodes):
-        told = node if rules else node._replace(rules=())
-        parts = dict.fromkeys(asked.get(_full(node), ()))
-        own = tuple(edges.get((node.robot, node.node), ()))
+            endpoints.setdefault(name.node, []).append(_stub_endpoint(name, types))
+    for node in _merged(table.nodes):
+        started = node if rules else node._replace(rules=())
+        own = tuple(dict.fromkeys(endpoints.get(_full_name(node), ())))
+        sent = tuple(edges.get((node.robot, node.node), ()))
         short = node.node.rpartition("/")[2]
-        yield node.robot, Actor(short, tuple(arguments(told)), tuple(parts), own)
+        yield node.robot, StubNode(short, tuple(arguments(started)), own, sent)
 
 
-def _full(node: NodeTable) -> str:
+def _full_name(node: NodeTable) -> str:
     return f"{node.namespace.rstrip('/')}/{node.name}"
 
 
-def _once(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
-    """A node that a plugin and the stack both bring is one, with the rules of both."""
+def _merged(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
+    """A node that a plugin and the stack both have is one node, with the rules of both."""
     found: dict[str, NodeTable] = {}
     for node in nodes:
-        before = found.setdefault(_full(node), node)
+        before = found.setdefault(_full_name(node), node)
         if before is not node:
-            found[_full(node)] = before._replace(rules=(*before.rules, *node.rules))
+            found[_full_name(node)] = before._replace(rules=(*before.rules, *node.rules))
     return found.values()
 
 
-def _part(name: Name, types: Mapping[str, str]) -> Part:
+def _stub_endpoint(name: ResolvedName, types: Mapping[str, str]) -> StubEndpoint:
     kind, role, own, type_, *_ = name.endpoint
-    # What only names a topic is a sensor's output nearly always.
-    return Part(
+    # A topic without a role is nearly always a sensor's output.
+    return StubEndpoint(
         kind, role or PUBLISHES, own, type_ or types.get(name.name, ""), name.endpoint.helper
     )
 
 
-def dealt(actors: Iterable[tuple[str, Actor]]) -> list[list[Actor]]:
-    """The actors by process: one a robot, as long as they are few."""
-    hands: dict[int, list[Actor]] = {}
-    seats: dict[str, int] = {}
-    for robot, actor in actors:
-        seat = seats.setdefault(robot, len(seats) % PROCESSES)
-        hands.setdefault(seat, []).append(actor)
-    return list(hands.values())
+def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[StubNode]]:
+    """The stub nodes by process: one process for each robot, but no more than PROCESSES."""
+    processes: dict[int, list[StubNode]] = {}
+    process_of: dict[str, int] = {}
+    for robot, node in nodes:
+        process = process_of.setdefault(robot, len(process_of) % PROCESSES)
+        processes.setdefault(process, []).append(node)
+    return list(processes.values())
 
 
-def as_played(plan: Expectation, replaced: Mapping[str, str]) -> Expectation:
-    """The plan with the types that stand in; an action without its type is known by its parts."""
-    endpoints = [part for wanted in plan.endpoints for part in _played(wanted, replaced)]
+def with_substitutes(plan: Expectation, replaced: Mapping[str, str]) -> Expectation:
+    """The plan with the types that replace others; an action without its type becomes its parts."""
+    endpoints = [end for planned in plan.endpoints for end in _substituted(planned, replaced)]
     return plan._replace(endpoints=tuple(endpoints))
 
 
-def _played(wanted: Wanted, replaced: Mapping[str, str]) -> Iterator[Wanted]:
-    if wanted.kind == ACTION and wanted.type in replaced:
-        part = Part(wanted.kind, wanted.role, wanted.name, wanted.type, False)
-        for kind, role, name, type_, _ in action_parts(part):
-            asked = wanted.asked + name.removeprefix(wanted.name)
-            yield Wanted(wanted.node, kind, role, name, type_, asked)
+def _substituted(
+    planned: PlannedEndpoint, replaced: Mapping[str, str]
+) -> Iterator[PlannedEndpoint]:
+    if planned.kind == ACTION and planned.type in replaced:
+        action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
+        for kind, role, name, type_, _ in action_parts(action):
+            code_name = planned.code_name + name.removeprefix(planned.name)
+            yield PlannedEndpoint(planned.node, kind, role, name, type_, code_name)
     else:
-        also = tuple(replaced.get(type_, type_) for type_ in wanted.also)
-        yield wanted._replace(type=replaced.get(wanted.type, wanted.type), also=also)
+        also = tuple(replaced.get(type_, type_) for type_ in planned.also)
+        yield planned._replace(type=replaced.get(planned.type, planned.type), also=also)
 
 
-def action_parts(part: Part) -> Iterator[Part]:
-    """The services and topics that an action is, where its type cannot be had."""
+def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
+    """The services and topics that make up an action, for an action without its type."""
     roles = {
         (SERVES, SERVICE): SERVES, (SERVES, TOPIC): PUBLISHES,
         (CALLS, SERVICE): CALLS, (CALLS, TOPIC): SUBSCRIBES,
     }  # fmt: skip
     for suffix, kind in ACTION_PARTS:
-        type_ = PART_TYPES.get(suffix, STAND_INS[kind])
-        yield Part(kind, roles[part.role, kind], f"{part.name}/{suffix}", type_, part.helper)
+        type_ = PART_TYPES.get(suffix, SUBSTITUTE_TYPES[kind])
+        name = f"{action.name}/{suffix}"
+        yield StubEndpoint(kind, roles[action.role, kind], name, type_, action.helper)
 
 
-def stand_in(kind: str, type_: str) -> str:
-    """The type that is played instead of one that is not installed."""
-    return TF_STAND_IN if type_ == TF else STAND_INS[kind]
+def substitute_type(kind: str, type_: str) -> str:
+    """The type that is used in place of one that is not installed."""
+    return TF_SUBSTITUTE if type_ == TF else SUBSTITUTE_TYPES[kind]
 
 
-def to_order(actors: Iterable[Actor]) -> tuple[Any, ...]:
-    """Actors as plain values."""
-    return tuple(actors)
+def to_order(nodes: Iterable[StubNode]) -> tuple[Any, ...]:
+    """Stub nodes as plain values, the order of the process that runs them."""
+    return tuple(nodes)
 
 
-def from_order(value: Sequence[Any]) -> list[Actor]:
+def from_order(value: Sequence[Any]) -> list[StubNode]:
     """Read what JSON made of ``to_order``."""
     return [
-        Actor(
-            name, tuple(words), tuple(Part(*it) for it in parts), tuple(Edge(*it) for it in edges)
+        StubNode(
+            name,
+            tuple(words),
+            tuple(StubEndpoint(*end) for end in endpoints),
+            tuple(Edge(*edge) for edge in edges),
         )
-        for name, words, parts, edges in value
+        for name, words, endpoints, edges in value
     ]

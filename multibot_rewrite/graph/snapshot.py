@@ -1,6 +1,6 @@
-"""What a ROS graph looks like: frozen records, and JSON both ways. Pure, no ROS needed.
+"""What a ROS graph looks like: frozen records, and how they are read and written as JSON.
 
-Field names follow ``rosgraph_msgs`` (rcl_interfaces) where it has them.
+Pure, needs no ROS. Field names follow ``rosgraph_msgs`` (rcl_interfaces) where it has them.
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
 SCHEMA = 1
-# Why the looking ended: everything expected was there, nothing changed any more, time was up; or
-# it did not end, the graph being watched.
+# Why the observation ended: all expected nodes are there, the graph no longer changes, the timeout
+# is over. CHANGING: it has not ended, the graph is being watched.
 EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
-# What rmw says of an endpoint whose participant has not told its nodes yet.
+# The node name in rmw of an endpoint whose participant has not announced its nodes yet.
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
-# What tf2 calls the nodes that listen beside another one; the rest is an address.
+# How the names of tf2's listener nodes start; the rest is an address.
 LISTENER = "transform_listener_impl_"
 
 
 class Qos(NamedTuple):
-    """The quality of service an endpoint offers or asks for; words as in ``rosgraph_msgs``.
+    """The quality of service an endpoint offers or requests; words as in ``rosgraph_msgs``.
 
-    Times are seconds, ``inf`` (null in JSON) is no limit. Fast DDS does not tell history and
-    depth of other processes: they are ``UNKNOWN`` and 0 then.
+    Times are seconds, ``inf`` (null in JSON) is no limit. Fast DDS does not announce history and
+    depth to other processes: they are ``UNKNOWN`` and 0 then.
     """
 
     history: str
@@ -43,10 +43,10 @@ class Qos(NamedTuple):
 
 
 class GraphNode(NamedTuple):
-    """One node. Two nodes of one name are two records.
+    """One node. Two nodes with one name are two records.
 
-    ``name`` is fully qualified. ``process`` is the group of endpoints it shares a DDS participant
-    with, empty where no endpoint of it told.
+    ``name`` is fully qualified. ``process`` identifies the DDS participant of the node, empty
+    where it is not known.
     """
 
     name: str
@@ -58,7 +58,7 @@ class GraphEndpoint(NamedTuple):
 
     ``kind`` and ``role`` are the words of ``remap.records``. ``name`` and ``node`` are fully
     qualified. ``type_hash``, ``qos`` and the endpoint's own ``process`` are known only where the
-    topic was asked for; else they are empty, None and what is known of the node.
+    topic was queried; otherwise they are empty, None and the process of the node.
     """
 
     kind: str
@@ -71,10 +71,10 @@ class GraphEndpoint(NamedTuple):
     process: str
 
 
-class Frame(NamedTuple):
-    """An edge of a tf tree as heard on ``topic``; ``publishers`` are all nodes that publish there.
+class GraphFrame(NamedTuple):
+    """A transform received on ``topic``; ``publishers`` are all nodes that publish there.
 
-    tf messages do not tell who sent them.
+    tf messages do not say which node sent them.
     """
 
     child: str
@@ -85,7 +85,7 @@ class Frame(NamedTuple):
 
 
 class Caveat(NamedTuple):
-    """What to know about the view; ``incomplete`` tells that something may be missing in it."""
+    """What to know about a view; with ``incomplete`` something may be missing in it."""
 
     code: str
     incomplete: bool
@@ -93,9 +93,9 @@ class Caveat(NamedTuple):
 
 
 class Environment(NamedTuple):
-    """How the graph was looked at, and how far that can be trusted.
+    """How the graph was observed, and how complete the view is.
 
-    ``participants`` counts the DDS participants seen, the looking one not. ``settled`` is
+    ``participants`` counts the DDS participants without the observer's own. ``settled`` is
     ``EXPECTED``, ``QUIET``, ``TIMEOUT`` or ``CHANGING``, reached after ``seconds``.
     """
 
@@ -116,11 +116,11 @@ class Snapshot(NamedTuple):
 
     nodes: tuple[GraphNode, ...]
     endpoints: tuple[GraphEndpoint, ...]
-    frames: tuple[Frame, ...]
+    frames: tuple[GraphFrame, ...]
     environment: Environment
 
 
-_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
+_ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
     (GraphEndpoint, "kind"): KINDS,
     (GraphEndpoint, "role"): ROLES,
     (Environment, "settled"): (EXPECTED, QUIET, TIMEOUT, CHANGING),
@@ -129,53 +129,53 @@ _FULL_NAMES = {
     (GraphNode, "name"),
     (GraphEndpoint, "name"),
     (GraphEndpoint, "node"),
-    (Frame, "topic"),
+    (GraphFrame, "topic"),
 }
-_CALLED = {str: "text", int: "a whole number", bool: "true or false"}
-# Not a number is not below it, and no whole number is too long to become a float.
-_MOST = 1e300
+_TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
+# NaN is not below it, and every whole number below it fits into a float.
+_LARGEST = 1e300
 _Reader = Callable[[object], object]
 
 
 def incomplete(snapshot: Snapshot) -> tuple[Caveat, ...]:
-    """Why something may be missing in the view; empty where it can be trusted."""
+    """Why something may be missing in the view; empty for a complete one."""
     return tuple(caveat for caveat in snapshot.environment.caveats if caveat.incomplete)
 
 
 def to_json(snapshot: Snapshot) -> bytes:
-    """The snapshot as JSON, one record a line, in the order of the records."""
+    """The snapshot as JSON, one record on each line, in the order of the records."""
     parts = [f'"schema": {SCHEMA}']
     for name in ("nodes", "endpoints", "frames"):
         lines = ",\n  ".join(_line(record) for record in getattr(snapshot, name))
         parts.append(f'"{name}": [\n  {lines}\n ]' if lines else f'"{name}": []')
-    environment = json.dumps(_plain(snapshot.environment), indent=1, ensure_ascii=False)
+    environment = json.dumps(_plain_value(snapshot.environment), indent=1, ensure_ascii=False)
     parts.append('"environment": ' + environment.replace("\n", "\n "))
     return ("{\n " + ",\n ".join(parts) + "\n}\n").encode("utf-8", "backslashreplace")
 
 
 def _line(record: object) -> str:
-    return json.dumps(_plain(record), ensure_ascii=False)
+    return json.dumps(_plain_value(record), ensure_ascii=False)
 
 
-def _plain(value: object) -> object:
+def _plain_value(value: object) -> object:
     if isinstance(value, tuple):
         fields = getattr(value, "_fields", None)
         if fields is None:
-            return [_plain(item) for item in value]
-        return {name: _plain(item) for name, item in zip(fields, value, strict=True)}
+            return [_plain_value(item) for item in value]
+        return {name: _plain_value(item) for name, item in zip(fields, value, strict=True)}
     if isinstance(value, float) and math.isinf(value):
         return None
     return value
 
 
 def from_json(data: bytes, file: str) -> Snapshot:
-    """Read what ``to_json`` wrote; raises InputError with file, key, what is wrong and what to do."""
+    """Read what ``to_json`` wrote; raises InputError with file, key, what is wrong, what to do."""
     try:
         value = json.loads(data)
     except json.JSONDecodeError as error:
         place = f"{file}:{error.lineno}:{error.colno}"
-        hint = "use what multibot snapshot -o wrote"
-        raise InputError(f"{place}: not JSON: {error.msg}; {hint}") from None
+        hint = "use the file that multibot snapshot -o wrote"
+        raise InputError(f"{place}: not valid JSON: {error.msg}; {hint}") from None
     except (ValueError, RecursionError) as error:
         raise InputError(f"{file}: cannot be read as JSON: {error}") from None
     if not isinstance(value, dict):
@@ -186,13 +186,13 @@ def from_json(data: bytes, file: str) -> Snapshot:
         raise InputError(f"{file}: schema: expected {SCHEMA}, not {_shown(schema)}; {hint}")
     try:
         return cast(Snapshot, _reader(Snapshot)(value))
-    except _Wrong as wrong:
+    except _WrongValue as wrong:
         key = "".join(reversed(wrong.keys)).lstrip(".")
         raise InputError(f"{file}: {key}: {wrong.reason}") from None
 
 
-class _Wrong(Exception):
-    """A value that is not what it should be; the keys on the way to it, the innermost first."""
+class _WrongValue(Exception):
+    """A wrong value; ``keys`` is the path to it, the innermost key first."""
 
     def __init__(self, reason: str, *keys: str) -> None:
         super().__init__(reason)
@@ -200,14 +200,14 @@ class _Wrong(Exception):
         self.keys = list(keys)
 
 
-def _unlike(expected: str, value: object) -> _Wrong:
-    return _Wrong(f"expected {expected}, not {_shown(value)}")
+def _unexpected(expected: str, value: object) -> _WrongValue:
+    return _WrongValue(f"expected {expected}, not {_shown(value)}")
 
 
-# One reader a type, made once: a snapshot of 1,000 robots has half a million values.
+# Each reader is made once: a snapshot of 1,000 robots has half a million values.
 @cache
 def _reader(expected: Any) -> _Reader:
-    """What reads a JSON value as the type ``expected``, or raises _Wrong."""
+    """A function that reads a JSON value as the type ``expected``, or raises _WrongValue."""
     options = get_args(expected)
     if NoneType in options:
         inner = _reader(options[0])
@@ -222,47 +222,47 @@ def _reader(expected: Any) -> _Reader:
 
 
 def _field_reader(kind: type, name: str, hint: Any) -> _Reader:
-    words = _WORDS.get((kind, name))
+    words = _ALLOWED_WORDS.get((kind, name))
     if words:
         return partial(_read_word, words)
     return _read_full_name if (kind, name) in _FULL_NAMES else _reader(hint)
 
 
 def _read_plain(expected: type, value: object) -> object:
-    # type, because True is an int, too.
+    # Not isinstance: True is an int as well.
     if type(value) is not expected:
-        raise _unlike(_CALLED[expected], value)
+        raise _unexpected(_TYPE_NAMES[expected], value)
     return value
 
 
 def _read_word(words: tuple[str, ...], value: object) -> object:
     if value not in words:
-        raise _unlike(f"one of {', '.join(words)}", value)
+        raise _unexpected(f"one of {', '.join(words)}", value)
     return value
 
 
 def _read_full_name(value: object) -> object:
     if not isinstance(value, str) or not value.startswith("/"):
-        raise _unlike("a full name that starts with /", value)
+        raise _unexpected("a full name that starts with /", value)
     return value
 
 
 def _read_seconds(value: object) -> object:
     if value is None:
         return math.inf
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _MOST:
-        raise _unlike("a number or null", value)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
+        raise _unexpected("a number or null", value)
     return float(value)
 
 
 def _read_list(reader: _Reader, value: object) -> object:
     if not isinstance(value, list):
-        raise _unlike("a list", value)
+        raise _unexpected("a list", value)
     result = []
     try:
         for item in value:
             result.append(reader(item))
-    except _Wrong as wrong:
+    except _WrongValue as wrong:
         wrong.keys.append(f"[{len(result)}]")
         raise
     return tuple(result)
@@ -270,26 +270,26 @@ def _read_list(reader: _Reader, value: object) -> object:
 
 def _read_record(kind: Any, readers: Mapping[str, _Reader], value: object) -> object:
     if not isinstance(value, dict):
-        raise _unlike("an object", value)
+        raise _unexpected("an object", value)
     if value.keys() != readers.keys():
-        raise _misfit(readers, value)
+        raise _wrong_key(readers, value)
     name = ""
     try:
         fields = []
         for name, reader in readers.items():
             fields.append(reader(value[name]))
-    except _Wrong as wrong:
+    except _WrongValue as wrong:
         wrong.keys.append(f".{name}")
         raise
     return kind._make(fields)
 
 
-def _misfit(readers: Mapping[str, _Reader], value: Mapping[str, object]) -> _Wrong:
+def _wrong_key(readers: Mapping[str, _Reader], value: Mapping[str, object]) -> _WrongValue:
     for name in readers:
         if name not in value:
-            return _Wrong("missing; it is needed", f".{name}")
+            return _WrongValue("missing; it is needed", f".{name}")
     name = next(name for name in value if name not in readers)
-    return _Wrong(f"not a key of a snapshot; here are {', '.join(readers)}", f".{name}")
+    return _WrongValue(f"unknown key; the keys are {', '.join(readers)}", f".{name}")
 
 
 def _shown(value: object) -> str:

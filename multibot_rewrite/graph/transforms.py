@@ -1,4 +1,4 @@
-"""Which frames a robot has and which of its nodes sends them: its description, odometry, map."""
+"""The tf frames of a robot, and which of its nodes sends them: description, odometry, map."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def edges_of(
     naming: Naming,
     word: str = "",
 ) -> dict[tuple[str, str], list[Edge]]:
-    """What a robot's nodes send, by robot and node: its description, and odometry and map.
+    """The transforms that a robot's nodes send, by robot and node: description, odometry, map.
 
-    ``word`` stands for the robot in frames, empty for its name.
+    ``word`` is the robot's name in its frames, empty where that is its name.
     """
     tree = list(description_edges(inventory))
     children = {edge.child for edge in tree}
@@ -50,7 +50,7 @@ def edges_of(
 
 
 def description_edges(inventory: Inventory) -> Iterator[Edge]:
-    """What robot_state_publisher sends for the joints of a description."""
+    """The transforms that robot_state_publisher sends for the joints of a description."""
     for joint in inventory.document.root.iter("joint"):
         ends = [joint.find(tag) for tag in ("parent", "child")]
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
@@ -64,7 +64,10 @@ def _spelled(frame: str, robot: str, naming: Naming) -> str:
 
 
 def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:
-    """What a node's parameters name; its base is ``root``, where one is given."""
+    """The transforms that a node's parameters name.
+
+    With ``root`` that frame is the child, except for odometry frames.
+    """
     values = {frame.parameter: frame.default for frame in node.frames}
     for parent, child in node.sends:
         base = root and "odom" not in child
@@ -72,8 +75,11 @@ def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:
 
 
 def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]:
-    """``edges`` with odometry where nobody is known to send it: a driver would. Tells which, as
-    ``parent -> child``; empty where nothing is added, as for an arm that stands in the world."""
+    """Add odom -> base for a robot whose nodes are not known to send odometry: its driver does.
+
+    Also returns the added transform as ``parent -> child``; empty where none is added, as for an
+    arm that is fixed to the world.
+    """
     state = (robot, STATE_PUBLISHER)
     tree = edges.get(state, ())
     others = [it for key, own in edges.items() if key[0] == robot and key != state for it in own]
@@ -87,7 +93,7 @@ def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]
 
 
 def frames_of(inventory: Inventory, sent: Iterable[Edge], naming: Naming) -> tuple[str, ...]:
-    """A robot's own frames: what its description declares, and what its nodes send besides."""
+    """A robot's own frames: those of its description, and those its nodes send besides."""
     declared = (*inventory.declared["link"], *inventory.declared["frame"])
     ends = (frame for edge in sent for frame in edge[:2])
     frames = dict.fromkeys((*declared, *ends))

@@ -1,4 +1,4 @@
-"""A plan and one snapshot after the other -> what changed, and the worst that was seen. Pure."""
+"""A plan and one snapshot after another -> what changed, and the worst verdict so far. Pure."""
 
 from __future__ import annotations
 
@@ -14,95 +14,99 @@ from multibot_rewrite.model import ERROR
 
 
 class Verdict(IntEnum):
-    """What a comparison comes to, from good to bad."""
+    """The result of a comparison, from good to bad."""
 
     PLANNED = 0
     INCONCLUSIVE = 1
     WRONG = 2
 
 
-class There(NamedTuple):
-    """How much of a robot's plan is there, each as (seen, planned)."""
+class Progress(NamedTuple):
+    """How much of a robot's plan is in the graph, each as (in the graph, planned)."""
 
     robot: str
     nodes: tuple[int, int]
     names: tuple[int, int]
 
 
-class Moment(NamedTuple):
-    """One state of a watched graph, and how it differs from the one before.
+class WatchState(NamedTuple):
+    """One state of a watched graph, and how it differs from the state before.
 
-    ``whole`` tells that everything planned was there at once, now or before; what is missing
-    before that has not been started yet. ``worst`` is the worst verdict so far.
+    ``complete`` is set once everything planned was in the graph at the same time; what is missing
+    before that counts as not started yet. ``worst`` is the worst verdict so far.
     """
 
     graph: Snapshot
-    found: tuple[GraphFinding, ...]
+    findings: tuple[GraphFinding, ...]
     appeared: tuple[GraphFinding, ...]
     solved: tuple[GraphFinding, ...]
-    robots: tuple[There, ...]
-    whole: bool
+    robots: tuple[Progress, ...]
+    complete: bool
     verdict: Verdict
     worst: Verdict
 
 
 def judge(found: Iterable[GraphFinding], graph: Snapshot) -> Verdict:
-    """As planned, not as planned, or not to be told from this view."""
+    """As planned, not as planned, or inconclusive because the view may be incomplete."""
     if any(finding.level == ERROR for finding in found):
         return Verdict.WRONG
     return Verdict.INCONCLUSIVE if doubts(graph) else Verdict.PLANNED
 
 
-def next_moment(plan: Expectation, graph: Snapshot, before: Moment | None) -> Moment:
-    """Compare, and tell what changed since ``before``."""
+def next_state(plan: Expectation, graph: Snapshot, before: WatchState | None) -> WatchState:
+    """Compare the graph with the plan, and with the state before."""
     found = tuple(check(plan, graph))
-    old = before.found if before else ()
-    robots = tuple(there(plan, graph))
+    old = before.findings if before else ()
+    robots = tuple(progress(plan, graph))
     absent = any(finding.code in ABSENCE for finding in found)
-    whole = (before is not None and before.whole) or not absent
+    complete = (before is not None and before.complete) or not absent
     verdict = judge(found, graph)
-    return Moment(
+    return WatchState(
         graph,
         found,
-        _beyond(found, old),
-        _beyond(old, found),
+        _not_in(old, found),
+        _not_in(found, old),
         robots,
-        whole,
+        complete,
         verdict,
-        max(before.worst if before else Verdict.PLANNED, _counted(found, graph, whole)),
+        max(before.worst if before else Verdict.PLANNED, _to_remember(found, graph, complete)),
     )
 
 
-def _beyond(
-    some: Iterable[GraphFinding], others: Iterable[GraphFinding]
+def _not_in(
+    known: Iterable[GraphFinding], found: Iterable[GraphFinding]
 ) -> tuple[GraphFinding, ...]:
-    known = {finding._replace(cause="") for finding in others}
-    return tuple(finding for finding in some if finding._replace(cause="") not in known)
+    """What is found and not known; a finding with another cause is the same finding."""
+    before = {finding._replace(cause="") for finding in known}
+    return tuple(finding for finding in found if finding._replace(cause="") not in before)
 
 
-def _counted(found: Iterable[GraphFinding], graph: Snapshot, whole: bool) -> Verdict:
-    """What a moment adds to the worst: neither what is not started yet nor that things move."""
-    judged = judge([it for it in found if whole or it.code not in ABSENCE], graph)
-    coming = not whole or graph.environment.settled == CHANGING
-    return Verdict.PLANNED if judged == Verdict.INCONCLUSIVE and coming else judged
+def _to_remember(found: Iterable[GraphFinding], graph: Snapshot, complete: bool) -> Verdict:
+    """The verdict that counts for the worst so far.
+
+    What is not started yet does not count, nor that the graph is still changing.
+    """
+    verdict = judge([it for it in found if complete or it.code not in ABSENCE], graph)
+    changing = not complete or graph.environment.settled == CHANGING
+    return Verdict.PLANNED if verdict == Verdict.INCONCLUSIVE and changing else verdict
 
 
-def final(moment: Moment) -> Verdict:
-    """The worst seen; what is not there yet at the end counts, too."""
-    return max(moment.worst, moment.verdict)
+def final(state: WatchState) -> Verdict:
+    """The worst verdict; what is still missing at the end counts as well."""
+    return max(state.worst, state.verdict)
 
 
-def there(plan: Expectation, graph: Snapshot) -> list[There]:
-    """How much of each robot is there."""
+def progress(plan: Expectation, graph: Snapshot) -> list[Progress]:
+    """How much of each robot's plan is in the graph."""
     nodes = {node.name for node in graph.nodes}
     ends = {(end.node, end.kind, end.role, end.name) for end in graph.endpoints}
-    wanted: dict[str, list[bool]] = {}
-    for want in plan.endpoints:
-        seen = (want.node, want.kind, want.role, want.name) in ends
-        wanted.setdefault(want.node, []).append(seen)
+    planned: dict[str, list[bool]] = {}
+    for end in plan.endpoints:
+        seen = (end.node, end.kind, end.role, end.name) in ends
+        planned.setdefault(end.node, []).append(seen)
     result = []
     for robot in plan.robots:
-        names = [seen for node in robot.nodes for seen in wanted.get(node, ())]
-        here = sum(node in nodes for node in robot.nodes)
-        result.append(There(robot.name, (here, len(robot.nodes)), (sum(names), len(names))))
+        names = [seen for node in robot.nodes for seen in planned.get(node, ())]
+        running = sum(node in nodes for node in robot.nodes)
+        result.append(Progress(robot.name, (running, len(robot.nodes)), (sum(names), len(names))))
     return result

@@ -1,11 +1,11 @@
-"""Launch files with a fleet file: substitutions, and actions for each of its robots.
+"""Launch files with a fleet file: substitutions, and actions for each robot.
 
-``load_fleet`` serves any launch script and needs no launch. What is here is for values that are known
-only while a launch file runs, as those of LaunchConfiguration are; XML and YAML launch files get it
-by ``launch.frontend``. The only module that imports launch and launch_ros, where they are needed.
+``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values
+that are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers
+it to XML and YAML launch files. The only module that imports launch and launch_ros, when needed.
 
-A robot or a fleet that is not given is that of the group around it (``each_robot``). Files that nodes
-read are in a folder that goes with the launch. Source: launch, launch_ros jazzy.
+A robot or fleet that is not given is that of the enclosing group (``each_robot``). Files for nodes are
+in a folder that is removed at the end of the launch. Source: launch, launch_ros jazzy.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from multibot_rewrite.fleets import spawn as spawning
-from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
+from multibot_rewrite.launch.robot_words import WORDS
 from multibot_rewrite.model import Finding, UsageError
-from multibot_rewrite.remap.marked import unknown
+from multibot_rewrite.remap.yaml_with_lines import unknown
 
-# What launch calls SomeSubstitutionsType: a string, a substitution, or several of both.
+# launch's SomeSubstitutionsType: a string, a substitution, or several of both.
 Text = Any
 Action = Any
 Context = Any
@@ -32,29 +32,29 @@ Substitution = Any
 Make = Callable[[LoadedRobot], Iterable[Action]]
 # The launch configurations that hold the fleet and the robot of a group.
 FLEET, ROBOT = "multibot_fleet", "multibot_robot"
-# What a launch keeps: its fleets by path, its folder, the warnings that it has given.
-_FLEETS, _FOLDER, _TOLD = "multibot_fleets", "multibot_folder", "multibot_told"
+# What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
+_FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
 FILE = "file"
 SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})
 PLACER = ("tf2_ros", "static_transform_publisher")
-# Characters that JSON may hold as they are, and YAML may not.
+# Characters that JSON allows unescaped, but YAML does not.
 _ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF)}
-# Parameters that no file of the fleet holds.
+# The file of a node's description and start pose.
 _OWN = "multibot.yaml"
 
 
-class Of(NamedTuple):
-    """Which robot of which fleet; None is that of the group around it."""
+class RobotRef(NamedTuple):
+    """A robot of a fleet; None means that of the enclosing group."""
 
     robot: Text = None
     fleet: Text = None
 
 
-HERE = Of()
+HERE = RobotRef()
 
 
 def missing() -> str:
-    """Why launch cannot be imported, or an empty string."""
+    """Why launch cannot be imported; empty if it can."""
     try:
         from launch.frontend import expose_action  # noqa: F401
     except ImportError as error:
@@ -63,7 +63,7 @@ def missing() -> str:
 
 
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
-    """The fleet of a file, in a function of OpaqueFunction; a launch loads each file once.
+    """The fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
 
     ``fleet`` may hold substitutions. Warnings go to launch's log. Raises as ``load_fleet``.
     """
@@ -75,26 +75,26 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     return known[path]
 
 
-def robot_of(context: Context, of: Of = HERE) -> LoadedRobot:
-    """A robot; raises as ``fleet_of``, and UsageError for one that is not there."""
+def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
+    """A robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
     name = _scoped(context, ROBOT, "robot") if of.robot is None else perform(context, of.robot)
     return fleet_of(context, of.fleet).robot(name)
 
 
-def file_of(context: Context, file: str, of: Of = HERE) -> str:
+def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
     """Write a file of the fleet into the folder of this launch; returns its path.
 
-    It is the robot's own, or the one for all robots where there is no robot.
+    It is the robot's own file, or the one for all robots if no robot is given.
     """
     fleet = fleet_of(context, of.fleet)
-    robot = None if _nobody(context, of) else robot_of(context, of)
+    robot = None if _is_for_all(context, of) else robot_of(context, of)
     text = robot.text(file) if robot else fleet.text(file)
     _warn(context, fleet.made.findings)
     return _written(context, robot, file, text)
 
 
 def perform(context: Context, text: Text) -> str:
-    """What a text with substitutions is in this context."""
+    """The value of a text with substitutions in this context."""
     from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
 
     return str(perform_substitutions(context, normalize_to_list_of_substitutions(text)))
@@ -116,20 +116,20 @@ def rviz_config(file: Text, robot: Text = None, fleet: Text = None) -> Substitut
 
 
 def bridge_config(robot: Text = None, fleet: Text = None) -> Substitution:
-    """The path of a robot's file for ros_gz_bridge, or of what one bridge carries for all."""
+    """The path of a robot's ros_gz_bridge file, or of the one for all robots."""
     return value(FILE, "bridge.yaml", robot, fleet)
 
 
 def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -> Substitution:
-    """What ``$(multibot WORD NAME)`` is: one of ``WORDS`` about a robot, or the path of a file."""
-    return substitution()([word, name], Of(robot, fleet))
+    """The substitution ``$(multibot WORD NAME)``: one of ``WORDS``, or the path of a file."""
+    return substitution()([word, name], RobotRef(robot, fleet))
 
 
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
-    """An action that does what ``make`` returns for every robot, each robot in a group of its own.
+    """An action that runs what ``make`` returns for every robot, each robot in its own group.
 
-    ``robots`` are names, with commas between, where only some are wanted; ``action`` is what any
-    action takes, such as a condition.
+    ``robots`` are names separated by commas, to choose some robots; ``action`` are options of any
+    action, such as a condition.
 
         each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])
     """
@@ -153,61 +153,61 @@ def node(
     condition: Any = None,
     **options: Any,
 ) -> Action:
-    """A node of a robot's stacks: launch_ros's Node with its name, namespace, rules and parameters.
+    """A node of a robot's stacks: launch_ros's Node with its names, remappings and parameters.
 
-    ``name`` is the node's in the stack; ``files`` are parameter files of the fleet, a list or with
-    commas between; ``describe`` gives it the description. ``options`` are Node's own: its
-    remappings come first and its parameters last, where they win.
+    ``name`` is its name in the stack; ``files`` are parameter files of the fleet, a list or separated
+    by commas; ``describe`` adds ``robot_description``. ``options`` are Node's own: its remappings
+    come first and its parameters last, so that they override.
     """
-    of = Of(robot, fleet)
+    of = RobotRef(robot, fleet)
 
-    def started(context: Context) -> list[Action]:
+    def actions(context: Context) -> list[Action]:
         its, called = robot_of(context, of), perform(context, name)
         paths = [file_of(context, it, of) for it in _listed(context, files)]
         own = _own_file(context, its, called, describe)
         return [_node(its, called, [*paths, *own], options)]
 
-    return _later(started, {"condition": condition})
+    return _later(actions, {"condition": condition})
 
 
 def spawn(simulator: Text, robot: Text = None, fleet: Text = None, **action: Any) -> Action:
     """A robot's spawner: ``gz`` for ros_gz_sim, ``classic`` for gazebo_ros."""
 
-    def started(context: Context) -> list[Action]:
+    def actions(context: Context) -> list[Action]:
         called = perform(context, simulator)
         if called not in SPAWNERS:
             raise UsageError(unknown("simulator", called, SPAWNERS))
-        its = robot_of(context, Of(robot, fleet))
+        its = robot_of(context, RobotRef(robot, fleet))
         arguments = its.spawn_arguments if called == "gz" else its.classic_arguments
         return [_program(SPAWNERS[called], arguments)]
 
-    return _later(started, action)
+    return _later(actions, action)
 
 
 def place(robot: Text = None, fleet: Text = None, **action: Any) -> Action:
-    """The static transform of a robot's pose, where one is needed."""
+    """The static transform of a robot's start pose, if one is needed."""
 
-    def started(context: Context) -> list[Action]:
-        arguments = robot_of(context, Of(robot, fleet)).transform_arguments
+    def actions(context: Context) -> list[Action]:
+        arguments = robot_of(context, RobotRef(robot, fleet)).transform_arguments
         return [_program(PLACER, arguments)] if arguments else []
 
-    return _later(started, action)
+    return _later(actions, action)
 
 
 @cache
 def substitution() -> Any:
-    """The class of the substitutions here."""
+    """The class of the substitutions of this room."""
     from launch import Substitution as Base
 
     class Multibot(Base):  # type: ignore[misc]
-        """Words about a robot, known when the launch file runs."""
+        """A value about a robot, known when the launch file runs."""
 
-        def __init__(self, words: Sequence[Text], of: Of) -> None:
+        def __init__(self, words: Sequence[Text], of: RobotRef) -> None:
             super().__init__()
             self.words, self.of = words, of
 
         def perform(self, context: Context) -> str:
-            return _said(context, [perform(context, it) for it in self.words], self.of)
+            return _value_of(context, [perform(context, it) for it in self.words], self.of)
 
     return Multibot
 
@@ -220,7 +220,7 @@ def node_class() -> Any:
 
 
 def action_options(entity: Any, parser: Any) -> dict[str, Any]:
-    """What every action takes from an XML or YAML launch file: its condition."""
+    """The options of every action in an XML or YAML launch file, such as its condition."""
     from launch import Action as Base
 
     options: dict[str, Any] = Base.parse(entity, parser)[1]
@@ -228,7 +228,7 @@ def action_options(entity: Any, parser: Any) -> dict[str, Any]:
 
 
 def expose(substitutions: Mapping[str, Any], actions: Mapping[str, Any]) -> None:
-    """Make parsing functions known to the launch files of every frontend."""
+    """Register parsing functions for XML and YAML launch files."""
     from launch.frontend import expose_action, expose_substitution
 
     for name, parse in substitutions.items():
@@ -238,8 +238,8 @@ def expose(substitutions: Mapping[str, Any], actions: Mapping[str, Any]) -> None
 
 
 def _node(robot: LoadedRobot, name: str, files: list[str], options: Mapping[str, Any]) -> Action:
-    """Node's own remappings and parameters are where they win: rcl takes the first rule that matches,
-    and the last value."""
+    """The Node; its own remappings come first and its parameters last, since rcl applies the first
+    rule that matches and the last value."""
     given = {
         "name": robot.table.name(name),
         "namespace": robot.table.namespace(name),
@@ -255,13 +255,13 @@ def _program(found: tuple[str, str], arguments: list[str]) -> Action:
 
 
 def _own_file(context: Context, robot: LoadedRobot, node: str, describe: bool) -> list[str]:
-    """The path of a file with the node's description and start, where it has one."""
+    """The path of a file with the node's description and start pose, if it needs one."""
     values = robot.start_parameters(node)
     if describe:
         values["robot_description"] = robot.description
     if not values:
         return []
-    # JSON is YAML to rcl, and its strings are never taken for something else.
+    # rcl reads JSON as YAML, and never takes its strings for another type.
     data = {robot.table.full_name(node): {"ros__parameters": values}}
     text = json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
     return [_written(context, robot, f"{node.replace('/', '_')}.{_OWN}", text)]
@@ -281,8 +281,8 @@ def _later(function: Callable[[Context], list[Action]], action: Mapping[str, Any
     return OpaqueFunction(function=function, **action)
 
 
-def _said(context: Context, words: Sequence[str], of: Of) -> str:
-    options = [it for it in words if it.partition(":=")[0] in Of._fields and ":=" in it]
+def _value_of(context: Context, words: Sequence[str], of: RobotRef) -> str:
+    options = [it for it in words if it.partition(":=")[0] in RobotRef._fields and ":=" in it]
     of = of._replace(**dict(it.split(":=", 1) for it in options))
     word, name = (*(it for it in words if it not in options), "", "")[:2]
     if word == FILE:
@@ -292,51 +292,27 @@ def _said(context: Context, words: Sequence[str], of: Of) -> str:
     return WORDS[word](robot_of(context, of), name)
 
 
-def _pose(robot: LoadedRobot, axis: str) -> str:
-    values = (robot.pose or Pose())._asdict()
-    if axis not in values:
-        raise UsageError(f"$(multibot pose {axis}): {unknown('axis', axis, values)}")
-    return str(values[axis])
-
-
-WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
-    {
-        "name": lambda robot, _: robot.name,
-        "namespace": lambda robot, _: robot.namespace,
-        "model": lambda robot, _: robot.model,
-        "pose": _pose,
-        "description": lambda robot, _: robot.description,
-        "srdf": lambda robot, _: robot.srdf,
-        "frame": LoadedRobot.frame,
-        "joint": LoadedRobot.joint,
-        "topic": LoadedRobot.topic,
-        "node": lambda robot, name: robot.table.full_name(name),
-    }
-)
-
-
 def _listed(context: Context, names: Text) -> list[str]:
-    """Names with commas between, or a list of them; of a list with substitutions launch makes one
-    text."""
+    """Names separated by commas, or a list; launch joins a list with substitutions into one text."""
     several = not isinstance(names, str) and isinstance(names, Sequence)
     if several and all(isinstance(it, str) for it in names):
         return list(names)
     return [it for it in map(str.strip, perform(context, names).split(",")) if it]
 
 
-def _nobody(context: Context, of: Of) -> bool:
+def _is_for_all(context: Context, of: RobotRef) -> bool:
     return of.robot is None and ROBOT not in context.launch_configurations
 
 
 def _scoped(context: Context, key: str, what: str) -> str:
     if key not in context.launch_configurations:
-        hint = f"give it {what}, or put it into multibot_robots or each_robot"
-        raise UsageError(f"it is not said which {what} is meant; {hint}")
+        hint = f"set {what}, or put it into multibot_robots or each_robot"
+        raise UsageError(f"no {what} is given; {hint}")
     return str(context.launch_configurations[key])
 
 
 def _of_launch(context: Context, key: str, make: Callable[[], Any]) -> Any:
-    """What a launch keeps under ``key`` as long as it runs."""
+    """The value that a launch keeps under ``key`` while it runs."""
     known = context.get_locals_as_dict()
     if key not in known:
         context.extend_globals({key: make()})
@@ -353,7 +329,7 @@ def _written(context: Context, robot: LoadedRobot | None, file: str, text: str) 
 
 
 def _folder(context: Context) -> TemporaryDirectory[str]:
-    """A folder that is removed at the shutdown of a launch, or with its context if that never comes."""
+    """A folder that is removed when the launch shuts down, or at the latest with its context."""
     from launch.event_handlers import OnShutdown
 
     folder = TemporaryDirectory(prefix="multibot_launch_")
@@ -365,8 +341,8 @@ def _folder(context: Context) -> TemporaryDirectory[str]:
 def _warn(context: Context, findings: Iterable[Finding]) -> None:
     from launch.logging import get_logger
 
-    told: set[Finding] = _of_launch(context, _TOLD, set)
+    logged: set[Finding] = _of_launch(context, _LOGGED, set)
     for finding in findings:
-        if finding not in told:
-            told.add(finding)
+        if finding not in logged:
+            logged.add(finding)
             get_logger("multibot").warning(str(finding))

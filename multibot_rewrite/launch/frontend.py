@@ -1,7 +1,7 @@
-"""What XML and YAML launch files can say: ``$(multibot ...)``, and actions called ``multibot_...``.
+"""XML and YAML launch files: ``$(multibot ...)``, and the actions ``multibot_...``.
 
-launch imports this by the entry point ``launch.frontend.launch_extension``; without launch it is of
-no use and does nothing.
+launch imports this through the entry point ``launch.frontend.launch_extension``; without launch it
+does nothing.
 """
 
 from __future__ import annotations
@@ -10,15 +10,16 @@ from collections.abc import Sequence
 from typing import Any
 
 from multibot_rewrite import launch
+from multibot_rewrite.launch.robot_words import WORDS
 
-# What the fleet says of a node: a launch file that says it too means something else.
-_DECIDED = ("name", "namespace")
+# The fleet decides these; a launch file that sets them would contradict it.
+_FROM_THE_FLEET = ("name", "namespace")
 
 
 def words(data: Sequence[launch.Text]) -> tuple[Any, dict[str, Any]]:
     """``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
     if not data:
-        raise ValueError(f"$(multibot) needs a word: {', '.join((*launch.WORDS, launch.FILE))}")
+        raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, launch.FILE))}")
     return launch.substitution(), {"words": data, "of": launch.HERE}
 
 
@@ -29,7 +30,7 @@ def robots(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
         **_texts(entity, parser, "fleet", "robots"),
     }
     if "fleet" not in given:
-        raise ValueError("multibot_robots: say which fleet: fleet=FILE")
+        raise ValueError("multibot_robots: the fleet is missing; add fleet=FILE")
     children = entity.children
     # An action runs once, so each robot needs its own.
     given["make"] = lambda robot: [parser.parse_action(child) for child in children]
@@ -40,9 +41,9 @@ def node(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
     """``multibot_node node= [files=] [describe=] [robot=] [fleet=]`` and what ``node`` takes, see
     ``launch.node``."""
     _, given = launch.node_class().parse(entity, parser)
-    for word in _DECIDED:
+    for word in _FROM_THE_FLEET:
         if word in given:
-            raise ValueError(f"multibot_node: the fleet says its {word}; leave {word}= out")
+            raise ValueError(f"multibot_node: {word} comes from the fleet file; remove {word}=")
     name = parser.parse_substitution(entity.get_attr("node"))
     describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
     texts = _texts(entity, parser, "files", "robot", "fleet")
@@ -67,7 +68,7 @@ def place(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
 
 
 def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
-    """The attributes that are there, with their substitutions."""
+    """The attributes that are set, with their substitutions."""
     found = {name: entity.get_attr(name, optional=True) for name in names}
     return {name: parser.parse_substitution(it) for name, it in found.items() if it is not None}
 

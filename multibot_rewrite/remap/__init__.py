@@ -1,1 +1,1 @@
-"""Remap tables: what every node of every robot must be told, as data, in the forms people use."""
+"""Remap tables: the remap rules and resolved names of every node of every robot, in several formats."""

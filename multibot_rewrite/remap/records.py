@@ -1,4 +1,4 @@
-"""Frozen records of the remap table: what nodes ask for, the rules they get, where names lead."""
+"""Records of the remap table: nodes and their endpoints, remap rules, resolved names."""
 
 from __future__ import annotations
 
@@ -11,16 +11,15 @@ ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
 
 
 class Endpoint(NamedTuple):
-    """A topic, service or action as a node's code asks for it, before any rule.
+    """A topic, service or action in a node's code, before any remap rule.
 
-    ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic,
-    which brings its image_transport siblings. ``fixed`` says why no rule reaches it; else empty.
-    ``parameter`` is the node parameter that sets the name, if one does.
-    ``also`` are other types it has, by parameter or release. ``when`` is the condition under which
-    it is there, empty for always. ``helper`` tells that a helper node with a name of its own asks
-    for it, in the same process: a rule for the whole process reaches it, one for this node does
-    not. ``remapped`` is what the stack's usual launch file makes of the name by a rule of its own:
-    a table's rule has to lead there, since only the first match counts.
+    ``name`` is relative, absolute or private (``~/x``). ``transport`` is true for an image topic
+    with image_transport siblings. ``fixed`` says why no rule reaches it; else empty. ``parameter`` is
+    the node parameter that sets the name, if any. ``also`` are other types, by parameter or release.
+    ``when`` is the condition under which it exists, empty for always. ``helper`` is true if a helper
+    node in the same process uses it: a rule for the whole process reaches it, one for this node does
+    not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
+    rule must lead there, since only the first match counts.
     """
 
     kind: str
@@ -37,21 +36,21 @@ class Endpoint(NamedTuple):
     remapped: str = ""
 
 
-class Frame(NamedTuple):
-    """A parameter that holds a frame id, which no remap rule reaches, and its default."""
+class FrameParameter(NamedTuple):
+    """A parameter that holds a frame id, and its default; no remap rule reaches frame ids."""
 
     parameter: str
     default: str
 
 
 class NodeFacts(NamedTuple):
-    """What is known of a node: its default name, its package, and what it asks for.
+    """A known node: its default name, its package, and its endpoints.
 
-    A name with slashes is a node in a namespace of its own below the robot's, as costmaps are.
-    ``shared`` tells that one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
+    A name with slashes is a node in its own namespace below the robot's, such as a costmap.
+    ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
-    always. ``frames`` and ``fixed`` are what no rule reaches beside the endpoints. ``sends`` are the
-    transforms it sends, as the parameters that hold parent and child.
+    always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes, as
+    the parameters that hold parent and child.
     """
 
     name: str
@@ -61,16 +60,16 @@ class NodeFacts(NamedTuple):
     note: str = ""
     host: str = ""
     when: str = ""
-    frames: tuple[Frame, ...] = ()
+    frames: tuple[FrameParameter, ...] = ()
     fixed: tuple[str, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
 
 
-class Rule(NamedTuple):
+class NodeRule(NamedTuple):
     """One remap rule of one robot's node, as rcl takes it: ``source:=target``.
 
-    ``node`` is the stack's name of it, without the robot; ``kind`` is that of the name it is for,
-    empty where only the rule is known; ``why`` says what would go wrong without it.
+    ``node`` is its name in the stack, without the robot; ``kind`` is the kind of name that it is for,
+    empty if that is not known; ``why`` says what would go wrong without it.
     """
 
     robot: str
@@ -81,10 +80,10 @@ class Rule(NamedTuple):
     why: str
 
 
-class Name(NamedTuple):
-    """Where an endpoint of a robot's node leads once the rules are in force.
+class ResolvedName(NamedTuple):
+    """An endpoint of a robot's node, and its name with the remap rules.
 
-    ``node`` and ``name`` are fully qualified.
+    ``node`` and ``name`` are absolute.
     """
 
     robot: str
@@ -94,7 +93,7 @@ class Name(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """What a table cannot do or does wrongly; an error means two robots would meet."""
+    """What a table cannot do or does wrongly; an error means that two robots share a name."""
 
     code: str
     level: str
@@ -105,19 +104,19 @@ class Problem(NamedTuple):
 
 
 class NodeTable(NamedTuple):
-    """One node of one robot: its namespace and name, and its rules in the order they are given."""
+    """One node of one robot: its namespace, its name, and its rules in order."""
 
     robot: str
     node: str
     namespace: str
     name: str
-    rules: tuple[Rule, ...]
+    rules: tuple[NodeRule, ...]
 
 
 class Table(NamedTuple):
-    """The table of a fleet."""
+    """The remap table of a fleet."""
 
     layout: str
     nodes: tuple[NodeTable, ...]
-    names: tuple[Name, ...]
+    names: tuple[ResolvedName, ...]
     problems: tuple[Problem, ...]

@@ -1,6 +1,6 @@
-"""Known nodes and stacks of nodes, from ``nodes.yaml`` and ``stacks.yaml`` and files like them.
+"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``stacks.yaml`` and files of users.
 
-``python -m multibot_rewrite.remap.stacks`` prints the reference page of them.
+``python -m multibot_rewrite.remap.stacks`` prints their reference page.
 """
 
 from __future__ import annotations
@@ -10,28 +10,28 @@ from functools import lru_cache
 from importlib.resources import files
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.known import Library, extended, stack_of
+from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
 
 BUILT_IN = ("nodes.yaml", "stacks.yaml")
 
 
 def load_nodes() -> dict[str, NodeFacts]:
-    """Name -> facts of every built-in node."""
+    """Every built-in node by name."""
     return dict(built_in().nodes)
 
 
 @lru_cache
 def load_stack(name: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a built-in stack, or a built-in node; UsageError if there is none."""
+    """The nodes of a built-in stack, or a built-in node; UsageError for an unknown name."""
     return stack_of(built_in(), name)
 
 
-def user_stack(path: str) -> Library:
-    """The built-in nodes and stacks and those of a file; ``stack_of`` takes a stack out of it.
+def user_stack(path: str) -> NodeLibrary:
+    """The built-in nodes and stacks and those of a file; ``stack_of`` selects a stack.
 
-    What the file says anew of a built-in node counts in the file's own stacks. Raises UsageError,
-    with file and line, for whatever is wrong in it.
+    A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError
+    with file and line for errors in the file.
     """
     try:
         with open(path, encoding="utf-8-sig") as file:
@@ -40,16 +40,16 @@ def user_stack(path: str) -> Library:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    return extended(built_in(), text, path)
+    return extend(built_in(), text, path)
 
 
 @lru_cache
-def built_in() -> Library:
-    """What this package knows."""
-    library = Library({}, {}, {})
+def built_in() -> NodeLibrary:
+    """The nodes and stacks that this package knows."""
+    library = NodeLibrary({}, {}, {})
     for name in BUILT_IN:
         text = files("multibot_rewrite.remap").joinpath(name).read_text(encoding="utf-8")
-        library = extended(library, text, name)
+        library = extend(library, text, name)
     return library
 
 

@@ -1,26 +1,26 @@
-"""The reference page of nodes and stacks: what ``python -m multibot_rewrite.remap.stacks`` prints."""
+"""The reference page of nodes and stacks, printed by ``python -m multibot_rewrite.remap.stacks``."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.remap.known import Library, Stack
+from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 
 HEAD = """\
 # Nodes and stacks
 
-What known nodes ask for, and which are started together; generated from
-`multibot_rewrite/remap/nodes.yaml` and `stacks.yaml` by
+The topics, services and actions of known nodes, and the stacks of nodes that are started together.
+Generated from `multibot_rewrite/remap/nodes.yaml` and `stacks.yaml` by
 `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
 
-A stack is named by `--stack`; a single node may be named there, too. Names are as code writes them:
-`scan` follows the namespace, `/tf` does not, `~/odom` stands below the node's name. A name in `<>`
-is made at run time, so no rule can be written before it is known: a stack says it under `names`.
-*Only if* is the condition under which an endpoint is there. *Leads to* is what the usual launch
-files make of a name by a rule of their own.
+Select a stack, or a single node, with `--stack`. Names are those in the nodes' code: `scan` is
+resolved in the namespace, `/tf` is absolute, `~/odom` is below the node's name. A name in `<>` is
+made at run time, so no remap rule can be written before it is known: a stack sets it under `names`.
+*Only if* is the condition under which the node has the name. *Remapped to* is the name after the
+remap rules of the usual launch files.
 
-A file of your own adds nodes and stacks in the same shape, for example:
+Add your own nodes and stacks in a file of the same shape, for example:
 
 ```yaml
 nodes:
@@ -44,15 +44,15 @@ stacks:
 """
 REACH = """\
 
-## What no remap rule reaches
+## Names that no remap rule reaches
 
 | node | what | why |
 |---|---|---|
 """
-HELPER = "a helper node asks for it: only a rule for the whole process counts"
+HELPER = "a helper node uses it: only a rule for the whole process reaches it"
 
 
-def page(library: Library) -> str:
+def page(library: NodeLibrary) -> str:
     """The whole page as Markdown."""
     parts = [HEAD, "\n## Stacks\n"]
     parts += [_stack(name, stack) for name, stack in library.stacks.items()]
@@ -60,26 +60,26 @@ def page(library: Library) -> str:
     parts += [row for node in library.nodes.values() for row in _reach(node)]
     parts.append("\n## Nodes\n")
     parts += [_node(node, library) for node in library.nodes.values()]
-    parts.append("\n## Parts\n\nEndpoints that many nodes have.\n")
+    parts.append("\n## Parts\n\nGroups of names that many nodes have.\n")
     parts += [f"\n### {name}\n{_table(found)}" for name, found in library.parts.items()]
     return "".join(parts)
 
 
 def _stack(name: str, stack: Stack) -> str:
     lines = [f"\n### {name}\n\n{stack.about}.\n\n"]
-    lines += [f"- all of {other}\n" for other in stack.include]
+    lines += [f"- all nodes of {other}\n" for other in stack.include]
     lines += [f"- {_member(node)}\n" for node in stack.nodes]
     return "".join(lines)
 
 
 def _member(node: NodeFacts) -> str:
-    told = [f"`{e.name}` leads to `{e.remapped}`" for e in node.endpoints if e.remapped]
-    told += [f"only if: {node.when}"] * bool(node.when) + ["for all robots"] * node.shared
-    return f"`{node.name}`" + (f": {', '.join(dict.fromkeys(told))}" if told else "")
+    notes = [f"`{e.name}` remapped to `{e.remapped}`" for e in node.endpoints if e.remapped]
+    notes += [f"only if: {node.when}"] * bool(node.when) + ["for all robots"] * node.shared
+    return f"`{node.name}`" + (f": {', '.join(dict.fromkeys(notes))}" if notes else "")
 
 
 def _reach(node: NodeFacts) -> Iterator[str]:
-    """The rows of what stays as it is."""
+    """The rows of names that no rule reaches."""
     for text in node.fixed:
         yield _row([f"`{node.name}`", "", _plain(text)])
     for frame in node.frames:
@@ -91,16 +91,16 @@ def _reach(node: NodeFacts) -> Iterator[str]:
             yield _row([f"`{node.name}`", f"{endpoint.kind} `{endpoint.name}`", why])
 
 
-def _node(node: NodeFacts, library: Library) -> str:
-    told = [f"package {node.package}"] * bool(node.package)
-    told += [f"in the process of {node.host}"] * bool(node.host)
-    told += ["one for all robots"] * node.shared + [node.note] * bool(node.note)
-    # A part is told by its name; its own table says the rest.
+def _node(node: NodeFacts, library: NodeLibrary) -> str:
+    facts = [f"package {node.package}"] * bool(node.package)
+    facts += [f"in the process of {node.host}"] * bool(node.host)
+    facts += ["one for all robots"] * node.shared + [node.note] * bool(node.note)
+    # A part is listed by name; its own table has the rest.
     parts = {name: found for name, found in library.parts.items() if {*found} <= {*node.endpoints}}
-    told += [f"with {', '.join(parts)}"] * bool(parts)
+    facts += [f"with {', '.join(parts)}"] * bool(parts)
     folded = {endpoint for found in parts.values() for endpoint in found}
     own = [endpoint for endpoint in node.endpoints if endpoint not in folded]
-    return f"\n### {node.name}\n\n{_plain('; '.join(told))}\n{_table(own) if own else ''}"
+    return f"\n### {node.name}\n\n{_plain('; '.join(facts))}\n{_table(own) if own else ''}"
 
 
 def _table(endpoints: Iterable[Endpoint]) -> str:
@@ -113,7 +113,7 @@ def _table(endpoints: Iterable[Endpoint]) -> str:
 def _cells(endpoint: Endpoint) -> list[str]:
     types = " or ".join(filter(None, (endpoint.type, *endpoint.also)))
     notes = [endpoint.note] * bool(endpoint.note) + ["image_transport"] * endpoint.transport
-    notes += [f"leads to {endpoint.remapped}"] * bool(endpoint.remapped)
+    notes += [f"remapped to {endpoint.remapped}"] * bool(endpoint.remapped)
     parameter = f"`{endpoint.parameter}`" if endpoint.parameter else ""
     name = f"{endpoint.role} {endpoint.kind}", f"`{endpoint.name}`"
     return [*name, types, parameter, _plain(endpoint.when), _plain("; ".join(notes))]

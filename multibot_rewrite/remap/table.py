@@ -1,7 +1,7 @@
-"""Robots, nodes and a naming policy -> the rules each node needs, and where its names then lead.
+"""Robots, nodes and a naming policy -> the remap table: each node's rules and resolved names.
 
-A rule is made only where a name would otherwise be the same for every robot. What comes out is
-checked by resolving every name with the rules as rcl does (``rosnames``), not by trusting them.
+A rule is made only for a name that would otherwise be the same for every robot. The table is checked
+by resolving every name with its rules as rcl does (``rosnames``), not by trusting the rules.
 """
 
 from __future__ import annotations
@@ -16,11 +16,11 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     TOPIC,
     Endpoint,
-    Name,
     NodeFacts,
+    NodeRule,
     NodeTable,
     Problem,
-    Rule,
+    ResolvedName,
     Table,
 )
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
@@ -33,12 +33,12 @@ ACTION_PARTS = (
     ("_action/feedback", TOPIC),
     ("_action/status", TOPIC),
 )
-# Topics that image_transport's plugins make of a base name.
+# Topics that image_transport's plugins derive from a base name.
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
-# Stands for a robot that is not there: one robot alone meets nobody.
+# A stand-in for a second robot: names of a single robot cannot collide.
 PROBE = "multibot_probe"
 RUN_TIME = "the name is made at run time"
-SAME = "the same name for every robot otherwise"
+SAME = "all robots would share this name otherwise"
 Pairs = Sequence[tuple[NodeFacts, NodeTable]]
 NOTHING: Mapping[str, Pairs] = {}
 
@@ -49,7 +49,7 @@ def build_table(
     naming: Naming,
     plugins: Mapping[str, Pairs] = NOTHING,
 ) -> Table:
-    """The table of a fleet, nodes for all robots once, and everything that is wrong with it.
+    """The remap table of a fleet with its problems; nodes for all robots are in it once.
 
     ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
     """
@@ -61,7 +61,7 @@ def _build(
     robots: Sequence[str], nodes: Sequence[NodeFacts], naming: Naming, plugins: Mapping[str, Pairs]
 ) -> Table:
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
-    # Made once: another robot's differs in nothing but the robot's name.
+    # Made once: another robot's table differs only in the robot's name.
     others = frozenset(node.name for node in nodes if not node.shared)
     own = [(node, node_table(PROBE, node, naming, others)) for node in nodes if not node.shared]
     meant = list(names_of(own))
@@ -70,11 +70,11 @@ def _build(
         for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
     }
     problems = [
-        *_fixed([node for node, _ in own], naming),
-        *_useless(own),
-        *_meeting(names, naming),
+        *_unreachable([node for node, _ in own], naming),
+        *_useless_rules(own),
+        *_collisions(names, naming),
     ]
-    problems += [found for robot in robots for found in _useless(plugins.get(robot, ()))]
+    problems += [found for robot in robots for found in _useless_rules(plugins.get(robot, ()))]
     kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]
     for robot in robots:
@@ -83,31 +83,33 @@ def _build(
 
 
 def joined(table: Table, other: Table, naming: Naming) -> Table:
-    """Two tables of different robots as one; nodes for all robots are there once."""
+    """Two tables of different robots as one; nodes for all robots are in it once."""
     names = tuple(dict.fromkeys((*table.names, *other.names)))
-    by_robot: dict[str, list[Name]] = {}
+    by_robot: dict[str, list[ResolvedName]] = {}
     for name in names:
         if name.robot:
             by_robot.setdefault(name.robot, []).append(name)
     known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
-    met = (it for it in _meeting(by_robot, naming) if (it.code, it.message) not in known)
+    met = (it for it in _collisions(by_robot, naming) if (it.code, it.message) not in known)
     problems = tuple(dict.fromkeys((*table.problems, *other.problems, *met)))
     return Table(table.layout, tuple(dict.fromkeys((*table.nodes, *other.nodes))), names, problems)
 
 
-def _renamed(names: Iterable[Name], robot: str) -> list[Name]:
-    """The probe's names as another robot has them."""
+def _renamed(names: Iterable[ResolvedName], robot: str) -> list[ResolvedName]:
+    """The probe's names, renamed for another robot."""
     return [
-        Name(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
+        ResolvedName(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
         for _, node, endpoint, name in names
     ]
 
 
 def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
-    """The probe's nodes as another robot has them."""
+    """The probe's nodes, renamed for another robot."""
     for _, (_, node, namespace, name, rules) in pairs:
         own = tuple(
-            Rule(robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why)
+            NodeRule(
+                robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why
+            )
             for rule in rules
         )
         yield NodeTable(
@@ -120,14 +122,14 @@ def node_table(
 ) -> NodeTable:
     """Namespace, name and rules of one robot's node; a node for all robots stays as it is.
 
-    ``others`` are the names of the robot's nodes: what stands below one of them follows its name.
+    ``others`` are the robot's nodes: a name below one of them is renamed with it.
     """
     if node.shared:
         return NodeTable("", node.name, "/", node.name, ())
     namespace, name = placed(robot, node.name, naming)
-    # Below a namespace of its own a relative target would not leave it.
+    # In a node's own namespace a relative target would stay below it.
     root = f"/{robot}/" if namespace.count("/") > 1 else ""
-    rules: dict[str, Rule] = {}
+    rules: dict[str, NodeRule] = {}
     for endpoint in (it for it in node.endpoints if not it.fixed):
         meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
         for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
@@ -138,13 +140,13 @@ def node_table(
                 target = f"{root}{target}" if root and naming.topics == NAMESPACE else target
                 why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
                 match = expand(source, namespace, name)
-                rules.setdefault(match, Rule(robot, node.name, source, target, "", why))
+                rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()))
 
 
 def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
-    """Namespace and name that a robot's node runs under."""
-    # A costmap is a node below its own namespace, whatever robot it is of.
+    """The namespace and name that a robot's node runs under."""
+    # A costmap is a node in its own namespace, whatever its robot.
     above, _, name = node.strip("/").rpartition("/")
     if naming.topics == NAMESPACE:
         return "/" + "/".join(filter(None, [robot, above])), name
@@ -153,9 +155,9 @@ def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
 
 
 def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
-    """The graph names an endpoint is made of, each with its kind: rcl knows no actions.
+    """The names that rcl sees for an endpoint, with their kinds: an action is services and topics.
 
-    A name in ``<>`` is made at run time: there is none to begin with.
+    A name in ``<>`` is made at run time, so it yields none.
     """
     name = endpoint.name
     if "<" in name:
@@ -170,9 +172,9 @@ def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
 
 
 def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
-    """What a rule makes of ``name``; empty where none is needed.
+    """The target of the rule for ``name``; empty if no rule is needed.
 
-    Targets are relative where a namespace serves: the rule is then the same for every robot.
+    With namespaces targets are relative, so the rule is the same for every robot.
     """
     bare = name.strip("/")
     if name.startswith("~") or bare in naming.shared_topics:
@@ -185,7 +187,7 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
 
 
 def _family(name: str) -> tuple[str, str]:
-    """The name that is spelled, and what others look for below it: an action's parts and an image's
+    """The name that is renamed, and the rest below it: an action's parts and an image's
     transports are found from the one name alone."""
     base, action, part = name.partition("/_action/")
     if action:
@@ -195,8 +197,8 @@ def _family(name: str) -> tuple[str, str]:
 
 
 def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:
-    """A name below another of the robot's nodes, such as its private services, where that node has
-    a name of its own for each robot; else an empty string."""
+    """The target for a name below another node of the robot, such as a private service of it, if that
+    node is renamed; else empty."""
     head, slash, rest = name.strip("/").partition("/")
     if naming.topics == NAMESPACE or not slash or head not in nodes:
         return ""
@@ -204,14 +206,14 @@ def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:
     return f"{lead}{placed(robot, head, naming)[1]}/{rest}"
 
 
-def parsed(rules: Iterable[Rule]) -> tuple[RemapRule, ...]:
+def parsed(rules: Iterable[NodeRule]) -> tuple[RemapRule, ...]:
     """The rules as rcl reads them."""
     found = (parse_remap(f"{rule.source}:={rule.target}") for rule in rules)
     return tuple(rule for rule in found if rule is not None)
 
 
-def names_of(pairs: Pairs) -> Iterator[Name]:
-    """Where each name of these nodes leads."""
+def names_of(pairs: Pairs) -> Iterator[ResolvedName]:
+    """The resolved names of these nodes."""
     for node, table in pairs:
         bound = bind(table.name, table.namespace, parsed(table.rules))
         bare = bind(table.name, table.namespace, ())
@@ -219,11 +221,11 @@ def names_of(pairs: Pairs) -> Iterator[Name]:
         for endpoint in (it for it in node.endpoints if "<" not in it.name):
             kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
             found = resolve_bound(endpoint.name, kind, bare if endpoint.fixed else bound)
-            yield Name(table.robot, f"{root}/{table.name}", endpoint, found)
+            yield ResolvedName(table.robot, f"{root}/{table.name}", endpoint, found)
 
 
-def _fixed(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
-    """Names that need a rule which would do nothing; the same for every robot."""
+def _unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
+    """Names that every robot would share and that no remap rule reaches."""
     for node in nodes:
         for endpoint in node.endpoints:
             reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
@@ -235,30 +237,35 @@ def _fixed(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Problem]:
 
 
 def _needed(endpoint: Endpoint, naming: Naming) -> bool:
-    """Would the name be every robot's? One made at run time follows a namespace if it is relative."""
+    """Would all robots share this name? A relative name made at run time follows the namespace."""
     if "<" in endpoint.name:
         return naming.topics != NAMESPACE or endpoint.name.startswith("/")
     return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
 
 
-def _meeting(names: dict[str, list[Name]], naming: Naming) -> Iterator[Problem]:
-    """Names of two robots that come out alike without being shared."""
-    first: dict[tuple[str, str], Name] = {}
-    told = set()
+def _collisions(names: dict[str, list[ResolvedName]], naming: Naming) -> Iterator[Problem]:
+    """Names that two robots would have though they are not shared."""
+    first: dict[tuple[str, str], ResolvedName] = {}
+    reported = set()
     shared = {f"/{topic}" for topic in naming.shared_topics}
     for name in (name for found in names.values() for name in found):
         key = ("" if name.endpoint.kind != SERVICE else SERVICE, name.name)
         other = first.setdefault(key, name)
-        if other.robot == name.robot or name.name in shared or name.endpoint.fixed or key in told:
+        if (
+            other.robot == name.robot
+            or name.name in shared
+            or name.endpoint.fixed
+            or key in reported
+        ):
             continue
-        told.add(key)
-        message = f"{name.name} is another robot's as well: of {other.node} and {name.node}"
-        hint = "give each its own name, or share it: --shared-topics"
+        reported.add(key)
+        message = f"two robots would share {name.name}: {other.node} and {name.node} use it"
+        hint = "remap it for each robot, or allow it with --shared-topics"
         yield Problem("MR102", ERROR, other.robot, name.node, message, hint)
 
 
-def _useless(pairs: Pairs) -> Iterator[Problem]:
-    """Rules that match nothing their node asks for, and rules behind one that matches first."""
+def _useless_rules(pairs: Pairs) -> Iterator[Problem]:
+    """Rules that match no name of their node, and rules after one that matches first."""
     for node, table in pairs:
         bare = bind(table.name, table.namespace, ())
         robot = "" if table.robot == PROBE else table.robot
@@ -268,11 +275,11 @@ def _useless(pairs: Pairs) -> Iterator[Problem]:
         for rule in table.rules:
             match = resolve_bound(rule.source, rule.kind or TOPIC, bare)
             kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
-            said = f"{rule.source}:={rule.target}"
+            text = f"{rule.source}:={rule.target}"
             if match in seen:
-                message = f"{said} never counts: an earlier rule matches first"
-                yield Problem("MR104", ERROR, robot, node.name, message, "leave it out")
+                message = f"{text} has no effect: an earlier rule matches first"
+                yield Problem("MR104", ERROR, robot, node.name, message, "remove it")
             elif full.isdisjoint((kind, match) for kind in kinds):
-                message = f"{said} matches nothing this node asks for"
-                yield Problem("MR103", WARNING, robot, node.name, message, "leave it out")
+                message = f"{text} matches no name of this node"
+                yield Problem("MR103", WARNING, robot, node.name, message, "remove it")
             seen.add(match)

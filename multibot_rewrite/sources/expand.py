@@ -84,7 +84,17 @@ def _expanded(
         inner = alike((xacro.filestack or [path])[-1], path)
         inner = path if inner == os.path.normpath(path) else inner
         raise InputError(_message(path, inner, error, trace or Trace())) from error
+    _check_root(path, document.documentElement)
     return text.encode(), document
+
+
+def _check_root(path: str, root: Any) -> None:
+    """xacro expands what is inside the root, and drops the declaration of its own prefix."""
+    if root.prefix == "xacro":
+        raise InputError(
+            f"{path}: the root element is <{root.tagName}>, which xacro does not expand; "
+            "put everything inside a <robot> element"
+        )
 
 
 @contextmanager

@@ -9,9 +9,7 @@ import shutil
 import signal
 import stat
 import subprocess
-import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -27,8 +25,11 @@ from postfix_command import (
     run_on_terminal,
     temporaries,
 )
+from waiting import wait_until
 
 import multibot_rewrite
+
+pytestmark = pytest.mark.slow
 
 OPTIONS = (
     (),
@@ -51,14 +52,6 @@ def run_shell(folder: Path, redirection: str, *words: str) -> Result:
 def names(data: bytes, tag: str) -> list[str]:
     """The names of the root's children of that tag."""
     return [str(element.get("name")) for element in etree.fromstring(data).findall(tag)]
-
-
-def wait_until(there: Callable[[], bool]) -> None:
-    """Wait for something another process does."""
-    end = time.monotonic() + PATIENCE
-    while not there():
-        assert time.monotonic() < end, "waited in vain"
-        time.sleep(0.01)
 
 
 @pytest.fixture

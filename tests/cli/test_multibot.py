@@ -139,6 +139,7 @@ def test_the_version(multibot: Multibot) -> None:
     assert multibot("--version").out == f"multibot {multibot_rewrite.__version__}\n"
 
 
+@pytest.mark.slow
 def test_a_closed_pipe_is_one_line(folder: Path) -> None:
     with subprocess.Popen(
         [*COMMAND, "vocabulary"], stdout=subprocess.PIPE, stderr=subprocess.PIPE

@@ -26,7 +26,7 @@ from multibot_rewrite.graph import environment
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS
 from multibot_rewrite.plural import plural
-from multibot_rewrite.remap.forms import FORMS
+from multibot_rewrite.remap.table_formats import FORMS
 from multibot_rewrite.rewriters.vocabulary.grammar import TYPES
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")

@@ -7,12 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from multibot_rewrite.companions.behavior_tree import behavior_tree
+from multibot_rewrite.companions.behavior_tree import rewrite_behavior_tree
 from multibot_rewrite.companions.context import JAZZY, Context, make_context
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.model import Finding, InputError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 
@@ -27,8 +27,8 @@ def context(layout: str = "L2", distro: str = JAZZY, **more: str) -> Context:
 
 
 def run(text: str | bytes, it: Context) -> tuple[str, tuple[Finding, ...]]:
-    made = behavior_tree(text if isinstance(text, bytes) else text.encode(), "t.xml", it)
-    return fill(made.template, "amr", "sp"), made.findings
+    made = rewrite_behavior_tree(text if isinstance(text, bytes) else text.encode(), "t.xml", it)
+    return fill_template(made.template, "amr", "sp"), made.findings
 
 
 def tree(body: str, form: str = ' BTCPP_format="4"') -> str:
@@ -206,10 +206,10 @@ def test_bytes_around_stay() -> None:
     [
         (b"", "t.xml:1: the file is empty; a behavior tree starts with <root>"),
         (b"<root><a></root>", "t.xml:1:"),
-        (b"<robot/>", "t.xml:1: no behavior tree: it starts with <robot>"),
+        (b"<robot/>", "t.xml:1: not a behavior tree: the root is <robot>"),
         (b"<!DOCTYPE root><root/>", "DOCTYPE and entities are not accepted"),
         ("<root a='ä'/>".encode("latin-1"), "UTF-8"),
-        (b"<root a='multibotGraphHole'/>", "this tool's own"),
+        (b"<root a='multibotNamespaceSlot'/>", "reserved for this tool"),
     ],
 )
 def test_what_is_no_tree_is_one_line(data: bytes, said: str) -> None:
@@ -236,7 +236,7 @@ def test_findings(body: str, found: list[str]) -> None:
     assert [code for code, _ in codes(tree(body), context())] == found
 
 
-def test_an_unknown_frame_is_told_with_the_nearest() -> None:
+def test_an_unknown_frame_is_reported_with_the_nearest() -> None:
     text = tree('<A robot_base_frame="base_lnk"/>')
     (found,) = run(text, context("L1"))[1]
     assert found.hint == "did you mean 'base_link'?"

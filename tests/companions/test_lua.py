@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.lua import OWN_FILES, lua, lua_file, tokens_of
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.lua import OWN_FILES, frames_to_edit, rewrite_lua, tokens_of
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 
@@ -22,11 +22,11 @@ def context(layout: str = "L2") -> Context:
 
 
 def text_of(text: str, layout: str = "L2") -> str:
-    return fill(lua_file(text, "a.lua", context(layout)).template, "amr", "sp")
+    return fill_template(rewrite_lua(text, "a.lua", context(layout)).template, "amr", "sp")
 
 
 def codes(text: str, layout: str = "L2") -> list[tuple[str, int]]:
-    return [(it.code, it.line) for it in lua_file(text, "a.lua", context(layout)).findings]
+    return [(it.code, it.line) for it in rewrite_lua(text, "a.lua", context(layout)).findings]
 
 
 OPTIONS = """\
@@ -77,7 +77,7 @@ def test_plain_assignments(layout: str) -> None:
         "nil",
     ],
 )
-def test_what_is_no_plain_string_is_only_told(value: str) -> None:
+def test_what_is_not_a_plain_string_is_only_reported(value: str) -> None:
     text = f"options = {{\n  published_frame = {value},\n}}\n"
     assert text_of(text) == text
     assert ("MF451", 2) in codes(text)
@@ -106,11 +106,11 @@ def test_what_includes_of_cartographer_hold_needs_no_word() -> None:
     assert codes("".join(f'include "{name}"\n' for name in sorted(OWN_FILES))) == []
 
 
-def test_a_person_is_told_what_each_must_become() -> None:
-    found = lua(OPTIONS, "a.lua", context())
+def test_new_frames_are_listed_for_editing_by_hand() -> None:
+    found = frames_to_edit(OPTIONS, "a.lua", context())
     assert [(it.code, it.line) for it in found] == [("MF455", line) for line in (5, 6, 7, 11)]
     assert "tracking_frame = 'imu_link'" in found[0].message and "ROBOT/imu_link" in found[0].hint
-    assert lua(OPTIONS, "a.lua", context("L1")) == ()
+    assert frames_to_edit(OPTIONS, "a.lua", context("L1")) == ()
 
 
 @pytest.mark.parametrize(
@@ -125,8 +125,8 @@ def test_a_person_is_told_what_each_must_become() -> None:
     ],
 )
 def test_what_does_not_end_is_one_line(text: str, line: int) -> None:
-    with pytest.raises(InputError, match=rf"^a\.lua:{line}: no Lua: .*close it$"):
-        lua_file(text, "a.lua", context())
+    with pytest.raises(InputError, match=rf"^a\.lua:{line}: not valid Lua: .*close it$"):
+        rewrite_lua(text, "a.lua", context())
 
 
 PIECES = st.sampled_from(

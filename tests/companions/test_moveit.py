@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from paths import ROOT
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.rewrite import kind_of, moveit, with_semantics
-from multibot_rewrite.companions.moveit.sites import kinds
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.moveit.name_sites import kinds
+from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit, with_srdf
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.model import Finding, InputError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in
 
 LINKS = ("base_link", "tool0", "camera_link")
@@ -33,12 +33,12 @@ def context(layout: str = "L2", affix: str = "", srdf: bool = True, **more: str)
     facts = stack_of(built_in(), "moveit")
     naming = make_naming(layout, affix, **more)
     made = make_context(declared, naming, facts)  # type: ignore[arg-type]
-    return with_semantics(made, SRDF) if srdf else made  # type: ignore[arg-type]
+    return with_srdf(made, SRDF) if srdf else made  # type: ignore[arg-type]
 
 
 def run(text: str, it: Context, file: str = "a.yaml") -> tuple[str, tuple[Finding, ...]]:
-    made = moveit(read_yaml(text.encode(), file), it)
-    return fill(made.template, "amr", "sp"), made.findings
+    made = rewrite_moveit(read_yaml(text.encode(), file), it)
+    return fill_template(made.template, "amr", "sp"), made.findings
 
 
 def text_of(text: str, it: Context) -> str:
@@ -67,7 +67,7 @@ def test_every_kind_has_a_case() -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_kind_is_found_from_the_content(kind: str) -> None:
-    assert kind_of(read_yaml(KINDS[kind].encode(), "x.yaml")) == kind
+    assert file_kind(read_yaml(KINDS[kind].encode(), "x.yaml")) == kind
 
 
 @pytest.mark.parametrize(
@@ -85,21 +85,27 @@ def test_a_kind_is_found_from_the_content(kind: str) -> None:
     ],
 )
 def test_a_kind_by_name_or_by_dots(text: str, file: str, kind: str) -> None:
-    assert kind_of(read_yaml(text.encode(), file)) == kind
+    assert file_kind(read_yaml(text.encode(), file)) == kind
 
 
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("- a\n", "a.yaml:1: no file of MoveIt's: it is not a map"),
-        ("a\n", "a.yaml:1: no file of MoveIt's: it is not a map"),
-        ("/**:\n  ros__parameters:\n    a: 1\n", "a.yaml:2: it has ros__parameters"),
-        ("speed: fast\nheight: 1\n", "no file of MoveIt's that is known: it starts with speed"),
+        ("- a\n", "a.yaml:1: not a MoveIt file: it is not a map"),
+        ("a\n", "a.yaml:1: not a MoveIt file: it is not a map"),
+        (
+            "/**:\n  ros__parameters:\n    a: 1\n",
+            "a.yaml:2: ros__parameters makes it a parameter file",
+        ),
+        ("speed: fast\nheight: 1\n", "not a known kind of MoveIt file: it starts with speed"),
         ("{}\n", "it starts with nothing"),
-        ("arm: {kinematics_solver: multibotSpelledHole}\n", "this tool's own"),
+        ("arm: {kinematics_solver: multibotTagSlot}\n", "reserved for this tool"),
         ("joint_limits: {? |\n  j1\n : 1}\n", "not YAML"),
         ("controller_list:\n  - joints: [*a]\n", "not YAML"),
-        ("hardware_interface:\n  joints:\n    - >-\n      j1\n", "a.yaml:3: a name is a block"),
+        (
+            "hardware_interface:\n  joints:\n    - >-\n      j1\n",
+            "3: a name is written as a block",
+        ),
     ],
 )
 def test_what_is_no_file_of_moveit_is_one_line(text: str, said: str) -> None:
@@ -325,7 +331,7 @@ def test_groups_follow_the_policy_in_keys_and_values(groups: str, new: str) -> N
     assert text_of(text, it) == text.replace("group: arm", f"group: {new}")
 
 
-def test_groups_that_no_srdf_tells_of_are_told() -> None:
+def test_groups_without_an_srdf_are_reported() -> None:
     text = "arm: {kinematics_solver: a/B}\n"
     new, found = run(text, context("L2", srdf=False, groups="rename"))
     assert new == text and [it.code for it in found] == ["MF305"]
@@ -339,7 +345,7 @@ def test_virtual_joints_of_an_srdf_are_joints() -> None:
     assert codes(text, context(srdf=False)) == [("MF301", 1)]
 
 
-def test_a_name_that_the_description_lacks_is_told_once_with_the_nearest() -> None:
+def test_a_name_that_the_description_lacks_is_reported_once_with_the_nearest() -> None:
     text = "controller_list:\n  - name: a\n    joints: [j1, jj1]\n  - {name: b, joints: [jj1]}\n"
     (found,) = run(text, context("L1"))[1]
     assert (found.code, found.line, found.column) == ("MF301", 3, 18)
@@ -379,7 +385,7 @@ def test_mentions_matter_only_where_names_change() -> None:
     assert codes("arm:\n  kinematics_solver: a/B\n  favourite: j1\n", context("L1")) == []
 
 
-def test_an_alias_that_needs_two_spellings_is_refused() -> None:
+def test_an_alias_that_needs_two_new_names_is_refused() -> None:
     text = "octomap_frame: &x tool0\ncontroller_list:\n  - {name: a, joints: [*x]}\n"
     declared = context()
     both = {**declared.names.declared, "joint": {"tool0": None}}
@@ -418,7 +424,7 @@ def test_the_manager_that_moveit_asks_is_the_robots() -> None:
         assert codes(text, context("L4")) == [("MF308", line)]
 
 
-def test_another_manager_asks_nobody() -> None:
+def test_another_controller_manager_needs_no_namespace() -> None:
     text = "moveit_controller_manager: moveit_simple_controller_manager/Simple\n"
     assert text_of(text, context()) == text and codes(text, context("L4")) == []
 

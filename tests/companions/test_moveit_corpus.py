@@ -16,8 +16,8 @@ import yaml
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.rewrite import kind_of, moveit
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.naming import make_naming
@@ -100,7 +100,7 @@ def allowed(layout: str, old: str, names: Names) -> set[str]:
 
 
 def text_of(document: YamlText, context: Context) -> str:
-    return fill(moveit(document, context).template, GRAPH, SPELLED)
+    return fill_template(rewrite_moveit(document, context).template, GRAPH, SPELLED)
 
 
 def prove(path: Path, layout: str, counted: Counter[str]) -> None:
@@ -109,7 +109,7 @@ def prove(path: Path, layout: str, counted: Counter[str]) -> None:
     context = make_context(names, make_naming(**LAYOUTS[layout]), ())  # type: ignore[arg-type]
     document = read_yaml(path.read_bytes(), file)
     try:
-        kind = kind_of(document)
+        kind = file_kind(document)
         text = text_of(document, context)
     except InputError as error:
         assert "\n" not in str(error) and str(error).startswith(file)

@@ -13,19 +13,19 @@ from hypothesis import strategies as st
 from paths import ROOT
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.known import (
+from multibot_rewrite.companions.params.known_nodes import (
     KINDS,
-    built_in_params,
+    built_in_nodes,
     in_release,
-    known_params,
+    load_known_nodes,
 )
 from multibot_rewrite.companions.params.page import page
-from multibot_rewrite.companions.params.rewrite import params, without_sections
-from multibot_rewrite.companions.template import GRAPH, fill
+from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.model import Finding, InputError, UsageError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.known import extended, stack_of
+from multibot_rewrite.remap.node_library import extend, stack_of
 from multibot_rewrite.remap.stacks import built_in, load_stack
 
 LINKS = ("base_link", "base_footprint", "laser", "tool0")
@@ -53,8 +53,8 @@ def made(
     text: str, policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object
 ) -> tuple[str, tuple[Finding, ...]]:
     """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
-    companion = params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
-    return fill(companion.template, "robot1", "r1"), companion.findings
+    companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
+    return fill_template(companion.template, "robot1", "r1"), companion.findings
 
 
 def codes(findings: Iterable[Finding]) -> list[str]:
@@ -132,7 +132,7 @@ def test_rcl_would_find_every_section() -> None:
         indent = "    " if rest else "  "
         text, _ = made(f"{keys}{indent}ros__parameters:\n{indent}  x: 1\n")
         joined = "/".join(line.strip(" :/") for line in text.splitlines() if line.endswith(":"))
-        expected = full.replace(GRAPH, "robot1").strip("/")
+        expected = full.replace(NAMESPACE_SLOT, "robot1").strip("/")
         assert joined.removesuffix("/ros__parameters") == expected
 
 
@@ -154,7 +154,7 @@ def test_a_controllers_section_has_the_one_key_that_the_spawner_looks_for() -> N
         ("<robot_namespace>", "MF110"),
     ],
 )
-def test_a_section_with_a_doubtful_name_is_told(name: str, code: str) -> None:
+def test_a_section_with_a_doubtful_name_is_reported(name: str, code: str) -> None:
     assert code in codes(made(section(name, "x: 1"))[1])
 
 
@@ -166,11 +166,11 @@ def test_a_robots_name_in_a_file_is_an_error() -> None:
 
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:
-    library = extended(built_in(), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n")
+    library = extend(built_in(), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n")
     context = make_context(DECLARED, make_naming(layout="L2"), stack_of(library, "s"))  # type: ignore[arg-type]
     source = section("map_server", "topic_name: /map", "frame_id: base_link")
-    companion = params(read_yaml((source * 2).encode(), "p"), context)
-    assert fill(companion.template, "robot1", "r1") == source * 2
+    companion = rewrite_params(read_yaml((source * 2).encode(), "p"), context)
+    assert fill_template(companion.template, "robot1", "r1") == source * 2
     assert codes(companion.findings).count("MF103") == 1
 
 
@@ -181,7 +181,7 @@ def test_a_wildcard_behind_an_exact_section_wins() -> None:
     assert "MF107" not in codes(made(exact + section("/**/other", "alpha1: 0.2"))[1])
 
 
-def test_a_section_that_stands_twice_is_rewritten_twice() -> None:
+def test_a_repeated_section_is_rewritten_twice() -> None:
     text, findings = made(section("amcl", "scan_topic: /a") + section("amcl", "map_topic: /m"))
     assert text.count("/robot1/amcl:") == 2
     assert "scan_topic: /robot1/a" in text
@@ -190,7 +190,7 @@ def test_a_section_that_stands_twice_is_rewritten_twice() -> None:
     assert text.count("odom_frame_id") == 1
 
 
-def test_a_key_that_stands_twice_is_rewritten_twice() -> None:
+def test_a_repeated_key_is_rewritten_twice() -> None:
     text, findings = made(section("amcl", "scan_topic: /a", "scan_topic: /b"))
     assert "scan_topic: /robot1/a" in text
     assert "scan_topic: /robot1/b" in text
@@ -241,7 +241,7 @@ def test_a_key_that_stands_twice_is_rewritten_twice() -> None:
         (L2, "move_group", "ros_control_namespace: /", "ros_control_namespace: /robot1"),
     ],
 )  # fmt: skip
-def test_a_name_is_spelled_by_its_kind(
+def test_a_name_is_renamed_by_its_kind(
     policy: tuple[str, str], node: str, old: str, new: str
 ) -> None:
     assert value(node, old, policy) == new
@@ -261,7 +261,7 @@ def test_a_name_is_spelled_by_its_kind(
         (("constraints: {elbow: {goal: 0.1}}",), ["constraints: {r1_elbow: {goal: 0.1}}"]),
     ],
 )
-def test_keys_that_are_joints_are_spelled_nested_and_dotted(
+def test_keys_that_are_joints_are_renamed_nested_and_dotted(
     lines: tuple[str, ...], new: list[str]
 ) -> None:
     text, findings = made(section("joint_trajectory_controller", *lines))
@@ -283,7 +283,7 @@ def test_chained_controllers_keep_their_names_in_a_namespace(
     assert value("joint_trajectory_controller", line, policy) == f"command_joints: {new}"
 
 
-def test_a_controllers_type_tells_what_it_is() -> None:
+def test_a_controller_is_identified_by_its_type() -> None:
     manager = section(
         "controller_manager", "wheels:", "  type: diff_drive_controller/DiffDriveController"
     )
@@ -292,7 +292,7 @@ def test_a_controllers_type_tells_what_it_is() -> None:
     assert "tf_frame_prefix_enable: false" in text
 
 
-def test_what_a_section_sets_tells_what_it_is() -> None:
+def test_a_section_is_identified_by_its_parameters() -> None:
     lines = ("left_wheel_names: [left_wheel]", "right_wheel_names: [right_wheel]")
     assert "tf_frame_prefix_enable: false" in made(section("rover_base", *lines))[0]
 
@@ -308,8 +308,8 @@ def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
     declared = {**DECLARED, "joint": {word: None}}
     context = make_context(declared, make_naming(layout="L2", affix="prefix"), ())  # type: ignore[arg-type]
     source = section("joint_trajectory_controller", f"joints: ['{word}']")
-    companion = params(read_yaml(source.encode(), "p"), context)
-    assert f"joints: ['r1_{word}']" in fill(companion.template, "robot1", "r1")
+    companion = rewrite_params(read_yaml(source.encode(), "p"), context)
+    assert f"joints: ['r1_{word}']" in fill_template(companion.template, "robot1", "r1")
     assert yaml.safe_load(quoted(word)) == word
 
 
@@ -352,7 +352,9 @@ def test_the_binary_filter_does_not_join_its_names_on_kilted_either() -> None:
     ("policy", "distro", "told"),
     [(L2, "jazzy", True), (L2, "kilted", False), (L4, "kilted", True)],
 )
-def test_a_source_without_a_topic_is_told(policy: tuple[str, str], distro: str, told: bool) -> None:
+def test_a_source_without_a_topic_is_reported(
+    policy: tuple[str, str], distro: str, told: bool
+) -> None:
     layer = "layer: {observation_sources: scan tof, scan: {topic: /scan}, tof: {clearing: true}}"
     source = f"local_costmap:\n  local_costmap:\n    ros__parameters:\n      {layer}\n"
     found = [it for it in made(source, policy, distro)[1] if it.code == "MF127"]
@@ -383,11 +385,11 @@ def test_a_name_below_another_node_follows_that_node() -> None:
 def test_a_shared_topic_is_written_from_the_root() -> None:
     context = setting(L2, shared_topics=["/map"])
     source = section("amcl", "map_topic: map")
-    companion = params(read_yaml(source.encode(), "p"), context)
-    assert "map_topic: /map\n" in fill(companion.template, "robot1", "r1")
+    companion = rewrite_params(read_yaml(source.encode(), "p"), context)
+    assert "map_topic: /map\n" in fill_template(companion.template, "robot1", "r1")
 
 
-def test_what_is_no_topic_stays_and_is_told() -> None:
+def test_an_invalid_topic_stays_and_is_reported() -> None:
     text, findings = made(section("amcl", "scan_topic: 1st/scan"))
     assert "scan_topic: 1st/scan" in text
     assert "MF113" in codes(findings)
@@ -450,17 +452,19 @@ def test_lines_are_inserted_as_the_file_is_written() -> None:
     assert "{robot_base_frame: r1/base_link}" in made(empty)[0]
 
 
-def test_a_node_without_any_section_is_told() -> None:
+def test_a_node_without_any_section_is_reported() -> None:
     document = read_yaml(section("amcl", "x: 1").encode(), "p.yaml")
-    found = without_sections([document], setting(L2))
+    found = nodes_without_section([document], setting(L2))
     assert {it.code for it in found} == {"MF125"}
     told = " ".join(it.message for it in found)
     assert "collision_monitor" in told
     assert "amcl" not in told.split()
     wild = read_yaml(section("/**/collision_monitor", "x: 1").encode(), "q.yaml")
-    assert "collision_monitor" not in str(without_sections([document, wild], setting(L2)))
-    assert without_sections([document], setting(L1)) == tuple(
-        it for it in without_sections([document], setting(L1)) if "tf_frame_prefix" in it.message
+    assert "collision_monitor" not in str(nodes_without_section([document, wild], setting(L2)))
+    assert nodes_without_section([document], setting(L1)) == tuple(
+        it
+        for it in nodes_without_section([document], setting(L1))
+        if "tf_frame_prefix" in it.message
     )
 
 
@@ -476,16 +480,16 @@ def test_a_node_without_any_section_is_told() -> None:
         ("other", "what: elbow", "MF123", "is a joint of the robot"),
         ("other", "elbow: 1.0", "MF123", "is a joint of the robot"),
         ("other", "what: [1st, base_link]", "MF123", "is a link of the robot"),
-        ("other", "x_topic: /x", "MF114", "guessed from x_topic"),
+        ("other", "x_topic: /x", "MF114", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MF122", "not rewritten"),
-        ("robot_state_publisher", "frame_prefix: a/", "MF115", "once more"),
-        ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "every robot's"),
-        ("amcl", "scan_topic: $(var s)", "MF110", "a launch file has to fill it"),
+        ("robot_state_publisher", "frame_prefix: a/", "MF115", "a second time"),
+        ("ekf_filter_node", "debug_out_file: /tmp/x", "MF118", "the same for all robots"),
+        ("amcl", "scan_topic: $(var s)", "MF110", "a launch file must replace it"),
         ("amcl", "scan_topic:", "MF109", "rcl refuses"),
         ("amcl", "base_frame_id: |\n      base_link", "MF119", "on one line"),
     ],
 )
-def test_what_a_person_should_know_is_told(node: str, line: str, code: str, words: str) -> None:
+def test_mistakes_in_names_are_reported(node: str, line: str, code: str, words: str) -> None:
     _, findings = made(section(node, line))
     found = [str(it) for it in findings if it.code == code]
     assert found
@@ -495,23 +499,23 @@ def test_what_a_person_should_know_is_told(node: str, line: str, code: str, word
 
 def test_one_key_cannot_be_two() -> None:
     text = "stacks: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
-    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    nodes = stack_of(extend(built_in(), text, "n"), "s")
     context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
     inner = "    ros__parameters: {use_sim_time: true}\n"
     source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
-    found = params(read_yaml(source.encode(), "p"), context).findings
+    found = rewrite_params(read_yaml(source.encode(), "p"), context).findings
     assert ("MF101", "error") in [(it.code, it.level) for it in found]
 
 
-def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
+def test_a_topic_with_a_wrong_target_by_a_rule_is_reported() -> None:
     """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
     text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
-    nodes = stack_of(extended(built_in(), text, "n"), "s")
+    nodes = stack_of(extend(built_in(), text, "n"), "s")
     context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
     document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
-    found = params(document, context, facts=nodes).findings
+    found = rewrite_params(document, context, facts=nodes).findings
     assert [it.message for it in found if it.code == "MF120"] == [
-        "scan_topic: scan leads to /<robot>/scan by the robot's rules"
+        "scan_topic: remap rules turn scan into /<robot>/scan"
     ]
 
 
@@ -523,7 +527,7 @@ def test_a_topic_that_a_rule_sends_elsewhere_is_told() -> None:
         ("smoother_server:\n  ros__parameters:\n    ? x\n    : 1\n", "MF124"),
     ],
 )
-def test_what_cannot_be_made_sure_of_is_told(source: str, code: str) -> None:
+def test_what_cannot_be_inserted_or_decided_is_reported(source: str, code: str) -> None:
     found = codes(made(source)[1])
     assert code in found if code else not found
 
@@ -535,7 +539,7 @@ def test_a_prefix_cannot_be_a_postfix() -> None:
     assert "MF117" in codes(findings)
 
 
-def test_an_ordinary_file_has_nothing_told() -> None:
+def test_an_ordinary_file_has_no_findings() -> None:
     source = section("amcl", "base_frame_id: base_link", "odom_frame_id: odom", "scan_topic: scan")
     assert made(source)[1] == ()
 
@@ -546,23 +550,23 @@ def test_an_ordinary_file_has_nothing_told() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "nothing is in it"),
-        ("a: 1\n", "ROS 1's or read by a node itself"),
-        ("- {topic_name: x}\n", "goes under bridge"),
-        ("Panels: []\n", "an RViz configuration"),
+        ("", "it is empty"),
+        ("a: 1\n", "for ROS 1 or a node reads it directly"),
+        ("- {topic_name: x}\n", "list it under bridge"),
+        ("Panels: []\n", "an RViz config; list it under rviz"),
         ("image: m.pgm\nresolution: 0.1\n", "a map"),
-        ("joint_limits: {a: {}}\n", "go under moveit"),
-        ("arm: {kinematics_solver: x}\n", "go under moveit"),
-        ("word\n", "one word"),
-        ("ros__parameters: {a: 1}\n", "below no node's name"),
-        ("a: {ros__parameters: 1}\n", "holds no mapping"),
+        ("joint_limits: {a: {}}\n", "list it under moveit"),
+        ("arm: {kinematics_solver: x}\n", "list it under moveit"),
+        ("word\n", "a single value"),
+        ("ros__parameters: {a: 1}\n", "has no node name above it"),
+        ("a: {ros__parameters: 1}\n", "must hold names and values"),
         ("a: &x {ros__parameters: {b: 1}}\n", "anchors"),
         ("a:\n  ros__parameters:\n    b: &x 1\n    c: *x\n", "anchors"),
         ("a:\n\tros__parameters: {}\n", "a tab"),
         ("a: {ros__parameters: {[1]: 2}}\n", "a key is a mapping or a list"),
         ("[1]: {ros__parameters: {a: 2}}\n", "a key is a mapping or a list"),
         ("a: {ros__parameters: {b: 1}}\n---\nc: 1\n", "more than one document"),
-        (f"a: {{ros__parameters: {{b: {GRAPH}}}}}\n", "this tool's own"),
+        (f"a: {{ros__parameters: {{b: {NAMESPACE_SLOT}}}}}\n", "reserved for this tool"),
     ],
 )
 def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> None:
@@ -576,7 +580,7 @@ def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> No
 
 
 def test_the_data_is_what_it_seems() -> None:
-    known = built_in_params()
+    known = built_in_nodes()
     assert len(known.nodes) > 90
     assert {it.kind for node in known.nodes.values() for it in node.params.values()} <= set(KINDS)
     assert set(known.types.values()) <= set(known.nodes)
@@ -607,7 +611,7 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
     with open(path, "w") as file:
         file.write(text + "  amcl: {params: {extra: frame}}\n")
     source = section("rover", "wheels: [elbow]", "mast.a: tool0") + section("amcl", "extra: laser")
-    text, findings = made(source, known=known_params(path))
+    text, findings = made(source, known=load_known_nodes(path))
     assert "wheels: [r1_elbow]" in text
     assert "mast.a: r1/tool0" in text
     assert "extra: r1/laser" in text
@@ -625,17 +629,17 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
         ("nodes: {a: {params: {b: {kind: frame, distros: jazy}}}}", "did you mean 'jazzy'"),
         ("nodes: {a: {params: {b..c: frame}}}", "empty segment"),
         ("guesses: {frme: [x]}", "did you mean 'frame'"),
-        ("nodes: [", "broken YAML"),
+        ("nodes: [", "not valid YAML"),
     ],
 )
-def test_a_mistake_in_a_users_file_is_told_with_its_line(
+def test_a_mistake_in_a_users_file_is_reported_with_its_line(
     tmp_path: object, text: str, words: str
 ) -> None:
     path = f"{tmp_path}/more.yaml"
     with open(path, "w") as file:
         file.write(text)
     with pytest.raises(UsageError, match=r"more\.yaml:\d") as error:
-        known_params(path)
+        load_known_nodes(path)
     assert words in str(error.value)
 
 
@@ -664,13 +668,16 @@ _FILES = st.dictionaries(
 )
 
 
+@pytest.mark.slow
 @given(_FILES, st.sampled_from([L1, L2, L3, L4]))
 def test_structure_and_what_is_no_name_stay(
     files: dict[str, object], policy: tuple[str, str]
 ) -> None:
     source = yaml.safe_dump({name: {"ros__parameters": it} for name, it in files.items()})
     context = setting(policy)
-    text = fill(params(read_yaml(source.encode(), "p"), context).template, "robot1", "r1")
+    text = fill_template(
+        rewrite_params(read_yaml(source.encode(), "p"), context).template, "robot1", "r1"
+    )
     old = [it for it in leaves(yaml.safe_load(source)) if not isinstance(it, str)]
     new = [it for it in leaves(yaml.safe_load(text)) if not isinstance(it, str)]
     inserted = text.count("tf_frame_prefix_enable")
@@ -687,8 +694,11 @@ def leaves(node: object) -> list[object]:
 @given(st.sampled_from([L1, L2, L3, L4]), st.text("abc_1", min_size=1, max_size=5))
 def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str) -> None:
     source = section("amcl", "scan_topic: /scan", "base_frame_id: base_link")
-    template = params(read_yaml(source.encode(), "p"), setting(policy)).template
-    one, two = fill(template, "robot1", "r1"), fill(template, f"g{robot}", f"s{robot}")
+    template = rewrite_params(read_yaml(source.encode(), "p"), setting(policy)).template
+    one, two = (
+        fill_template(template, "robot1", "r1"),
+        fill_template(template, f"g{robot}", f"s{robot}"),
+    )
     assert one.replace("robot1", f"g{robot}").replace("r1", f"s{robot}") == two
 
 
@@ -697,10 +707,10 @@ def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str)
 
 def test_the_page_has_the_table_and_every_code() -> None:
     text = (ROOT / "docs" / "params.md").read_text()
-    assert text.endswith(page(built_in_params()))
+    assert text.endswith(page(built_in_nodes()))
     source = "".join(
         (ROOT / "multibot_rewrite" / "companions" / "params" / name).read_text()
-        for name in ("sections.py", "values.py", "inserted.py")
+        for name in ("sections.py", "values.py", "shared_defaults.py")
     )
     assert set(re.findall(r"MF1\d\d", text)) == set(re.findall(r'"(MF1\d\d)"', source))
 
@@ -710,7 +720,7 @@ def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
     path = tmp_path / "more.yaml"
     path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
     source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")
-    text, _ = made(source, known=known_params(str(path)))
+    text, _ = made(source, known=load_known_nodes(str(path)))
     assert "base: r1/mast_base" in text
     assert "motors: [r1_elbow]" in text
     assert "limits: {r1_elbow: {max: 1}}" in text

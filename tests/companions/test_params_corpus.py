@@ -53,7 +53,7 @@ def test_the_reasons_are_true(corpus_params: dict[str, Path]) -> None:
         for name in names:
             text = corpus_params[name].read_text(errors="replace")
             bare = re.sub(r"#.*", "", text)
-            assert bare.count("ros__parameters") == 0 or not why.startswith("no ROS 2"), name
+            assert bare.count("ros__parameters") == 0 or not why.startswith("not a ROS 2"), name
             assert re.search(r"[&*]\w", bare) or "anchors" not in why, name
             assert ROBOT in text or why != "MF126", name
 

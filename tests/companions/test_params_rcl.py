@@ -16,19 +16,26 @@ from paths import SUPPORT
 from real_robots import spread
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.params.known import built_in_params
-from multibot_rewrite.companions.params.rewrite import params
-from multibot_rewrite.companions.params.sections import Section, found_sections, known_sections
-from multibot_rewrite.companions.template import GRAPH, fill
+from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.params.sections import (
+    ParamSection,
+    identify_sections,
+    raw_sections,
+)
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import ERROR, InputError
 from multibot_rewrite.naming import make_naming
 
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
-pytestmark = pytest.mark.skipif(
-    not importlib.util.find_spec("rclpy"),
-    reason=f"parameter files are not read with the real rcl: no rclpy here, {INSTALL}",
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not importlib.util.find_spec("rclpy"),
+        reason=f"parameter files are not read with the real rcl: no rclpy here, {INSTALL}",
+    ),
+]
 CHILD = SUPPORT / "rcl_params_child.py"
 SECONDS = 300
 OWN = """\
@@ -60,14 +67,14 @@ class Case:
 
     def __init__(self, document: YamlText, context: Context, text: str) -> None:
         self.source, self.text = document.text, text
-        sections = known_sections(found_sections(document), context, built_in_params())
+        sections = identify_sections(raw_sections(document), context, built_in_nodes())
         exact = {it.path: it for it in sections if not it.wild and not it.shared}
         self.old = [apart(f"/{path}") for path in exact]
         self.new = [apart(full(it)) for it in exact.values()]
 
 
-def full(section: Section) -> str:
-    return section.full.replace(GRAPH, ROBOT)
+def full(section: ParamSection) -> str:
+    return section.full.replace(NAMESPACE_SLOT, ROBOT)
 
 
 def apart(name: str) -> tuple[str, str]:
@@ -82,11 +89,11 @@ def cases(sources: dict[str, bytes], policies: Sequence[tuple[str, str]]) -> Ite
                 document = read_yaml(data, file)
                 naming = make_naming(layout=layout, affix=affix)
                 context = make_context(declared(document), naming, facts())  # type: ignore[arg-type]
-                companion = params(document, context, robots=(ROBOT,))
+                companion = rewrite_params(document, context, robots=(ROBOT,))
             except InputError:
                 continue
             if all(it.level != ERROR for it in companion.findings):
-                yield Case(document, context, fill(companion.template, ROBOT, ROBOT))
+                yield Case(document, context, fill_template(companion.template, ROBOT, ROBOT))
 
 
 def asked(folder: Path, found: Sequence[Case]) -> list[list[Any]]:

@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rviz_robots import robots_of
 
-from multibot_rewrite.companions.graph_names import known_topics, robot_topic
+from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.rviz.colours import palette, read_colour
-from multibot_rewrite.companions.rviz.read import rviz_data
-from multibot_rewrite.companions.rviz.rewrite import RvizText, rviz, start_command
+from multibot_rewrite.companions.rviz.read_config import rviz_data
+from multibot_rewrite.companions.rviz.rewrite import RvizText, rewrite_rviz, start_command
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.model import Finding, InputError, UsageError
 from multibot_rewrite.naming import make_naming
@@ -125,7 +125,7 @@ def make(
 ) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
     options = {key: more.pop(key) for key in ("world", "relayed") if key in more}
     robots = robots_of(declared(), layout, ROBOTS, **more)
-    return rviz(read_yaml(text.encode(), "one.rviz"), robots, **options)
+    return rewrite_rviz(read_yaml(text.encode(), "one.rviz"), robots, **options)
 
 
 def shown(text: str = CONFIG, layout: str = "L2", **more: Any) -> dict[str, Any]:
@@ -184,7 +184,7 @@ def test_a_description_with_bare_links_gets_a_tf_prefix() -> None:
     assert displays[-1]["TF Prefix"] == "robot1"
 
 
-def test_a_tf_prefix_of_the_file_is_emptied_and_told() -> None:
+def test_a_tf_prefix_of_the_file_is_emptied_and_reported() -> None:
     text = config("Class: rviz_default_plugins/RobotModel\nTF Prefix: tb3\nDescription Topic: /d")
     assert manager(text=text)["Displays"][0]["Displays"][0]["TF Prefix"] == ""
     assert "MF207" in codes(text)
@@ -368,7 +368,7 @@ def test_bare_frames_cannot_be_relayed() -> None:
     assert len(make(layout="L1", relayed=True)[0]) == len(ROBOTS)
 
 
-def test_the_postfix_layout_spells_topics_behind() -> None:
+def test_the_postfix_layout_adds_postfixes_to_topics() -> None:
     assert manager(layout="L4")["Displays"][1]["Topic"]["Value"] == "/scan/robot1"
     assert manager(layout="L4")["Global Options"]["Fixed Frame"] == "odom/robot1"
 
@@ -433,7 +433,7 @@ def test_what_is_no_name_stays(path: str, value: str) -> None:
         ("Panels: []\n", "it has no 'Visualization Manager'"),
         ("", "it has no 'Visualization Manager'"),
         ("[General]\nkey=1\n", "not YAML"),
-        ("Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n", "a config of ROS 1"),
+        ("Visualization Manager:\n  Displays:\n    - Class: rviz/Grid\n", "a ROS 1 config"),
         (
             "Visualization Manager:\n  Displays: [{Class: rviz_default_plugins/Grid}]\n",
             "in brackets",
@@ -449,13 +449,13 @@ def test_refusals_name_place_and_remedy(text: str, why: str) -> None:
 
 def test_no_robot_is_an_error() -> None:
     with pytest.raises(UsageError):
-        rviz(read_yaml(CONFIG.encode(), "one.rviz"), [])
+        rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), [])
 
 
 def test_robots_of_two_kinds() -> None:
     first = robots_of(declared(), "L2", ["robot1"])[0]
     other = robots_of(defaultdict(dict, {"link": {"mast": None}, "joint": {}}), "L2", ["robot2"])[0]
-    text = rviz(read_yaml(CONFIG.encode(), "one.rviz"), [first, other])[0][0].text
+    text = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), [first, other])[0][0].text
     model = yaml.safe_load(text)["Visualization Manager"]["Displays"][-1]["Displays"][-1]
     assert "base_link" in model["Links"]  # no link of this robot
 
@@ -463,7 +463,7 @@ def test_robots_of_two_kinds() -> None:
 def test_frames_and_topics_may_have_two_words() -> None:
     robots = robots_of(declared(), "L2", ["left"])
     robot = robots[0]._replace(topics=robots[0].topics._replace(robot="fleet/l"))
-    text = rviz(read_yaml(CONFIG.encode(), "one.rviz"), [robot])[0][0].text
+    text = rewrite_rviz(read_yaml(CONFIG.encode(), "one.rviz"), [robot])[0][0].text
     assert '"/fleet/l/scan"' in text and "left/base_link" in text
 
 
@@ -471,7 +471,7 @@ def test_names_follow_the_table_where_they_do_not_follow_the_rule() -> None:
     facts = built_in().stacks["navigation"].nodes
     robot = robots_of(declared(), "L4", ["r"])[0]
     naming = robot.names.naming._replace(topics="prefix")
-    known = known_topics(build_table(["r"], facts, naming), facts, "r")
+    known = fleet_topics(build_table(["r"], facts, naming), facts, "r")
     names = robot.topics._replace(naming=naming)
     wanted = known["/global_costmap/costmap"]
     assert wanted != robot_topic(names, "/global_costmap/costmap")
@@ -499,10 +499,10 @@ def test_a_map_that_is_shared_stays_once() -> None:
         )
         for it in robots
     ]
-    assert rviz(read_yaml(text.encode(), "one.rviz"), shared)[0][0].text == text
+    assert rewrite_rviz(read_yaml(text.encode(), "one.rviz"), shared)[0][0].text == text
 
 
-def test_volatile_descriptions_are_told_once() -> None:
+def test_volatile_descriptions_are_reported_once() -> None:
     model = (
         "Class: rviz_default_plugins/RobotModel\nDescription Topic:\n  Durability Policy: Volatile"
     )
@@ -519,7 +519,7 @@ def test_orientation_frames_are_no_frames() -> None:
 
 def test_a_group_is_indented_as_rviz_does() -> None:
     text = config("Class: rviz_default_plugins/Path\nTopic: /plan")
-    made = rviz(read_yaml(text.encode(), "one.rviz"), robots_of(declared(), "L2", ["r"]))
+    made = rewrite_rviz(read_yaml(text.encode(), "one.rviz"), robots_of(declared(), "L2", ["r"]))
     assert made[0][0].text == (
         "Visualization Manager:\n"
         "  Displays:\n"

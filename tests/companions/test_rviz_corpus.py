@@ -13,15 +13,15 @@ import yaml
 from paths import CORPUS
 from rviz_robots import declared, robots_of
 
-from multibot_rewrite.companions.rviz.read import rviz_data
-from multibot_rewrite.companions.rviz.rewrite import rviz
+from multibot_rewrite.companions.rviz.read_config import rviz_data
+from multibot_rewrite.companions.rviz.rewrite import rewrite_rviz
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 LEAST, SAMPLE = 300, 6
-ROS1_REFUSED = "a config of ROS 1, which rviz2 cannot load"
+ROS1_REFUSED = "this is a ROS 1 config, which rviz2 cannot load"
 # Names that no file has yet.
 ROBOTS = ("zorba1", "zorba2")
 ROS1 = re.compile(r"^\s*(?:- )?Class: rviz/", re.MULTILINE)
@@ -77,7 +77,7 @@ def survey(configs: list[Path], layout: str) -> Counter[str]:
 
 def check(document: YamlText, layout: str) -> None:
     robots = robots_of(declared(document), layout, ROBOTS)
-    made, _ = rviz(document, robots)
+    made, _ = rewrite_rviz(document, robots)
     source = yaml.load(document.text, LOADER)
     if layout == "L2":
         assert [one.robot for one in made] == [""]

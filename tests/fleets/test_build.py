@@ -25,7 +25,7 @@ from hypothesis import strategies as st
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.manifest import MANIFEST, NOTE, read_manifest
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.model import InputError
 
@@ -222,6 +222,7 @@ def child(arguments: Sequence[str], cwd: Path, **env: str) -> subprocess.Complet
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", [SMALL, mixed()], ids=["small", "mixed"])
 def test_the_output_is_the_same_from_everywhere_and_in_any_order(text: str, tmp_path: Path) -> None:
     home, elsewhere = tmp_path / "a", tmp_path / "b" / "c"
@@ -248,9 +249,9 @@ def test_findings_are_sorted_and_said_once(
     told = [it for it in lines if "MF701" in it]
     assert len(told) == 1
     assert "robot 'robot1'" in told[0]
-    assert "so for 1 more robot" in told[0]
-    assert "multibotGraphHole" not in "".join(lines)
-    assert "multibotSpelledHole" not in "".join(lines)
+    assert "the same for 1 more robot" in told[0]
+    assert "multibotNamespaceSlot" not in "".join(lines)
+    assert "multibotTagSlot" not in "".join(lines)
 
 
 def test_errors_stop_the_job_and_strict_makes_errors(
@@ -297,7 +298,7 @@ def test_an_output_folder_that_is_a_link_is_where_it_leads(tmp_path: Path) -> No
         ("out", False, "out: it is a file; name a folder"),
     ],
 )
-def test_what_stands_in_the_way_is_told(
+def test_what_prevents_a_pose_or_namespace_is_reported(
     path: str, folder: bool, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fleet_folder(tmp_path)
@@ -310,6 +311,7 @@ def test_what_stands_in_the_way_is_told(
     assert sorted(tmp_path.rglob("*")) == before
 
 
+@pytest.mark.slow
 def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Path) -> None:
     path = fleet_folder(tmp_path)
     deep = tmp_path / "x" / "y" / "out"
@@ -337,13 +339,14 @@ def test_missing_folders_above_are_made_and_go_again_with_a_failure(tmp_path: Pa
     ],
 )
 def test_what_is_no_manifest_is_refused(text: str) -> None:
-    with pytest.raises(InputError, match="m: this is no manifest of multibot build; delete it"):
+    with pytest.raises(InputError, match="m: not a manifest of multibot build; delete it"):
         read_manifest(text.encode(), "m")
 
 
 # ---------------------------------------------------------------- all or nothing
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("room", [0, 1000, 20_000])
 def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     before = held(out)
@@ -472,6 +475,7 @@ def until_killed(out: Path, number: int, runs: int, seed: int) -> int:
     return hit
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM])
 def test_a_killed_build_leaves_old_or_new(number: int, out: Path) -> None:
     until_killed(out, number, 4, seed=number)
@@ -486,6 +490,7 @@ def test_many_killed_builds_leave_old_or_new(number: int, out: Path) -> None:
 STEPS = ("_link_all", "_write_all", "_exchange", "_bring_late")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", STEPS)
 @pytest.mark.parametrize("before", [True, False])
 def test_a_kill_around_each_step_leaves_old_or_new(step: str, before: bool, out: Path) -> None:
@@ -547,6 +552,7 @@ def test_what_comes_while_a_build_writes_is_kept(
     assert (out / "late" / "bag.mcap").read_text() == "data"
 
 
+@pytest.mark.slow
 def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
     """Two fleets into one folder, again and again: what is there is one of the two."""
     wanted, fleets = [], []
@@ -568,7 +574,7 @@ def test_two_builds_at_once_leave_one_whole_output(tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_a_folder_that_cannot_be_written_is_told(
+def test_a_folder_that_cannot_be_written_is_reported(
     out: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = held(out)
@@ -584,7 +590,7 @@ def test_a_folder_that_cannot_be_written_is_told(
             path.chmod(0o755)
 
 
-def test_a_read_only_folder_is_told(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_read_only_folder_is_reported(out: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """On a file system that was mounted read-only, which stops root, too."""
     renamed(out.parent)
     mounts = [["mount", "--bind", str(out), str(out)], ["mount", "-o", "remount,ro,bind", str(out)]]
@@ -623,8 +629,8 @@ ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a
 
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
-    robot = WantedRobot(word, (f"/{other}",), tuple(frames), "/tf", spelled=other)
-    end = Wanted(f"/{other}", "topic", "publishes", f"/{word}", other, other)
+    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", spelled=other)
+    end = PlannedEndpoint(f"/{other}", "topic", "publishes", f"/{word}", other, other)
     plan = Expectation("both", (robot,), (), (), tuple(frames), (end,), (), ((f"/{other}", word),))
     text = to_yaml(plan)
     with contextlib.suppress(InputError):

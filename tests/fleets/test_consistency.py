@@ -9,12 +9,13 @@ import pytest
 from fleet_folder import PARAMS, SMALL, fleet_folder, mixed
 from paths import CORPUS
 
-from multibot_rewrite.fleets.artefacts import Artefacts, make_artefacts
-from multibot_rewrite.fleets.consistency import consistency, twice
+from multibot_rewrite.fleets.build import Outputs, make_outputs
+from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
-from multibot_rewrite.fleets.started import started
-from multibot_rewrite.fleets.written import Written, line_in_source, values
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.output_values import OutputText, line_in_source, values_in
+from multibot_rewrite.fleets.value_checks import twice
+from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import Finding, MultibotError
 
 PARENTS = """\
@@ -29,18 +30,18 @@ def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
     return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files))))
 
 
-def written(made: Artefacts) -> list[Written]:
-    return [Written(it.path, it.data.decode(), it.sources) for it in made.files]
+def written(made: Outputs) -> list[OutputText]:
+    return [OutputText(it.path, it.data.decode(), it.sources) for it in made.files]
 
 
-def looked(plan: FleetPlan, files: Iterable[Written]) -> list[Finding]:
-    return list(consistency(plan, started(plan), list(files)))
+def looked(plan: FleetPlan, files: Iterable[OutputText]) -> list[Finding]:
+    return list(consistency(plan, with_start_pose_nodes(plan), list(files)))
 
 
 def planted(folder: Path, path: str, old: str, new: str, text: str = SMALL) -> list[Finding]:
     """What is found once ``old`` is ``new`` in one of the files that are made."""
     plan = planned(folder, text)
-    files = written(make_artefacts(plan))
+    files = written(make_outputs(plan))
     assert [it for it in files if it.path == path and old in it.text], path
     changed = [
         it._replace(text=it.text.replace(old, new, 1)) if it.path == path else it for it in files
@@ -52,7 +53,7 @@ def planted(folder: Path, path: str, old: str, new: str, text: str = SMALL) -> l
 @pytest.mark.parametrize("affix", ["prefix", "postfix"])
 def test_what_is_made_is_right(layout: str, affix: str, tmp_path: Path) -> None:
     plan = planned(tmp_path, mixed(layout, affix))
-    assert looked(plan, written(make_artefacts(plan))) == []
+    assert looked(plan, written(make_outputs(plan))) == []
 
 
 L1, L4 = SMALL.replace("frames-per-robot", "L1"), SMALL.replace("frames-per-robot", "L4")
@@ -131,36 +132,36 @@ def test_many_lines_of_one_fault_are_one_finding(tmp_path: Path) -> None:
     plan = planned(tmp_path)
     files = [
         it._replace(text=it.text.replace("robot1/", "robot2/")) if it.path == "robot1/params.yaml"
-        else it for it in written(make_artefacts(plan))
+        else it for it in written(make_outputs(plan))
     ]  # fmt: skip
     (found,) = looked(plan, files)
-    assert "2 lines more are like it" in found.message
+    assert "the same in 2 more lines" in found.message
 
 
-def test_what_a_companion_told_is_not_told_again(tmp_path: Path) -> None:
+def test_what_a_companion_reported_is_not_reported_again(tmp_path: Path) -> None:
     params = PARAMS.replace("scan_topic: scan", "scan_topic: /robot2/scan")
-    made = make_artefacts(planned(tmp_path, SMALL, params__yaml=params))
+    made = make_outputs(planned(tmp_path, SMALL, params__yaml=params))
     assert [it.code for it in made.findings if it.level == "error"] == ["MF126"]
 
 
 def test_the_line_is_that_of_the_source_behind_inserted_ones(tmp_path: Path) -> None:
     source = tmp_path / "a.yaml"
     source.write_text("a: 1\nb: 2\nc: 3\n")
-    file = Written("r/a.yaml", "new: 0\na: 1\nb: r2\nmore: 1\nc: 3\n", (str(source),))
+    file = OutputText("r/a.yaml", "new: 0\na: 1\nb: r2\nmore: 1\nc: 3\n", (str(source),))
     lines = [line_in_source(file, at)[1] for at in (2, 3, 5)]
     assert lines == [1, 2, 3]
 
 
 def test_values_of_each_format() -> None:
-    yaml_ = Written("a.yaml", "a: {b: [1, x]}\n'c': \"d\"\n", ())
-    assert [tuple(it) for it in values(yaml_)] == [
+    yaml_ = OutputText("a.yaml", "a: {b: [1, x]}\n'c': \"d\"\n", ())
+    assert [tuple(it) for it in values_in(yaml_)] == [
         ("a", "a", True, 1), ("b", "b", True, 1), ("1", "b", False, 1), ("x", "b", False, 1),
         ("c", "c", True, 2), ("d", "c", False, 2),
     ]  # fmt: skip
-    xml = Written("a.urdf", '<a>\n<b c="d">e</b></a>', ())
-    assert [tuple(it) for it in values(xml)] == [("d", "c", False, 2), ("e", "b", False, 2)]
-    assert [it.text for it in values(Written("a.md", "one\ntwo\n", ()))] == ["one", "two"]
-    assert list(values(Written("a.yaml", "# nothing\n", ()))) == []
+    xml = OutputText("a.urdf", '<a>\n<b c="d">e</b></a>', ())
+    assert [tuple(it) for it in values_in(xml)] == [("d", "c", False, 2), ("e", "b", False, 2)]
+    assert [it.text for it in values_in(OutputText("a.md", "one\ntwo\n", ()))] == ["one", "two"]
+    assert list(values_in(OutputText("a.yaml", "# nothing\n", ()))) == []
 
 
 @pytest.mark.parametrize(
@@ -177,7 +178,7 @@ def test_twice_in_a_name(token: str, word: str) -> None:
 def test_a_robot_whose_link_is_called_like_it_is_no_fault(tmp_path: Path) -> None:
     rover = '<robot name="x"><link name="robot1"/></robot>'
     plan = planned(tmp_path, PARENTS.replace("r1", "robot1"), rover__urdf=rover)
-    made = make_artefacts(plan)
+    made = make_outputs(plan)
     assert "robot1/robot1" in next(it.data for it in made.files if "robot1/" in it.path).decode()
     assert looked(plan, written(made)) == []
 
@@ -192,9 +193,9 @@ def test_two_nodes_that_send_one_frame(tmp_path: Path) -> None:
     )
     text = f"stack: [localization, nav2_slam]\ncompanions: {{params: params.yaml}}\n{PARENTS}"
     plan = planned(tmp_path, text, params__yaml=params)
-    found = [it for it in make_artefacts(plan).findings if it.code == "MF607"]
+    found = [it for it in make_outputs(plan).findings if it.code == "MF607"]
     assert len(found) == 1
-    assert "frame r1/odom of r1 is sent by amcl and by slam_toolbox" in found[0].message
+    assert "frame r1/odom of r1 is published by both amcl and slam_toolbox" in found[0].message
     assert (Path(found[0].file).name, found[0].line) == ("params.yaml", 2)
 
 
@@ -214,19 +215,20 @@ FILTER = (
 def test_what_a_parameter_file_says_is_sent(more: str, said: list[str], tmp_path: Path) -> None:
     text = f"stack: robot_localization\ncompanions: {{params: params.yaml}}\n{PARENTS}"
     plan = planned(tmp_path, text, params__yaml=FILTER.replace("MORE", more))
-    found = [it for it in make_artefacts(plan).findings if it.code == "MF607"]
+    found = [it for it in make_outputs(plan).findings if it.code == "MF607"]
     assert [said[0] in it.message for it in found] == [True] * len(said)
 
 
 def test_two_robots_that_send_a_shared_frame_on_one_topic(tmp_path: Path) -> None:
     text = f"stack: nav2\nshared_frames: [map, odom]\n{PARENTS}"
-    found = [it for it in make_artefacts(planned(tmp_path, text)).findings if it.code == "MF607"]
-    assert ["frame odom is sent by robots r1 and r2" in it.message for it in found] == [True]
+    found = [it for it in make_outputs(planned(tmp_path, text)).findings if it.code == "MF607"]
+    assert [
+        "frame odom is published by two robots on one topic: r1 and r2" in it.message
+        for it in found
+    ] == [True]
     assert found[0].level == "error"
     apart = text.replace("layout: L2", "layout: L3")
-    assert not [
-        it for it in make_artefacts(planned(tmp_path, apart)).findings if it.code == "MF607"
-    ]
+    assert not [it for it in make_outputs(planned(tmp_path, apart)).findings if it.code == "MF607"]
 
 
 # ---------------------------------------------------------------- real files
@@ -243,7 +245,7 @@ def test_nothing_is_found_in_what_real_files_become(layout: str, tmp_path: Path)
         text = f"layout: {layout}\naffix: prefix\nstack: nav2\ndescription: {urdfs[at * 80]}\n"
         text += f"companions: {{params: {file}}}\nrobots: [{{name: rob_a}}, {{name: rob_b}}]\n"
         try:
-            made = make_artefacts(planned(tmp_path, text))
+            made = make_outputs(planned(tmp_path, text))
         except MultibotError:
             continue
         looked_at += 1

@@ -15,7 +15,7 @@ from fleet_folder import fleet_folder
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.fleets.by_schema import TYPES
+from multibot_rewrite.fleets.checked_yaml import TYPES
 from multibot_rewrite.fleets.fleet_file import (
     KINDS,
     SCHEMA,
@@ -46,7 +46,7 @@ def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
 
 def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
     found = robot(tmp_path, "")
-    assert (found.name, found.namespace, found.spelled, found.model) == ("a",) * 4
+    assert (found.name, found.namespace, found.tag, found.model) == ("a",) * 4
     assert (found.pose, found.colour, found.stacks, dict(found.companions)) == (None, "", (), {})
     assert (found.line, found.file) == (2, str(tmp_path / "fleet.yaml"))
 
@@ -56,8 +56,8 @@ def test_the_smallest_robot_has_its_name_everywhere(tmp_path: Path) -> None:
     [
         pytest.param("namespace: b", "", "namespace", "b", id="namespace"),
         pytest.param("namespace: /b", "", "namespace", "b", id="slash"),
-        pytest.param("postfix: b", "", "spelled", "b", id="postfix"),
-        pytest.param("prefix: b", "affix: prefix\n", "spelled", "b", id="prefix"),
+        pytest.param("postfix: b", "", "tag", "b", id="postfix"),
+        pytest.param("prefix: b", "affix: prefix\n", "tag", "b", id="prefix"),
         pytest.param("model: b.1", "", "model", "b.1", id="model"),
         pytest.param("pose: {x: 1, yaw: 2.5}", "", "pose", Pose(x=1.0, yaw=2.5), id="pose"),
         pytest.param("pose: {}", "", "pose", Pose(), id="origin"),
@@ -110,7 +110,7 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
     (tmp_path / "more.yaml").write_text(
         f"# robots\n{ONE}  - {{name: a, description: rover.urdf}}\n"
     )
-    with pytest.raises(InputError, match=r"more\.yaml:4: 'a' is there twice, first at line 3"):
+    with pytest.raises(InputError, match=r"more\.yaml:4: robot 'a' is repeated, first in line 3"):
         read(tmp_path, "include: more.yaml\n")
 
 
@@ -124,7 +124,7 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
         ("amcl:\n", False),
     ],
 )
-def test_a_fleet_file_is_told_from_a_plan(text: str, fleet: bool) -> None:
+def test_a_fleet_file_is_distinguished_from_a_plan(text: str, fleet: bool) -> None:
     assert is_fleet(text.encode()) is fleet
 
 
@@ -146,7 +146,10 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "key-that-is-a-number": (f"1: 2\n{ONE}", "1: unknown key 1; known are include, layout"),
     "key-that-is-a-list": (f"[1]: 2\n{ONE}", "1: found unhashable key; write plain keys"),
-    "two-of-a-name": (f"{ONE}  - {{name: a, description: rover.urdf}}\n", "3: 'a' is there twice"),
+    "two-of-a-name": (
+        f"{ONE}  - {{name: a, description: rover.urdf}}\n",
+        "3: robot 'a' is repeated",
+    ),
     "two-of-a-namespace": (
         f"{ONE}  - {{name: b, namespace: a, description: rover.urdf}}\n",
         "3: 'b' has the namespace 'a' of 'a' (line 2); every robot needs its own",
@@ -166,68 +169,68 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "missing-description": (
         "robots:\n  - {name: a, description: nope.urdf}\n",
-        "2: FOLDER/nope.urdf is not there; name a file",
+        "2: FOLDER/nope.urdf does not exist; correct the path",
     ),
     "missing-companion": (
         f"{ONE}companions:\n  rviz: nope.rviz\n",
-        "4: FOLDER/nope.rviz is not there; name a file",
+        "4: FOLDER/nope.rviz does not exist; correct the path",
     ),
     "companion-folder": (f"{ONE}companions: {{params: .}}\n", "3: FOLDER/. is a folder"),
-    "missing-include": (f"include: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml is not there"),
-    "missing-nodes": (f"nodes: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml is not there"),
-    "missing-vocabulary": (f"vocabulary: [a.vocab]\n{ONE}", "1: FOLDER/a.vocab is not there"),
+    "missing-include": (f"include: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml does not exist"),
+    "missing-nodes": (f"nodes: nope.yaml\n{ONE}", "1: FOLDER/nope.yaml does not exist"),
+    "missing-vocabulary": (f"vocabulary: [a.vocab]\n{ONE}", "1: FOLDER/a.vocab does not exist"),
     "cyclic-include": (
         f"include: fleet.yaml\n{ONE}",
-        " it includes itself (fleet.yaml -> fleet.yaml); leave one out",
+        " the file includes itself (fleet.yaml -> fleet.yaml); remove one include",
     ),
     "duplicate-key": (
         f"layout: L1\nlayout: L2\n{ONE}",
-        "2: the key 'layout' is there twice, first at line 1; leave one out",
+        "2: the key 'layout' is repeated, first in line 1; remove one of them",
     ),
     "duplicate-key-on-a-line": (
         "robots:\n  - {name: a, name: b, description: rover.urdf}\n",
-        "2: the key 'name' is there twice",
+        "2: the key 'name' is repeated",
     ),
     "tab": ("robots:\n\t- {name: a}\n", "2:1: not YAML: a tab; indent with spaces"),
     "anchor": (
         "robots:\n  - &x {name: a, description: rover.urdf}\n  - *x\n",
-        "2: the anchor or alias &x; write the value out",
+        "2: anchors and aliases are not allowed: &x; write the value out",
     ),
-    "ring-of-aliases": ("robots: &a [*a]\n", "1: the anchor or alias &a; write the value out"),
+    "ring-of-aliases": ("robots: &a [*a]\n", "1: anchors and aliases are not allowed: &a"),
     "merge": (
         "x: &d {a: 1}\nrobots:\n  - {<<: *d, name: a}\n",
-        "1: the anchor or alias &d; write the value out",
+        "1: anchors and aliases are not allowed: &d; write",
     ),
     "python-tag": (
         "robots: !!python/object:os.system []\n",
         "1: could not determine a constructor for the tag",
     ),
-    "empty": ("", " nothing is in it; write robots: with a name each"),
-    "only-comments": ("# later\n", " nothing is in it; write robots:"),
-    "a-list": ("- a\n", "1: it is no keys with values; write robots:"),
-    "a-word": ("hello\n", "1: it is no keys with values"),
-    "no-robots": ("layout: L1\n", " there is no list of robots; write robots:"),
+    "empty": ("", " the file is empty; write robots: [{name: robot1}, {name: robot2}]"),
+    "only-comments": ("# later\n", " the file is empty; write robots:"),
+    "a-list": ("- a\n", "1: the file must hold keys with values; write robots:"),
+    "a-word": ("hello\n", "1: the file must hold keys with values"),
+    "no-robots": ("layout: L1\n", " there are no robots; write robots:"),
     "empty-robots": ("robots: []\n", "1: robots: the list is empty; write at least one"),
-    "robots-as-keys": ("robots: {a: 1}\n", "1: robots: {'a': 1} does not fit; write a list"),
-    "robot-as-word": ("robots: [a]\n", "1: robots[0]: 'a' does not fit; write keys with values"),
+    "robots-as-keys": ("robots: {a: 1}\n", "1: robots: {'a': 1} is not valid; write a list"),
+    "robot-as-word": ("robots: [a]\n", "1: robots[0]: 'a' is not valid; write keys with values"),
     "no-name": ("robots:\n  - {description: rover.urdf}\n", "2: robots[0]: the key 'name' is miss"),
-    "name-number": ("robots:\n  - {name: 1}\n", "2: robots[0].name: 1 does not fit; write it in q"),
-    "name-on": ("robots:\n  - {name: on}\n", "2: robots[0].name: True does not fit; write it in q"),
+    "name-number": ("robots:\n  - {name: 1}\n", "2: robots[0].name: 1 is not valid; write it in q"),
+    "name-on": ("robots:\n  - {name: on}\n", "2: robots[0].name: True is not valid; write it in q"),
     "name-dash": (
         "robots:\n  - {name: my-robot}\n",
-        "2: robots[0].name: 'my-robot' does not fit; write letters, digits and underscores",
+        "2: robots[0].name: 'my-robot' is not valid; write letters, digits and underscores",
     ),
     "namespace-of-two": (
         "robots:\n  - {name: a, namespace: b/c}\n",
-        "2: robots[0].namespace: 'b/c' does not fit; write one word",
+        "2: robots[0].namespace: 'b/c' is not valid; write one word",
     ),
-    "model-slash": ("robots:\n  - {name: a, model: a/b}\n", "2: robots[0].model: 'a/b' does not"),
+    "model-slash": ("robots:\n  - {name: a, model: a/b}\n", "2: robots[0].model: 'a/b' is not"),
     "model-date": (
         "robots:\n  - {name: a, model: 2020-01-01}\n",
-        "2: robots[0].model: datetime.date(2020, 1, 1) does not fit; write it in quotes",
+        "2: robots[0].model: datetime.date(2020, 1, 1) is not valid; write it in quotes",
     ),
     "layout": (f"layout: frames\n{ONE}", "1: layout: 'frames' is not known; did you mean 'frames-"),
-    "layout-none": (f"layout:\n{ONE}", "1: layout: there is no value; write one, or leave the key"),
+    "layout-none": (f"layout:\n{ONE}", "1: layout: the value is missing; write one, or remove the"),
     "affix": (f"affix: suffix\n{ONE}", "1: affix: 'suffix' is not known; did you mean 'postfix'?"),
     "distro": (f"distro: humble\n{ONE}", "1: distro: 'humble' is not known; known are jazzy, kil"),
     "stack": (f"stack: nav3\n{ONE}", "1: stack 'nav3' is not known; did you mean 'nav2'?"),
@@ -239,11 +242,11 @@ BAD: dict[str, tuple[str, ...]] = {
     "separator-kind": (f"separators: {{lnk: /}}\n{ONE}", "1: separator kind 'lnk' is not known"),
     "world": (
         f"world: odom\n{ONE}",
-        "1: world 'odom' is no shared frame (map, world); put it into shared_frames",
+        "1: world 'odom' is not a shared frame (map, world); add it to shared_frames",
     ),
     "pose-word": (
         "robots:\n  - {name: a, description: rover.urdf, pose: {x: one}}\n",
-        "2: robots[0].pose.x: 'one' does not fit; write a number",
+        "2: robots[0].pose.x: 'one' is not valid; write a number",
     ),
     "pose-nan": (
         "robots:\n  - {name: a, description: rover.urdf, pose: {x: .nan}}\n",
@@ -255,30 +258,33 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "colour-two": (
         "robots:\n  - {name: a, description: rover.urdf, colour: [1, 2]}\n",
-        "2: robots[0].colour: [1, 2] does not fit; write",
+        "2: robots[0].colour: [1, 2] is not valid; write",
     ),
     "other-affix": (
         "affix: prefix\nrobots:\n  - {name: a, description: rover.urdf, postfix: b}\n",
-        "3: 'a' has a postfix, and the fleet's affix is prefix; write prefix:",
+        "3: 'a' has a postfix, but the fleet's affix is prefix; write prefix: instead",
     ),
     "no-description": ("robots:\n  - {name: a}\n", "2: robot 'a' has no description; name its"),
     "arguments-without-xacro": (
         "robots:\n  - {name: a, description: rover.urdf, arguments: {x: 1}}\n",
-        "2: 'a' has arguments and no xacro; take them out, or name a file ….xacro",
+        "2: 'a' has arguments but no xacro file; remove them, or give a file that ends in .xacro",
     ),
-    "arguments-list": (f"{ONE}arguments: [a]\n", "3: arguments: ['a'] does not fit; write keys"),
-    "companions-none": (f"{ONE}companions:\n", "3: companions: there is no value"),
-    "broken": ("robots: [\n", "2:1: not YAML: did not find expected node content; mend the YAML"),
+    "arguments-list": (f"{ONE}arguments: [a]\n", "3: arguments: ['a'] is not valid; write keys"),
+    "companions-none": (f"{ONE}companions:\n", "3: companions: the value is missing"),
+    "broken": (
+        "robots: [\n",
+        "2:1: not YAML: did not find expected node content; correct the YAML",
+    ),
     "two-documents": (f"{ONE}---\n{ONE}", "3:1: not YAML: there is more than one document"),
-    "too-deep": (f"robots: {'[' * 3000}{']' * 3000}\n", " lists and maps go too deep"),
+    "too-deep": (f"robots: {'[' * 3000}{']' * 3000}\n", " lists and maps are nested too deeply"),
     "nul": ("robots:\n  - {name: a\0}\n", " not YAML: unacceptable character #x0000"),
     "params-of-rviz": (
         f"{ONE}companions: {{params: one_robot.rviz}}\n",
-        "@one_robot.rviz:1: no ROS 2 parameter file: an RViz configuration, which goes under rviz",
+        "@one_robot.rviz:1: not a ROS 2 parameter file: it is an RViz config; list it under rviz",
     ),
     "params-anchor": (
         f"{ONE}companions: {{params: bad.yaml}}\n",
-        "@bad.yaml:1: &x: rcl takes no anchors; write it out",
+        "@bad.yaml:1: rcl takes no anchors or aliases (&x); write the value out",
         "amcl: {ros__parameters: &x {a: 1}}\n",
     ),
     "params-tab": (
@@ -288,17 +294,17 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "rviz-of-ros1": (
         f"{ONE}companions: {{rviz: bad.yaml}}\n",
-        "@bad.yaml:1: a config of ROS 1 (rviz/Grid), which rviz2 cannot load; make it anew in rv",
+        "@bad.yaml:1: this is a ROS 1 config (rviz/Grid), which rviz2 cannot load; create it in rv",
         "Visualization Manager: {Displays: [{Class: rviz/Grid}]}\n",
     ),
     "srdf-of-yaml": (
         "robots:\n  - {name: a, description: rover.urdf, srdf: params.yaml}\n",
         "@params.yaml:1:1: not well-formed XML",
     ),
-    "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: no f"),
+    "moveit-of-rviz": (f"{ONE}companions: {{moveit: one_robot.rviz}}\n", "@one_robot.rviz:1: not "),
     "bridge-of-params": (
         f"{ONE}companions: {{bridge: params.yaml}}\n",
-        "@params.yaml:2: no list of topics",
+        "@params.yaml:2: not a list of topics",
     ),
 }
 

@@ -13,10 +13,10 @@ import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
 from lxml import etree
 
-from multibot_rewrite.fleets.artefacts import make_artefacts
+from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import plan_fleet
-from multibot_rewrite.fleets.started import alone, started
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.model import MultibotError
 
@@ -25,7 +25,7 @@ LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfi
 
 def made(folder: Path, text: str, **files: str) -> dict[str, str]:
     plan = plan_fleet(read_fleet(str(fleet_folder(folder, text, **files))))
-    return {it.path: it.data.decode() for it in make_artefacts(plan).files}
+    return {it.path: it.data.decode() for it in make_outputs(plan).files}
 
 
 @pytest.fixture(params=LAYOUTS, ids=lambda it: it[0])
@@ -196,7 +196,7 @@ def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, st
 # ---------------------------------------------------------------- what meets
 
 
-def test_two_stacks_whose_names_meet_are_told(tmp_path: Path) -> None:
+def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
     text = (
         "layout: L2\naffix: prefix\nshared_topics: [/clock, /scan]\n"
         "robots:\n  - {name: a, description: rover.urdf, stack: nav2}\n"
@@ -217,9 +217,9 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
         "  - {name: two, postfix: left_b, description: two.urdf}\n"
     )
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two))))
-    told = [it for it in make_artefacts(plan).findings if it.code == "MF601"]
+    told = [it for it in make_outputs(plan).findings if it.code == "MF601"]
     assert [it.level for it in told] == ["error"]
-    assert "link 'arm_left_b' is of two robots: 'one', 'two'" in told[0].message
+    assert "two robots have the same link 'arm_left_b': 'one' and 'two'" in told[0].message
     assert (Path(told[0].file).name, told[0].line) == ("fleet.yaml", 5)
 
 
@@ -227,7 +227,9 @@ def test_companions_of_one_name_would_be_one_file(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "params.yaml").write_text("x:\n  ros__parameters: {a: 1}\n")
     text = SMALL.replace("[params.yaml]", "[params.yaml, more/params.yaml]")
-    with pytest.raises(MultibotError, match=r"robot1/params\.yaml: two results would go to this"):
+    with pytest.raises(
+        MultibotError, match=r"robot1/params\.yaml: two files would be written here"
+    ):
         made(tmp_path, text)
 
 
@@ -237,15 +239,15 @@ def test_companions_of_one_name_would_be_one_file(tmp_path: Path) -> None:
 def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     text = SMALL.replace("stack: nav2\n", "").replace("  params: [params.yaml]\n", "")
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text))))
-    found = started(plan)
+    found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]
     assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
-    assert started(plan._replace(robots=())) is plan.fleet
+    assert with_start_pose_nodes(plan._replace(robots=())) is plan.fleet
 
 
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, mixed()))))
-    parts = list(alone(plan))
+    parts = list(split_per_robot(plan))
     assert [it.robots for it in parts] == [(it,) for it in plan.robots]
     own = [name for it in parts for name in it.fleet.table.names]
     assert sorted(own, key=str) == sorted(

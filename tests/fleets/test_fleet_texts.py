@@ -14,14 +14,15 @@ from paths import CORPUS
 
 from multibot_rewrite.companions.context import make_context
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets import spawn, teleop, transforms
-from multibot_rewrite.fleets.bridge import BridgeFile, as_spawned, bridge, filled, merged
+from multibot_rewrite.fleets import spawn, start_poses, teleop
+from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
+from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.bridge import Bridged
-from multibot_rewrite.remap.bridge import bridge as generated_bridge
+from multibot_rewrite.remap.bridged_topics import BridgedTopic
+from multibot_rewrite.remap.bridged_topics import bridged_topics as generated_bridge
 from multibot_rewrite.rosnames import check_full_name, check_topic_name
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -35,12 +36,12 @@ def context(layout: str, *links: str) -> Any:
 
 
 def bridged(text: str, layout: str = "L2", *links: str) -> BridgeFile:
-    return bridge(read_yaml(text.encode(), "bridge.yaml"), context(layout, *links))
+    return rewrite_bridge(read_yaml(text.encode(), "bridge.yaml"), context(layout, *links))
 
 
 def own(text: str, layout: str = "L2", *links: str) -> list[dict[str, Any]]:
     made = bridged(text, layout, *links)
-    return yaml.safe_load(filled(made.own.template, "ns", "word", "rover1")) or []
+    return yaml.safe_load(fill_bridge(made.own.template, "ns", "word", "rover1")) or []
 
 
 def one(names: str, layout: str = "L2", *links: str) -> tuple[str, str]:
@@ -95,7 +96,7 @@ def test_names_of_an_entry(names: str, layout: str, ros: str, gz: str) -> None:
 
 def test_topic_name_is_split_where_the_sides_differ() -> None:
     text = f"- topic_name: /model/rover/pose  # where\n{TYPES}"
-    made = filled(bridged(text).own.template, "ns", "word", "rover1")
+    made = fill_bridge(bridged(text).own.template, "ns", "word", "rover1")
     assert made == (
         "- ros_topic_name: /ns/model/rover/pose\n  gz_topic_name: /model/rover1/pose  # where\n"
         + TYPES
@@ -112,7 +113,7 @@ def test_an_entry_in_braces_is_split_too() -> None:
     }
 
 
-def test_points_stand_below_the_robots_topic() -> None:
+def test_points_are_below_the_robots_topic() -> None:
     text = (
         "- topic_name: lidar/points\n  ros_type_name: a\n  gz_type_name: gz.msgs.PointCloudPacked\n"
     )
@@ -151,7 +152,7 @@ def test_a_file_with_nothing_shared_or_nothing_own() -> None:
         (f"- ros_topic_name: a\n  gz_topic_name: /model/x/link/bas/a\n{TYPES}", "MF507"),
     ],
 )
-def test_what_is_told_about_an_entry(entry: str, code: str) -> None:
+def test_mistakes_in_an_entry_are_reported(entry: str, code: str) -> None:
     assert [it.code for it in bridged(entry, "L2", "base").own.findings] == [code]
 
 
@@ -164,7 +165,7 @@ def test_an_entry_that_does_not_load_is_left_out() -> None:
     ("text", "why"),
     [
         ("", "is empty"),
-        ("a: b\n", "no list"),
+        ("a: b\n", "not a list of topics"),
         ("[{topic_name: a}]\n", "in brackets"),
         (f"- &a\n  topic_name: b\n{TYPES}", "anchor"),
     ],
@@ -177,20 +178,20 @@ def test_a_file_that_is_no_bridge(text: str, why: str) -> None:
 def test_a_model_that_no_gz_topic_can_hold() -> None:
     made = bridged(f"- topic_name: /model/a/b\n{TYPES}").own.template
     with pytest.raises(InputError, match="'my rover'"):
-        filled(made, "ns", "word", "my rover")
+        fill_bridge(made, "ns", "word", "my rover")
 
 
 def test_one_file_of_all_robots_and_of_what_descriptions_say() -> None:
     text = "- topic_name: scan  # lidar\n" + TYPES
     made = bridged(text)
-    texts = [(name, filled(made.own.template, name, name, name)) for name in ("r1", "r2")]
+    texts = [(name, fill_bridge(made.own.template, name, name, name)) for name in ("r1", "r2")]
     clock = f"---\n  - topic_name: /clock\n{TYPES.replace('  r', '    r').replace('  g', '    g')}"
     generated = [
-        Bridged("", "/clock", "/clock", "c", "c", "GZ_TO_ROS"),
-        Bridged("r1", "/r1/scan", "r1/scan", "s", "s", "GZ_TO_ROS"),
-        Bridged("r1", "/r1/imu", "r1/imu", "i", "i", "GZ_TO_ROS"),
+        BridgedTopic("", "/clock", "/clock", "c", "c", "GZ_TO_ROS"),
+        BridgedTopic("r1", "/r1/scan", "r1/scan", "s", "s", "GZ_TO_ROS"),
+        BridgedTopic("r1", "/r1/imu", "r1/imu", "i", "i", "GZ_TO_ROS"),
     ]
-    text, findings = merged([*texts, ("shared", clock), ("again", clock)], generated)
+    text, findings = merge_bridges([*texts, ("shared", clock), ("again", clock)], generated)
     names = [it.get("topic_name") or it["gz_topic_name"] for it in yaml.safe_load(text)]
     assert names == ["/r1/scan", "/r2/scan", "/clock", "/r1/imu"] and not findings
     assert text.count("# lidar") == 2
@@ -204,9 +205,9 @@ def test_generated_topics_follow_the_spawned_model(fleet: Any, layout: str) -> N
     assert {name.split("/")[2] for name in found} == {"r1", "second"}
 
 
-def test_two_gz_topics_on_one_ros_topic_are_told() -> None:
+def test_two_gz_topics_on_one_ros_topic_are_reported() -> None:
     text = "".join(f"- ros_topic_name: /s\n  gz_topic_name: /{it}\n{TYPES}" for it in "ab")
-    assert [it.code for it in merged([("f", text)], [])[1]] == ["MF506"]
+    assert [it.code for it in merge_bridges([("f", text)], [])[1]] == ["MF506"]
 
 
 @pytest.fixture(scope="module")
@@ -224,11 +225,13 @@ def test_bridge_corpus(bridges: list[Path], layout: str) -> None:
     for path in bridges:
         document = read_yaml(path.read_bytes(), path.name)
         try:
-            made = bridge(document, context(layout, "base_link", "imu_link", "wheel_left_link"))
+            made = rewrite_bridge(
+                document, context(layout, "base_link", "imu_link", "wheel_left_link")
+            )
         except InputError as error:
             refused[str(error)] += 1
             continue
-        text = filled(made.own.template, "zorba", "zorba", "zorba")
+        text = fill_bridge(made.own.template, "zorba", "zorba", "zorba")
         problems = list(entry_problems(document.text, text, made.shared))
         assert not problems, f"{path}: {problems}"
     assert not refused
@@ -299,9 +302,9 @@ def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
 def test_a_pose_is_a_static_transform(
     fleet: Any, layout: str, body: str, child: str, rules: list[str]
 ) -> None:
-    found = transforms.place(fleet(layout, body=body))
+    found = start_poses.start_poses(fleet(layout, body=body))
     assert len(found.transforms) == 1 and not found.findings
-    words = shlex.split(transforms.command(found.transforms[0]))
+    words = shlex.split(start_poses.command(found.transforms[0]))
     assert words[:4] == ["ros2", "run", "tf2_ros", "static_transform_publisher"]
     assert words[4:16] == shlex.split("--x 1.0 --y -0.5 --z 0.0 --roll 0.0 --pitch 0.0 --yaw 1.57")
     assert words[16:20] == ["--frame-id", "map", "--child-frame-id", child]
@@ -309,7 +312,7 @@ def test_a_pose_is_a_static_transform(
 
 
 def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
-    found = transforms.place(fleet("L2", "diff_drive_controller"))
+    found = start_poses.start_poses(fleet("L2", "diff_drive_controller"))
     assert [it.child for it in found.transforms] == ["r1/odom"]
 
 
@@ -318,7 +321,7 @@ def test_odometry_of_a_node_of_the_stack(fleet: Any) -> None:
 def test_no_second_parent_beside_a_localisation(
     fleet: Any, layout: str, stack: str, initial: list[str]
 ) -> None:
-    found = transforms.place(fleet(layout, stack, DRIVE))
+    found = start_poses.start_poses(fleet(layout, stack, DRIVE))
     assert not found.transforms
     assert [it.code for it in found.findings] == ([] if initial else ["MF701"])
     assert [it.node for it in found.initial] == initial
@@ -330,26 +333,28 @@ def test_no_second_parent_beside_a_localisation(
         }
 
 
-def test_a_map_of_each_robot_stands_in_the_world(fleet: Any) -> None:
+def test_the_map_frame_of_each_robot_is_below_the_world(fleet: Any) -> None:
     more = "shared_frames: [world]\n"
-    slam = transforms.place(fleet("L2", "[robot_state, slam_toolbox]", DRIVE, more)).transforms
+    slam = start_poses.start_poses(
+        fleet("L2", "[robot_state, slam_toolbox]", DRIVE, more)
+    ).transforms
     assert [(it.parent, it.child, it.pose.x) for it in slam] == [("world", "r1/map", 1.0)]
-    amcl = transforms.place(fleet("L2", "[robot_state, amcl]", DRIVE, more))
-    assert [(it.child, it.pose) for it in amcl.transforms] == [("r1/map", transforms.ORIGIN)]
+    amcl = start_poses.start_poses(fleet("L2", "[robot_state, amcl]", DRIVE, more))
+    assert [(it.child, it.pose) for it in amcl.transforms] == [("r1/map", start_poses.ORIGIN)]
     assert [it.node for it in amcl.initial] == ["amcl"]
 
 
-def test_a_description_that_stands_in_the_world_already(fleet: Any) -> None:
+def test_a_description_that_already_starts_with_the_world(fleet: Any) -> None:
     body = (
         '<link name="world"/><joint name="fix" type="fixed">'
         '<parent link="world"/><child link="base"/></joint>'
     )
-    found = transforms.place(fleet("L2", body=body))
+    found = start_poses.start_poses(fleet("L2", body=body))
     assert not found.transforms and [it.code for it in found.findings] == ["MF702"]
 
 
 def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
-    found = transforms.place(fleet("L2", more="world: world\n"))
+    found = start_poses.start_poses(fleet("L2", more="world: world\n"))
     assert found.transforms[0].parent == "world"
 
 

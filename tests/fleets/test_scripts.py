@@ -19,7 +19,7 @@ from paths import FIXTURES, SUPPORT
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.node_params import node_parameters, typed
+from multibot_rewrite.fleets.rcl_parameters import node_parameters, typed
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
@@ -156,7 +156,7 @@ def test_a_node_as_launch_ros_takes_it(robot: LoadedRobot) -> None:
     assert robot.node("bt_navigator")["parameters"] == []
 
 
-def test_who_starts_nowhere_is_told_nothing(tmp_path: Path) -> None:
+def test_a_robot_without_a_pose_has_no_start_parameters(tmp_path: Path) -> None:
     loaded = fleet(tmp_path)
     assert loaded.robot("robot2").node("amcl")["parameters"] == []
     assert loaded.robot("robot2").start_parameters("amcl") == {}
@@ -180,7 +180,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
     ("ask", "parts"),
     [
         (lambda it: it.table.for_node("amlc"), ("robot 'robot1'", "'amlc'", "did you mean 'amcl'")),
-        (lambda it: it.node("amlc"), ("did you mean 'amcl'", "stack: of the fleet file")),
+        (lambda it: it.node("amlc"), ("did you mean 'amcl'", "stack: in the fleet file")),
         (lambda it: it.params("params.yaml", "amlc"), ("params.yaml", "did you mean 'amcl'")),
         (lambda it: it.params("params.yaml", "my_nod"), ("did you mean 'my_node'",)),
         (lambda it: it.params("parms.yaml", "amcl"), ("did you mean 'robot1/params.yaml'",)),
@@ -189,7 +189,7 @@ def test_arguments_of_programs(tmp_path: Path) -> None:
         (lambda it: it._fleet.table.name("amcl"), ("all robots",)),
     ],
 )
-def test_what_is_not_there_is_told_with_the_nearest(
+def test_an_unknown_name_is_reported_with_the_nearest(
     ask: Callable[[LoadedRobot], object], parts: Sequence[str], robot: LoadedRobot
 ) -> None:
     with pytest.raises(UsageError) as caught:
@@ -203,10 +203,10 @@ def test_what_is_not_there_is_told_with_the_nearest(
     [
         (
             "amcl:\n  ros__parameters:\n    a: [1, 2.0]\n",
-            "params.yaml:3: a list of more than one type",
+            "params.yaml:3: the list mixes types",
         ),
         ("amcl:\n  ros__parameters:\n    a: [[1], [2]]\n", "params.yaml:3: a list holds a list"),
-        ("amcl:\n  ros__parameters:\n    a:\n", "params.yaml:3: no value"),
+        ("amcl:\n  ros__parameters:\n    a:\n", "params.yaml:3: the value is missing"),
     ],
 )
 def test_what_rcl_refuses_is_refused_with_its_line(params: str, part: str, tmp_path: Path) -> None:
@@ -265,6 +265,7 @@ def test_nothing_is_written(
     assert capsys.readouterr() == ("", "")
 
 
+@pytest.mark.slow
 def test_no_part_of_ros_is_needed() -> None:
     code = "import sys; from multibot_rewrite import load_fleet; load_fleet; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -365,6 +366,7 @@ def ours(text: str) -> Mapping[str, Any] | None:
         return None
 
 
+@pytest.mark.live
 @pytest.mark.skipif(
     not find_spec("rclpy"), reason="types are not compared with the real rcl: no rclpy here"
 )

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from time import process_time
 
 import pytest
+from counted_steps import growth
 from graph_cases import (
     as_planned,
     bare,
@@ -26,10 +26,17 @@ from paths import ROOT
 from small_fleet import LINKS, NODES, ROBOTS, healthy, plan
 
 from multibot_rewrite.graph.check import ABSENCE, check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, expect, spelled
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, expect, spelled
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
-from multibot_rewrite.graph.rules.owners import name_owners
-from multibot_rewrite.graph.snapshot import Caveat, Frame, GraphEndpoint, GraphNode, Qos, Snapshot
+from multibot_rewrite.graph.rules.ownership import name_ownership
+from multibot_rewrite.graph.snapshot import (
+    Caveat,
+    GraphEndpoint,
+    GraphFrame,
+    GraphNode,
+    Qos,
+    Snapshot,
+)
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
     PUBLISHES,
@@ -60,13 +67,13 @@ def test_a_node_that_is_not_there() -> None:
     assert (found.code, found.robot, found.node) == ("MG101", "robot2", "/robot2/driver")
 
 
-def test_a_node_started_without_its_namespace_is_told_so() -> None:
+def test_a_node_started_without_its_namespace_has_that_cause() -> None:
     graph = without_node(healthy(), "/robot1/driver")
     graph = graph._replace(nodes=(*graph.nodes, GraphNode("/driver", "x")))
     (found,) = check(plan(), graph)
     assert found.code == "MG101"
     assert found.cause == (
-        "/driver is there: it was started without the robot's namespace; give namespace='robot1' "
+        "/driver is running: it was started without the robot's namespace; use namespace='robot1' "
         "in the launch file, or --ros-args -r __ns:=/robot1"
     )
 
@@ -87,21 +94,25 @@ def test_why_we_never_get_cmd_vel() -> None:
     ]
     assert "/robot1/cmd_vel" in found[0].message
     assert found[0].cause == (
-        "it subscribes /cmd_vel instead: its rule /cmd_vel:=cmd_vel did not reach it; give "
-        "--ros-args -r /cmd_vel:=cmd_vel, or remappings=[('/cmd_vel', 'cmd_vel')]"
+        "it subscribes to /cmd_vel instead: the remap rule /cmd_vel:=cmd_vel is not applied; pass "
+        "it with --ros-args -r /cmd_vel:=cmd_vel, or with remappings=[('/cmd_vel', 'cmd_vel')] in "
+        "the launch file"
     )
 
 
-def test_a_name_spelled_wrongly_is_called_the_nearest() -> None:
+def test_a_misspelled_name_is_found_by_similarity() -> None:
     found = check(plan(), moved(healthy(), "/robot1/joint_states", "/robot1/joint_state", "driver"))
     assert found[0].cause == (
-        "it publishes /robot1/joint_state instead: a rule or parameter spells it otherwise"
+        "it publishes /robot1/joint_state instead: is the name misspelled in a remap rule or "
+        "parameter?"
     )
 
 
 def test_a_name_that_the_plan_has_for_two_robots_is_a_leak_too() -> None:
     ends = [
-        Wanted(f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm")
+        PlannedEndpoint(
+            f"/{robot}/driver", TOPIC, PUBLISHES, "/alarm", "std_msgs/msg/Bool", "/alarm"
+        )
         for robot in ROBOTS
     ]
     wanted = plan()._replace(endpoints=(*plan().endpoints, *ends))
@@ -124,8 +135,8 @@ def test_one_robot_listening_to_another() -> None:
     assert ("MG104", "/robot1/driver") in [(f.code, f.node) for f in found]
 
 
-def test_what_hangs_on_a_parameter_is_not_missed() -> None:
-    assert not [w for w in plan().endpoints if w.asked == "extra"]
+def test_an_endpoint_with_a_condition_is_not_planned() -> None:
+    assert not [w for w in plan().endpoints if w.code_name == "extra"]
 
 
 def test_two_nodes_of_one_name() -> None:
@@ -141,7 +152,7 @@ def test_two_types_of_one_topic() -> None:
     other = first._replace(type="std_msgs/msg/String", node="/robot1/driver")
     (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, other)))
     assert found.code == "MG106"
-    assert "/robot1/driver subscribes std_msgs/msg/String" in found.message
+    assert "/robot1/driver subscribes to std_msgs/msg/String" in found.message
 
 
 @pytest.mark.parametrize(
@@ -168,7 +179,9 @@ def test_qos_that_cannot_connect(offered: Qos | None, wanted: Qos | None, clash:
 # ---------------------------------------------------------------- tf
 
 
-def edges(change: Callable[[Sequence[Frame]], Sequence[Frame]], layout: str = "L2") -> list[str]:
+def edges(
+    change: Callable[[Sequence[GraphFrame]], Sequence[GraphFrame]], layout: str = "L2"
+) -> list[str]:
     graph = healthy(layout)
     return codes(graph._replace(frames=tuple(change(graph.frames))), layout)
 
@@ -181,7 +194,7 @@ def test_a_torn_tree() -> None:
     assert edges(lambda f: [f[0], f[1]._replace(parent="base_link"), *f[2:]]) == ["MG203"]
 
 
-def test_a_frame_that_nobody_declares() -> None:
+def test_an_undeclared_frame() -> None:
     assert edges(lambda f: [*f, f[1]._replace(child="gripper/robot1")]) == ["MG204"]
 
 
@@ -217,7 +230,7 @@ def test_a_leak_stays_a_leak_in_an_incomplete_view() -> None:
 
 @pytest.mark.parametrize("code", ABSENCE)
 def test_absence_codes_are_codes_of_rules(code: str) -> None:
-    rules = ("nodes", "names", "ends", "frames")
+    rules = ("nodes", "topics", "type_and_qos", "frames")
     folder = ROOT / "multibot_rewrite" / "graph" / "rules"
     assert any(f'"{code}"' in (folder / f"{rule}.py").read_text() for rule in rules)
 
@@ -237,7 +250,7 @@ def test_absence_codes_are_codes_of_rules(code: str) -> None:
     ],
 )
 def test_the_owner_of_a_name(name: str, robot: str) -> None:
-    assert name_owners(plan()).of(name) == robot
+    assert name_ownership(plan()).robot(name) == robot
 
 
 # ---------------------------------------------------------------- causes
@@ -248,17 +261,17 @@ def test_a_plugin_is_named_with_its_line() -> None:
     graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
     missing, leak = check(plan()._replace(sources=place), graph)
     assert missing.cause == (
-        "it subscribes /cmd_vel instead: plugin driver has no rule /cmd_vel:=cmd_vel: "
+        "it subscribes to /cmd_vel instead: plugin driver has no remap rule /cmd_vel:=cmd_vel, "
         "see rover.urdf:120"
     )
-    assert leak.cause == "plugin driver has no rule /cmd_vel:=cmd_vel: see rover.urdf:120"
+    assert leak.cause == "plugin driver has no remap rule /cmd_vel:=cmd_vel, see rover.urdf:120"
 
 
 def test_a_plugin_without_a_namespace_is_named_with_its_line() -> None:
     graph = renamed_node(healthy(), "/robot1/driver", "/driver")
     wanted = plan()._replace(sources=(("/robot1/driver", "rover.urdf:120"),))
     (found,) = check(wanted, graph)
-    assert found.cause == "/driver is there: plugin driver has no namespace, see rover.urdf:120"
+    assert found.cause == "/driver is running: plugin driver has no namespace, see rover.urdf:120"
     (found,) = check(wanted, without_node(healthy(), "/robot1/driver"))
     assert "see rover.urdf:120" in found.cause
 
@@ -270,7 +283,7 @@ def test_a_silent_robot_of_plugins_names_the_line_too() -> None:
     wanted = plan()._replace(sources=(("/robot1/robot_state_publisher", "rover.urdf:120"),))
     (found,) = check(wanted, graph)
     assert (found.code, found.robot) == ("MG109", "robot1")
-    assert "has no namespace, see rover.urdf:120; 1 more of its nodes likewise" in found.cause
+    assert "has no namespace, see rover.urdf:120; the same for 1 more of its nodes" in found.cause
 
 
 def test_a_robot_of_conditions_only_is_never_silent() -> None:
@@ -284,7 +297,7 @@ def test_a_plugin_of_the_postfix_layout() -> None:
     wanted = plan("L4")._replace(sources=(("/driver_robot1", "rover.urdf:120"),))
     (found,) = check(wanted, renamed_node(healthy("L4"), "/driver_robot1", "/driver"))
     assert found.code == "MG101"
-    assert "plugin driver has no name of its own for each robot, see rover.urdf:120" in found.cause
+    assert "plugin driver has no separate name for each robot, see rover.urdf:120" in found.cause
 
 
 def test_the_rule_of_the_postfix_layout() -> None:
@@ -294,7 +307,7 @@ def test_the_rule_of_the_postfix_layout() -> None:
 
 
 def test_an_action_needs_more_than_one_rule() -> None:
-    end = Wanted("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
+    end = PlannedEndpoint("/robot1/driver", "action", "serves", "/robot1/go", "a/action/B", "/go")
     wanted = plan()._replace(endpoints=(*plan().endpoints, end))
     there = GraphEndpoint("action", "serves", "/go", "a/action/B", "", end.node, None, "")
     hidden = there._replace(
@@ -303,17 +316,17 @@ def test_an_action_needs_more_than_one_rule() -> None:
     graph = healthy()._replace(endpoints=(*healthy().endpoints, there, hidden))
     found = check(wanted, graph)
     assert [f.code for f in found] == ["MG102", "MG103"]
-    assert "one for each of its _action/ names" in found[0].cause
+    assert "one rule for each of its _action/ names" in found[0].cause
 
 
 def test_a_managed_node_may_not_be_configured() -> None:
     name = "/robot1/driver/get_state"
-    end = Wanted("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
+    end = PlannedEndpoint("/robot1/driver", SERVICE, SERVES, name, "", "~/get_state")
     wanted = plan()._replace(endpoints=(*plan().endpoints, end))
     state = GraphEndpoint(SERVICE, SERVES, name, "", "", "/robot1/driver", None, "")
     kept = (e for e in healthy().endpoints if e.name != "/robot1/reset")
     (found,) = check(wanted, healthy()._replace(endpoints=(*kept, state)))
-    assert found.message == "it should serve service /robot1/reset, and does not"
+    assert found.message == "should offer service /robot1/reset, but does not"
     assert "ros2 lifecycle get /robot1/driver" in found.cause
 
 
@@ -323,7 +336,7 @@ def test_a_robot_under_another_namespace() -> None:
         graph = renamed_node(graph, f"/robot1/{node}", f"/robot_1/{node}")
     found = [f for f in check(plan(), graph) if f.code != "MG203"]
     assert [f.code for f in found] == ["MG109"]
-    assert "/robot_1/robot_state_publisher is there" in found[0].cause
+    assert "/robot_1/robot_state_publisher is running" in found[0].cause
 
 
 # ---------------------------------------------------------------- what nobody planned
@@ -339,7 +352,7 @@ def test_an_unplanned_node_of_a_robot_is_one_finding() -> None:
 def test_an_unplanned_node_with_names_of_no_robot() -> None:
     graph = with_node(healthy(), "/robot1/gripper", (PUBLISHES, "/grip", "std_msgs/msg/Bool"))
     (found,) = check(plan(), graph)
-    assert "it has /grip, not robot1's own" in found.message
+    assert "it uses /grip, without the name of robot1" in found.message
 
 
 def test_an_unplanned_node_by_its_affix() -> None:
@@ -350,7 +363,7 @@ def test_an_unplanned_node_by_its_affix() -> None:
 def test_one_more_of_a_planned_node_is_called_that() -> None:
     (found,) = check(plan(), with_node(healthy(), "/driver"))
     assert (found.code, found.robot) == ("MG108", "")
-    assert "one more" in found.cause
+    assert "a second one" in found.cause
 
 
 def test_a_shared_node_is_no_surprise_and_missed_mildly() -> None:
@@ -383,7 +396,7 @@ def test_a_tool_may_be_the_planned_one_without_its_namespace() -> None:
     )
     (found,) = check(wanted, with_node(healthy(), "/joy_node"))
     assert (found.code, found.node) == ("MG101", "/robot1/joy_node")
-    assert found.cause.startswith("/joy_node is there")
+    assert found.cause.startswith("/joy_node is running")
     twice = with_node(with_node(healthy(), "/robot1/joy_node"), "/robot1/joy_node")
     assert [f.code for f in check(wanted, twice)] == ["MG105"]
 
@@ -424,7 +437,9 @@ def test_another_type_than_planned() -> None:
     graph = with_type(healthy(), "/robot1/cmd_vel", "/robot1/driver", "std_msgs/msg/String")
     (found,) = check(plan(), graph)
     assert found.code == "MG106"
-    assert "as std_msgs/msg/String, planned is geometry_msgs/msg/Twist" in found.message
+    assert (
+        "with type std_msgs/msg/String, but the plan has geometry_msgs/msg/Twist" in found.message
+    )
 
 
 def test_a_type_that_it_may_have_as_well() -> None:
@@ -521,7 +536,7 @@ def test_many_publishers_are_one_finding_for_a_listener() -> None:
     driver = next(e for e in graph.endpoints if e.name == "/robot1/joint_states" and e.qos == qos())
     more = tuple(driver._replace(node=f"/robot1/_more{at}") for at in range(5))
     (found,) = check(plan(), graph._replace(endpoints=(*graph.endpoints, *more)))
-    assert "/robot1/driver (as 5 more) offers VOLATILE" in found.message
+    assert "/robot1/driver (and 5 more) offers VOLATILE" in found.message
 
 
 # ---------------------------------------------------------------- nobody on the other side
@@ -532,7 +547,7 @@ def test_an_operator_topic_without_an_operator_is_silent() -> None:
     assert check(plan(), healthy()) == []
 
 
-def test_a_teleop_without_a_robot_is_told_to_each() -> None:
+def test_a_teleop_without_a_robot_is_reported_for_each() -> None:
     twist = (PUBLISHES, "/cmd_vel", "geometry_msgs/msg/Twist")
     found = check(plan(), with_node(healthy(), "/teleop_twist_keyboard", twist))
     assert [(f.code, f.node) for f in found] == [
@@ -540,7 +555,8 @@ def test_a_teleop_without_a_robot_is_told_to_each() -> None:
         ("MG111", "/robot2/driver"),
     ]
     assert found[0].message == (
-        "nobody publishes /robot1/cmd_vel; /teleop_twist_keyboard publishes /cmd_vel"
+        "subscribes to /robot1/cmd_vel, which has no publisher; /teleop_twist_keyboard publishes "
+        "/cmd_vel"
     )
     assert "/cmd_vel:=/robot1/cmd_vel" in found[0].cause
 
@@ -553,7 +569,7 @@ def test_a_teleop_of_one_robot_is_no_fault_of_the_other() -> None:
 def with_pilot(name: str) -> tuple[Expectation, Snapshot]:
     """A planned pilot of robot1 that is not there, and one that is, with another topic."""
     first, second = plan().robots
-    end = Wanted("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
+    end = PlannedEndpoint("/robot1/pilot", TOPIC, PUBLISHES, "/robot1/cmd_vel", "", "cmd_vel")
     wanted = plan()._replace(
         robots=(first._replace(nodes=(*first.nodes, "/robot1/pilot")), second),
         endpoints=(*plan().endpoints, end),
@@ -574,7 +590,7 @@ def test_a_publisher_of_quite_another_name() -> None:
     assert "MG111" not in {f.code for f in check(*with_pilot("/robot1/plan"))}
 
 
-def test_what_a_planned_publisher_lacks_is_told_of_it_alone() -> None:
+def test_a_missing_publisher_is_reported_only_for_its_node() -> None:
     found = check(plan(), moved(healthy(), "/robot1/joint_states", "/joint_states", "driver"))
     assert [f.code for f in found] == ["MG102", "MG103"]
 
@@ -598,7 +614,8 @@ def test_a_topic_that_fell_below_a_costmap() -> None:
     (found,) = check(*with_costmap("/robot1/local_costmap/scan"))
     assert (found.code, found.node) == ("MG110", COSTMAP)
     assert found.message == (
-        "it subscribes /robot1/local_costmap/scan, where nobody publishes; /robot1/scan is meant"
+        "subscribes to /robot1/local_costmap/scan, which has no publisher; did you mean "
+        "/robot1/scan?"
     )
     assert "write /robot1/scan" in found.cause
 
@@ -606,15 +623,15 @@ def test_a_topic_that_fell_below_a_costmap() -> None:
 def test_a_topic_that_is_planned_above_is_enough() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan", published="/robot1/other")
     assert check(wanted, graph) == []
-    end = Wanted(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
+    end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/scan", SCAN, "/scan")
     found = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
     assert [f.code for f in found] == ["MG102", "MG110"]
-    assert "falls below the node's own namespace" in found[0].cause
+    assert "resolves a relative name in its own namespace" in found[0].cause
 
 
-def test_a_costmap_whose_plan_is_wrong_is_told_too() -> None:
+def test_a_costmap_with_a_wrong_plan_is_reported_too() -> None:
     wanted, graph = with_costmap("/robot1/local_costmap/scan")
-    end = Wanted(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
+    end = PlannedEndpoint(COSTMAP, TOPIC, SUBSCRIBES, "/robot1/local_costmap/scan", SCAN, "scan")
     (found,) = check(wanted._replace(endpoints=(*wanted.endpoints, end)), graph)
     assert found.code == "MG110"
 
@@ -627,7 +644,7 @@ def test_a_costmap_that_is_not_planned() -> None:
 def test_a_planned_name_below_a_namespace_of_another_node_is_meant_so() -> None:
     first, second = plan().robots
     arm = "/robot1/arm/controller"
-    end = Wanted(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
+    end = PlannedEndpoint(arm, TOPIC, SUBSCRIBES, "/robot1/arm/joint_states", "", "joint_states")
     wanted = plan()._replace(
         robots=(first._replace(nodes=(*first.nodes, arm)), second),
         endpoints=(*plan().endpoints, end),
@@ -707,7 +724,9 @@ def test_a_name_put_in_twice(layout: str, name: str) -> None:
 def with_frame(layout: str, child: str, parent: str, static: bool = True) -> Snapshot:
     graph = healthy(layout)
     topic = next(f.topic for f in graph.frames if f.static)
-    return sent(graph._replace(frames=(*graph.frames, Frame(child, parent, topic, static, ()))))
+    return sent(
+        graph._replace(frames=(*graph.frames, GraphFrame(child, parent, topic, static, ())))
+    )
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -726,7 +745,7 @@ def test_what_a_camera_sees_is_silent() -> None:
 def test_a_frame_that_is_nearly_the_declared_one() -> None:
     (found,) = check(plan(), with_frame("L2", "lasr/robot1", "base_link/robot1"))
     assert found.code == "MG204"
-    assert "is laser/robot1 meant?" in found.cause
+    assert "did you mean laser/robot1?" in found.cause
     (found,) = check(plan("L1"), with_frame("L1", "laser_link", "base_link"))
     assert (found.code, found.robot) == ("MG204", "robot1")
 
@@ -752,7 +771,7 @@ def test_map_above_odom_is_silent() -> None:
     assert check(plan("L1"), with_frame("L1", "odom", "map", static=False)) == []
 
 
-def test_a_copy_of_all_tf_for_looking_on_is_silent() -> None:
+def test_a_copy_of_all_tf_for_rviz_is_silent() -> None:
     graph = with_node(healthy("L3"), "/tf_bridge", (PUBLISHES, "/tf", "tf2_msgs/msg/TFMessage"))
     copies = tuple(f._replace(topic="/tf") for f in graph.frames if not f.static)
     assert copies
@@ -797,8 +816,10 @@ def robots_called(*names: str, layout: str = "L2") -> Expectation:
         (("robot1", "robot2"), "L2", "/robot1", ""),
     ],
 )
-def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot: str) -> None:
-    assert name_owners(robots_called(*robots, layout=layout)).of(name) == robot
+def test_which_robot_a_name_belongs_to(
+    robots: tuple[str, ...], layout: str, name: str, robot: str
+) -> None:
+    assert name_ownership(robots_called(*robots, layout=layout)).robot(name) == robot
 
 
 @pytest.mark.parametrize(
@@ -814,26 +835,20 @@ def test_whose_a_name_is(robots: tuple[str, ...], layout: str, name: str, robot:
     ],
 )
 def test_a_name_without_the_robots(layout: str, name: str, bare: str) -> None:
-    assert name_owners(plan(layout)).bare(name, "robot1") == bare
+    assert name_ownership(plan(layout)).without_robot(name, "robot1") == bare
 
 
 # ---------------------------------------------------------------- size
 
 
-def test_time_grows_with_the_fleet_and_not_faster() -> None:
-    def seconds(count: int) -> float:
-        names = [f"robot{at}" for at in range(count)]
-        wanted = robots_called(*names)
+def test_the_cost_grows_with_the_fleet_and_not_faster() -> None:
+    def prepared(count: int) -> Callable[[], object]:
+        wanted = robots_called(*(f"robot{at}" for at in range(count)))
         graph = moved(as_planned(wanted), "/robot1/cmd_vel", "/cmd_vel")
-        times = []
-        for _ in range(3):
-            start = process_time()
-            found = check(wanted, graph)
-            times.append(process_time() - start)
-            assert [f.code for f in found] == ["MG102", "MG103"]
-        return min(times)
+        assert [f.code for f in check(wanted, graph)] == ["MG102", "MG103"]
+        return lambda: check(wanted, graph)
 
-    assert seconds(800) < 10 * seconds(200)
+    assert growth(prepared, 50, 200) < 1.5
 
 
 def test_services_that_a_twin_may_hide_are_not_missed() -> None:

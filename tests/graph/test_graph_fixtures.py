@@ -80,7 +80,7 @@ def rows() -> dict[str, list[str]]:
 
 
 @pytest.mark.parametrize("code", CODES)
-def test_the_page_tells_what_why_and_how(code: str) -> None:
+def test_the_page_has_what_why_and_how(code: str) -> None:
     level, *cells = rows()[code]
     assert level in ("error", "warning", "error, warning")
     assert len(cells) == 3

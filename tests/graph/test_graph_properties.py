@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import pytest
 from graph_cases import as_planned, environment, qos, sent
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot, expect, spelled
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+    expect,
+    spelled,
+)
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.snapshot import (
-    Frame,
     GraphEndpoint,
+    GraphFrame,
     GraphNode,
     Snapshot,
     from_json,
@@ -32,6 +39,8 @@ from multibot_rewrite.remap.records import (
     NodeFacts,
 )
 from multibot_rewrite.remap.table import build_table
+
+pytestmark = pytest.mark.slow
 
 # Robots called like one another, and like words of the names.
 ROBOTS = ("robot1", "robot2", "robot10", "arm", "arm_left", "left", "scan", "camera", "map", "r")
@@ -156,7 +165,7 @@ def test_a_node_that_is_taken_away_is_found(fleet: Fleet, data: st.DataObject) -
 
 @settings(max_examples=100, deadline=None)
 @given(fleets(), st.data())
-def test_a_frame_that_hangs_elsewhere_is_found(fleet: Fleet, data: st.DataObject) -> None:
+def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject) -> None:
     if not fleet.graph.frames:
         return
     edge = data.draw(st.sampled_from(fleet.graph.frames))
@@ -204,12 +213,17 @@ def anything(draw: st.DrawFn) -> Fleet:
     nodes = st.lists(full_names, max_size=3, unique=True).map(tuple)
     some = st.lists(any_names, max_size=3).map(tuple)
     robots = [
-        draw(st.builds(WantedRobot, st.just(n), nodes, some, full_names, some)) for n in names
+        draw(st.builds(PlannedRobot, st.just(n), nodes, some, full_names, some)) for n in names
     ]
     there = st.sampled_from([node for robot in robots for node in robot.nodes] or ["/else"])
     node = st.one_of(full_names, there)
     wanted = st.builds(
-        lambda n, end, *rest: Wanted(n, *end, *rest), there, ends, full_names, types, any_names
+        lambda n, end, *rest: PlannedEndpoint(n, *end, *rest),
+        there,
+        ends,
+        full_names,
+        types,
+        any_names,
     )
     plan = Expectation(
         "any", tuple(robots), draw(nodes), draw(nodes), draw(some),
@@ -221,7 +235,7 @@ def anything(draw: st.DrawFn) -> Fleet:
         st.sampled_from((None, qos())), st.just(""),
     )  # fmt: skip
     frame = st.builds(
-        Frame,
+        GraphFrame,
         any_names,
         any_names,
         full_names,
@@ -238,7 +252,7 @@ def anything(draw: st.DrawFn) -> Fleet:
 
 @settings(max_examples=300, deadline=None)
 @given(anything())
-def test_whatever_there_is_each_finding_is_told_once(fleet: Fleet) -> None:
+def test_each_finding_is_reported_once_for_any_graph(fleet: Fleet) -> None:
     found = check(fleet.plan, fleet.graph)
     assert len(set(found)) == len(found)
     assert found == check(fleet.plan, fleet.graph)

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.learning.choosing import choose, strays
-from multibot_rewrite.graph.learning.learn import Learned, learn
+from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner
+from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.snapshot import (
     QUIET,
@@ -27,8 +27,8 @@ from multibot_rewrite.graph.snapshot import (
 )
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.known import Library, stack_of
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -48,7 +48,7 @@ from multibot_rewrite.rosnames import bind, expand, resolve_bound
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")
 # The parts without the nodes: nobody described these.
-UNKNOWN = Library(built_in().parts, {}, {})
+UNKNOWN = NodeLibrary(built_in().parts, {}, {})
 TEXT, IMAGE, TRIGGER = "std_msgs/msg/String", "sensor_msgs/msg/Image", "std_srvs/srv/Trigger"
 FETCH = "acme_msgs/action/Fetch"
 EVERY_NODE = tuple(end for end in built_in().parts["every_node"] if end.name != "/clock")
@@ -107,15 +107,17 @@ def parts_of(end: Endpoint) -> Iterator[tuple[str, str, str, str]]:
 
 
 def learned(
-    seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN
-) -> tuple[Learned, ...]:
+    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
+) -> tuple[LearnedNode, ...]:
     """What is learned, proved to survive the file."""
-    found = learn(seen, choose(seen, names, base), base, library)
+    found = learn(seen, choose_nodes(seen, names, base), base, library)
     assert to_yaml(found, "mine", library)
     return found
 
 
-def one(seen: Snapshot, *names: str, base: str = "/", library: Library = UNKNOWN) -> Learned:
+def one(
+    seen: Snapshot, *names: str, base: str = "/", library: NodeLibrary = UNKNOWN
+) -> LearnedNode:
     (found,) = learned(seen, *names, base=base, library=library)
     return found
 
@@ -132,7 +134,7 @@ def subscribes(name: str, type_: str = TEXT) -> Endpoint:
     return Endpoint(TOPIC, SUBSCRIBES, name, type_)
 
 
-def spelled(found: Learned) -> list[tuple[str, str]]:
+def spelled(found: LearnedNode) -> list[tuple[str, str]]:
     return [(end.role, end.name) for end in found.own]
 
 
@@ -173,7 +175,9 @@ def led(nodes: Iterable[NodeFacts], table: Table) -> set[Led]:
     return found
 
 
-def assert_served(nodes: Sequence[NodeFacts], base: str, library: Library, naming: Naming) -> None:
+def assert_served(
+    nodes: Sequence[NodeFacts], base: str, library: NodeLibrary, naming: Naming
+) -> None:
     """Learned from one robot without rules, the table is that of the facts, and its rules serve."""
     seen = graph(*nodes, base=base)
     names = [node.name for node in seen.nodes]
@@ -193,6 +197,7 @@ def stacks() -> dict[str, list[NodeFacts]]:
     return {name: [bare(node) for node in stack_of(library, name)] for name in names}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", "/old"])
@@ -208,6 +213,7 @@ def test_every_known_stack_is_learned_as_it_is_described(
 LITERAL = {"nav2_slam", "slam_toolbox"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
 @pytest.mark.parametrize("base", ["", "/old"])
 def test_every_stack_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
@@ -243,6 +249,7 @@ def robots(draw: st.DrawFn) -> list[NodeFacts]:
     return [bare(NodeFacts(name, "", tuple(draw(ends)))) for name in names]
 
 
+@pytest.mark.slow
 @given(
     nodes=robots(),
     base=st.sampled_from(["", "/old", "/fleet/old"]),
@@ -255,6 +262,7 @@ def test_any_robot_is_learned_as_it_is(
     assert_served(nodes, base, UNKNOWN, make_naming(layout, affix))
 
 
+@pytest.mark.slow
 @given(nodes=robots(), seed=st.integers())
 def test_the_file_does_not_depend_on_the_order_of_the_snapshot(
     nodes: list[NodeFacts], seed: int
@@ -355,7 +363,7 @@ def test_what_the_robot_has_above_a_nodes_namespace_is_absolute() -> None:
     assert spelled(one(seen, base="/old")) == [(SUBSCRIBES, "/older/scan"), (SUBSCRIBES, "/scan")]
 
 
-def test_two_names_that_are_spelled_alike_become_one() -> None:
+def test_two_names_with_the_same_name_in_code_become_one() -> None:
     seen = graph(node(name="eye/camera"), base="/old")
     who = "/old/eye/camera"
     seen = with_end(
@@ -363,7 +371,7 @@ def test_two_names_that_are_spelled_alike_become_one() -> None:
     )
     (end,) = one(seen, base="/old").own
     assert (end.name, end.type, end.also) == ("/x", IMAGE, (TEXT,))
-    assert end.note == "seen as /x, too"
+    assert end.note == "also seen as /x"
 
 
 # ---------------------------------------------------------------- what is one thing
@@ -402,12 +410,12 @@ def test_server_and_client_of_one_action_are_two() -> None:
     assert spelled(one(graph(own))) == [(SERVES, "/fetch"), (CALLS, "/fetch")]
 
 
-def test_an_action_and_a_service_of_one_name_are_said_once() -> None:
+def test_an_action_and_a_service_of_one_name_become_one() -> None:
     own = node(
         Endpoint(ACTION, SERVES, "fetch", FETCH), Endpoint(SERVICE, SERVES, "fetch", TRIGGER)
     )
     (end,) = one(graph(own)).own
-    assert (end.kind, end.note) == (ACTION, "there is a service of this name, too")
+    assert (end.kind, end.note) == (ACTION, "there is a service with this name too")
 
 
 def test_an_image_brings_its_transports() -> None:
@@ -494,20 +502,23 @@ def test_a_helper_in_the_process_of_one_node_is_that_nodes() -> None:
     assert found.remarks == ()
 
 
-def test_a_helper_of_several_nodes_is_given_to_each_and_it_is_said() -> None:
+def test_a_helper_of_several_nodes_is_added_to_each_with_a_remark() -> None:
     seen = graph(node(name="one"), node(name="two"), LISTENER, process="p")
     for found in (*learned(seen), one(seen, "/one")):
         assert found.parts == ("tf_helper",)
         bare, remark = found.remarks
-        assert bare == "nothing of it is seen but its name"
-        assert "is given to each: /transform_listener_impl_55d0c0ffee" in remark
+        assert bare == "only its name is seen, no endpoints"
+        assert (
+            "each gets the endpoints of the helper nodes there: /transform_listener_impl_55d0c0ffee"
+            in remark
+        )
 
 
 def test_a_helper_of_another_process_is_not_taken() -> None:
     seen = graph(node(publishes("x")), LISTENER)
     assert one(seen).parts == ()
-    assert strays(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
-    assert strays(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
+    assert helpers_without_owner(seen, ["/driver"]) == ("/transform_listener_impl_55d0c0ffee",)
+    assert helpers_without_owner(graph(node(), LISTENER, process="p"), ["/driver"]) == ()
 
 
 def test_what_a_node_asks_for_itself_is_not_its_helpers() -> None:
@@ -542,32 +553,32 @@ def test_half_a_listener_is_written_out_as_a_helpers() -> None:
 def test_all_nodes_but_tools_are_learned() -> None:
     tools = ("_ros2cli_7", "launch_ros_12", "rqt_gui_py_node_3", "rviz2", "rosbag2_recorder")
     seen = graph(*(node(name=name) for name in ("b", "a", *tools, "foxglove_bridge")), LISTENER)
-    assert choose(seen, (), "/") == ("/a", "/b")
-    assert choose(seen, ("/rviz2",), "/") == ("/rviz2",)
+    assert choose_nodes(seen, (), "/") == ("/a", "/b")
+    assert choose_nodes(seen, ("/rviz2",), "/") == ("/rviz2",)
 
 
 def test_all_nodes_of_a_namespace_are_learned() -> None:
     seen = graph(node(name="r1/a"), node(name="r1/eye/b"), node(name="r11/c"), node(name="r1"))
     for namespace in ("/r1", "/r1/"):
-        assert choose(seen, (), namespace) == ("/r1/a", "/r1/eye/b")
+        assert choose_nodes(seen, (), namespace) == ("/r1/a", "/r1/eye/b")
 
 
 @pytest.mark.parametrize(
     ("names", "namespace", "said"),
     [
-        (["/drivr"], "/", "/drivr: there is no such node; there is /driver"),
-        (["/zzz"], "/", "/zzz: there is no such node; there is /driver, /r1/planner"),
-        (["/driver"], "/r1", "/driver: it is not below /r1"),
-        ([], "/r2", "there is no node to learn below /r2; there is"),
+        (["/drivr"], "/", "/drivr: no node has this name; running are /driver"),
+        (["/zzz"], "/", "/zzz: no node has this name; running are /driver, /r1/planner"),
+        (["/driver"], "/r1", "/driver: the node is not below --namespace /r1"),
+        ([], "/r2", "there is no node to learn below /r2; running are"),
         ([], "/r 2", "namespace '/r 2': character 3, ' ', is not a letter"),
-        (["/twin"], "/", "/twin: 2 nodes have this name; end all but one"),
+        (["/twin"], "/", "/twin: 2 nodes have this name; stop all but one"),
         ([], "/", "/twin: 2 nodes have this name"),
     ],
 )
 def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: str) -> None:
     seen = graph(*(node(name=name) for name in ("driver", "r1/planner", "twin", "twin")))
     with pytest.raises(UsageError) as caught:
-        choose(seen, names, namespace)
+        choose_nodes(seen, names, namespace)
     assert said in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -576,8 +587,11 @@ def test_nodes_that_cannot_be_learned(names: list[str], namespace: str, said: st
     ("end", "said"),
     [
         ((TOPIC, PUBLISHES, "/a b", TEXT), "topic name '/a b' in the graph: character 3"),
-        ((SERVICE, PUBLISHES, "/x", TRIGGER), "/driver publishes the service /x, which nobody can"),
-        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which nobody can"),
+        (
+            (SERVICE, PUBLISHES, "/x", TRIGGER),
+            "/driver publishes the service /x, which is not possible",
+        ),
+        ((TOPIC, SERVES, "/x", TEXT), "/driver serves the topic /x, which is not possible"),
     ],
 )
 def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said: str) -> None:
@@ -590,11 +604,11 @@ def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said:
 def test_a_known_node_is_compared() -> None:
     (amcl,) = stacks()["amcl"]
     found = one(graph(amcl), library=built_in())
-    assert found.remarks == ("known as amcl of nav2_amcl; all is as described",)
+    assert found.remarks == ("known as amcl of nav2_amcl; as described there",)
     some = tuple(end for end in amcl.endpoints if end.name != "scan")
     found = one(graph(node(*some, publishes("~/x"), name="amcl")), library=built_in())
     (remark,) = found.remarks
-    assert remark.endswith("; seen besides: publishes ~/x; not seen: subscribes scan")
+    assert remark.endswith("; additional: publishes ~/x; not seen: subscribes scan")
 
 
 def test_conditions_and_the_clock_are_no_news() -> None:
@@ -603,14 +617,14 @@ def test_conditions_and_the_clock_are_no_news() -> None:
     assert always != amcl.endpoints
     clock = subscribes("/clock", "rosgraph_msgs/msg/Clock")
     found = one(graph(amcl._replace(endpoints=(*always, clock))), library=built_in())
-    assert found.remarks[0].endswith("all is as described")
+    assert found.remarks[0].endswith("as described there")
 
 
 def test_what_is_made_at_run_time_is_no_news() -> None:
     (costmap,) = stacks()["local_costmap/local_costmap"]
     more = (publishes("my_layer"), subscribes("/robot/front"))
     found = one(graph(costmap._replace(endpoints=costmap.endpoints + more)), library=built_in())
-    assert found.remarks[0].endswith("all is as described")
+    assert found.remarks[0].endswith("as described there")
 
 
 # ---------------------------------------------------------------- the file
@@ -620,7 +634,7 @@ def test_a_file_that_reads_otherwise_is_not_written() -> None:
     found = one(graph(node(publishes("x"))))
     (end,) = found.own
     for wrong in (end._replace(name="/y"), end._replace(type="no type")):
-        with pytest.raises(ProofError, match="what was learned"):
+        with pytest.raises(ProofError, match="the learned nodes"):
             to_yaml([found._replace(own=(wrong,))], "mine", UNKNOWN)
 
 
@@ -677,7 +691,7 @@ def test_one_node_goes_to_standard_output(shot: Path, capsys: pytest.CaptureFixt
     assert err == "multibot: 1 node learned as stack learned\n"
 
 
-def test_an_incomplete_view_is_written_and_told(
+def test_an_incomplete_view_is_written_and_reported(
     shot: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     seen = graph(node(publishes("odom")))
@@ -703,7 +717,9 @@ def test_nodes_of_one_robot_without_its_namespace_get_a_hint(
         assert (hint in capsys.readouterr().err) is hinted
 
 
-def test_helpers_of_nobody_are_told(shot: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_helpers_without_a_node_are_reported(
+    shot: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     shot.write_bytes(to_json(graph(node(), LISTENER)))
     assert main(["learn", "--snapshot", str(shot)]) == 0
     assert "they are left out: /transform_listener_impl_55d0c0ffee" in capsys.readouterr().err
@@ -713,7 +729,7 @@ def test_helpers_of_nobody_are_told(shot: Path, capsys: pytest.CaptureFixture[st
     ("words", "said"),
     [
         (["--node", "driver"], "'driver' is not a full name, give for example /driver"),
-        (["--node", "/drivr"], "/drivr: there is no such node; there is /driver"),
+        (["--node", "/drivr"], "/drivr: no node has this name; running are /driver"),
         (["--namespace", "old"], "'old' is not a full name"),
         (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
         (["--namespace", "/none"], "there is no node to learn below /none"),

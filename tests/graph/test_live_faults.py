@@ -27,6 +27,8 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
+pytestmark = pytest.mark.live
+
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
 )

@@ -14,11 +14,13 @@ import pytest
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.forms import arguments
-from multibot_rewrite.remap.known import stack_of
+from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.stacks import user_stack
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table_formats import arguments
+
+pytestmark = pytest.mark.live
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -88,7 +90,7 @@ def table(file: Path, layout: str) -> Table:
     return found
 
 
-def test_names_are_spelled_as_they_were_seen(files: dict[str, Path]) -> None:
+def test_names_are_written_as_they_were_seen(files: dict[str, Path]) -> None:
     root, below = files["root"].read_text(), files["below"].read_text()
     for text in (root, below):
         for line in ("/heartbeat: std_msgs/msg/Empty", "~/state: std_msgs/msg/String"):

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
@@ -17,8 +16,11 @@ import live_fleet
 import pytest
 import tf2_build
 from paths import ROBOTS
+from waiting import wait_until
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
+
+pytestmark = pytest.mark.live
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -84,11 +86,11 @@ def actions(graph: Snapshot) -> set[str]:
     return {name for name in names if name.endswith("/_action/send_goal")}
 
 
-def test_without_rules_it_leaks_and_says_so() -> None:
+def test_without_rules_it_leaks_and_is_reported() -> None:
     words = [*PAIR, "--stack", "robot_state", "--layout", "tf-per-robot", "--without-rules"]
     done = rehearse(4, *words)
     assert done.returncode == 1, done.stderr
-    assert "/robot1/robot_state_publisher: error: MG103 /tf" in done.stdout
+    assert "/robot1/robot_state_publisher: error: MG103 uses /tf" in done.stdout
     assert "/robot2/robot_state_publisher: error: MG102" in done.stdout
 
 
@@ -106,8 +108,8 @@ def test_a_stack_that_leaks_is_shown_leaking(tmp_path: Path) -> None:
     )
     done = rehearse(5, *PAIR, "--nodes", str(own), "--stack", "mine", "--layout", "L2")
     assert done.returncode == 1
-    assert "/robot1/siren: error: MG103 /alarm" in done.stdout
-    assert "/robot2/siren: error: MG103 /alarm" in done.stdout
+    assert "/robot1/siren: error: MG103 uses /alarm" in done.stdout
+    assert "/robot2/siren: error: MG103 uses /alarm" in done.stdout
     assert "robot_state_publisher" not in done.stdout
 
 
@@ -125,7 +127,7 @@ def test_tf_is_its_own_type_where_it_is_installed(tf2: dict[str, str]) -> None:
     words = [*PAIR, "--stack", "robot_state", "--layout", "L3"]
     done = rehearse(7, *words, **tf2)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
-    assert "stand-in" not in done.stderr
+    assert "replaced by others" not in done.stderr
 
 
 def test_a_missing_rclpy_is_one_line(tmp_path: Path) -> None:
@@ -148,15 +150,6 @@ def children(pid: int) -> Iterator[int]:
             yield int(stat.parent.name)
 
 
-def waited(seconds: float, gone: list[int]) -> bool:
-    limit = time.monotonic() + seconds
-    while any(Path(f"/proc/{pid}").exists() for pid in gone):
-        if time.monotonic() > limit:
-            return False
-        time.sleep(0.05)
-    return True
-
-
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to look for children")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_no_node_is_left(number: signal.Signals) -> None:
@@ -172,7 +165,7 @@ def test_no_node_is_left(number: signal.Signals) -> None:
         _, said = play.communicate(timeout=20)
         assert play.returncode == (-number if number == signal.SIGKILL else 130)
         assert "Traceback" not in said
-        assert waited(10, there)
+        wait_until(lambda: not any(Path(f"/proc/{pid}").exists() for pid in there))
     finally:
         play.kill()
         play.wait()

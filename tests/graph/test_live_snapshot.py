@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -17,17 +17,20 @@ import live_fleet
 import pytest
 import tf2_build
 from live_commands import domain
+from waiting import wait_until
 
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     QUIET,
     TIMEOUT,
-    Frame,
     GraphEndpoint,
+    GraphFrame,
     Snapshot,
     from_json,
     to_json,
 )
+
+pytestmark = pytest.mark.live
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -101,7 +104,7 @@ def ends(snapshot: Snapshot, name: str, role: str) -> list[GraphEndpoint]:
     return [end for end in snapshot.endpoints if (end.name, end.role) == (name, role)]
 
 
-def test_every_node_is_seen_and_the_looking_one_is_not(seen: Snapshot, has_tf: bool) -> None:
+def test_every_node_is_seen_but_the_observer(seen: Snapshot, has_tf: bool) -> None:
     names = [node.name for node in seen.nodes]
     own = ["drive", "pilot", *(["state", "dock"] if has_tf else [])]
     expected = [f"/robot{at}/{name}" for at in (1, 2) for name in own]
@@ -120,7 +123,7 @@ def test_a_topic_has_both_sides_with_type_hash_and_process(seen: Snapshot) -> No
     assert sends.process == reads.process
 
 
-def test_qos_differences_are_told(seen: Snapshot) -> None:
+def test_qos_is_in_the_snapshot(seen: Snapshot) -> None:
     (sends,) = ends(seen, "/robot1/odom", "publishes")
     (reads,) = ends(seen, "/robot1/odom", "subscribes")
     (keeps,) = ends(seen, "/robot1/cmd_vel", "publishes")
@@ -130,7 +133,7 @@ def test_qos_differences_are_told(seen: Snapshot) -> None:
     assert sends.qos.deadline == float("inf")
 
 
-def test_services_and_their_clients_are_told(seen: Snapshot) -> None:
+def test_services_and_their_clients_are_in_the_snapshot(seen: Snapshot) -> None:
     (serves,) = ends(seen, "/robot1/reset", "serves")
     assert (serves.kind, serves.node) == ("service", "/robot1/drive")
     assert serves.type == "std_srvs/srv/Trigger"
@@ -148,7 +151,7 @@ def test_two_nodes_of_one_name_are_two(seen: Snapshot) -> None:
     assert [c.code for c in seen.environment.caveats if c.code == "same-name"] == ["same-name"]
 
 
-def test_the_environment_is_told(seen: Snapshot) -> None:
+def test_the_environment_is_shown(seen: Snapshot) -> None:
     around = seen.environment
     assert (around.domain, around.range, around.rmw) == (domain(0), "LOCALHOST", "rmw_fastrtps_cpp")
     assert around.settled == QUIET
@@ -162,20 +165,20 @@ def test_a_snapshot_of_real_nodes_survives_the_file(seen: Snapshot) -> None:
     assert from_json(to_json(seen), "again") == seen
 
 
-def test_frames_are_told_with_topic_and_publishers(seen: Snapshot, has_tf: bool) -> None:
+def test_frames_have_topic_and_publishers(seen: Snapshot, has_tf: bool) -> None:
     if not has_tf:
         pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
     states = ("/robot1/state", "/robot2/state")
     assert set(seen.frames) == {
-        Frame("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
-        Frame("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
-        Frame("lidar", "base_link", "/tf_static", True, states),
-        Frame("robot1/imu", "base_link", "/tf_static", True, states),
-        Frame("robot2/imu", "base_link", "/tf_static", True, states),
+        GraphFrame("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
+        GraphFrame("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
+        GraphFrame("lidar", "base_link", "/tf_static", True, states),
+        GraphFrame("robot1/imu", "base_link", "/tf_static", True, states),
+        GraphFrame("robot2/imu", "base_link", "/tf_static", True, states),
     }
 
 
-def test_actions_are_told(seen: Snapshot, has_tf: bool) -> None:
+def test_actions_are_in_the_snapshot(seen: Snapshot, has_tf: bool) -> None:
     if not has_tf:
         pytest.skip(f"no action type: tf2_msgs is not there: {tf2_build.missing()}")
     (serves,) = ends(seen, "/robot2/go", "serves")
@@ -192,7 +195,7 @@ def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     assert "/robot2/state" in result.stdout
 
 
-def test_expected_nodes_end_the_looking_and_a_topic_is_asked_for(fleet: Build) -> None:
+def test_expected_nodes_end_the_observation_and_a_topic_is_queried(fleet: Build) -> None:
     names = ["/robot1/drive", "/robot2/drive"]
     result = multibot(0, "-o", "-", "--expect", ",".join(names), "--topic", "/heartbeat", **fleet)
     assert result.returncode == 0, result.stderr
@@ -258,23 +261,13 @@ def children(pid: int) -> list[int]:
     return found
 
 
-def waited(condition: Callable[[], bool], seconds: float = 10) -> bool:
-    limit = time.monotonic() + seconds
-    while not condition():
-        if time.monotonic() > limit:
-            return False
-        time.sleep(0.02)
-    return True
-
-
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to look for children")
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
 def test_no_child_is_left(number: signal.Signals) -> None:
     env = live_fleet.environ(domain(2))
     command = subprocess.Popen([*COMMAND], env=env, stderr=subprocess.PIPE, text=True)
     try:
-        assert waited(lambda: bool(children(command.pid)))
-        (child,) = children(command.pid)
+        (child,) = wait_until(lambda: children(command.pid))
         # Long enough that rclpy is up.
         time.sleep(0.8)
         assert Path(f"/proc/{child}").exists()
@@ -282,7 +275,7 @@ def test_no_child_is_left(number: signal.Signals) -> None:
         _, said = command.communicate(timeout=15)
         assert command.returncode == (-number if number == signal.SIGKILL else 130)
         assert "Traceback" not in said
-        assert waited(lambda: not Path(f"/proc/{child}").exists())
+        wait_until(lambda: not Path(f"/proc/{child}").exists())
     finally:
         command.kill()
         command.wait()

@@ -8,7 +8,6 @@ import queue
 import signal
 import subprocess
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,6 +15,9 @@ from pathlib import Path
 import live_fleet
 import pytest
 from live_commands import COMMAND, domain, node, write_plan
+from waiting import wait_until
+
+pytestmark = pytest.mark.live
 
 pytest.importorskip(
     "rclpy", reason="no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)", exc_type=ImportError
@@ -45,13 +47,16 @@ class Watch:
 
     def until(self, text: str, seconds: float = 20) -> str:
         """The first line with ``text`` from now on."""
-        limit = time.monotonic() + seconds
-        while (left := limit - time.monotonic()) > 0:
-            with suppress(queue.Empty):
-                self.lines.append(self._coming.get(timeout=left))
+        wait_until(lambda: self._comes(text), seconds)
+        return self.lines[-1]
+
+    def _comes(self, text: str) -> bool:
+        with suppress(queue.Empty):
+            while True:
+                self.lines.append(self._coming.get_nowait())
                 if text in self.lines[-1]:
-                    return self.lines[-1]
-        raise AssertionError(f"no {text!r} in {self.lines}")
+                    return True
+        return False
 
     def end(self) -> tuple[int, str]:
         """End it as a user does; exit code and what it said on standard error."""

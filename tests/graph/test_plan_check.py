@@ -60,7 +60,7 @@ def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str])
     code, out, _ = held(plan, graph, capsys)
     assert code == 1
     assert "/robot1/diff_drive: error: MG102" in out
-    assert "it subscribes /cmd_vel instead" in out
+    assert "it subscribes to /cmd_vel instead" in out
 
 
 def test_an_incomplete_view_is_inconclusive(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -86,23 +86,26 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
         pytest.param("robots:", "robts:", "'robots' is missing", id="no-robots"),
         pytest.param("subscribes, topic", "hears, topic", "'hears'", id="role"),
         pytest.param("    tf: ", "    tfs: ", "'tf' is missing", id="no-tf"),
-        pytest.param("[map, world]", "map", "shared_frames is no list", id="no-list"),
-        pytest.param("topic, /robot1", "topic, robot1", "no full name", id="relative"),
-        pytest.param("layout:", "layout: [", "not YAML", id="no-yaml"),
-        pytest.param("    tf: /robot1/tf", "    tf:", "tf: None is no full name", id="tf"),
+        pytest.param("[map, world]", "map", "shared_frames is not a list", id="no-list"),
+        pytest.param("topic, /robot1", "topic, robot1", "is not a full name", id="relative"),
+        pytest.param("layout:", "layout: [", "not valid YAML", id="no-yaml"),
+        pytest.param("    tf: /robot1/tf", "    tf:", "tf: None is not a full name", id="tf"),
         pytest.param(
-            "      /robot1/imu_driver:", "      imu_driver:", "'imu_driver' is no f", id="n"
+            "      /robot1/imu_driver:",
+            "      imu_driver:",
+            "'imu_driver' is not a full name",
+            id="n",
         ),
         pytest.param(
-            "ignored_nodes: []", "ignored_nodes: rviz", "ignored_nodes is no list", id="i"
+            "ignored_nodes: []", "ignored_nodes: rviz", "ignored_nodes is not a list", id="i"
         ),
-        pytest.param("sources:", "sources: [a]\nmore:", "'more' is missing or unknown", id="more"),
+        pytest.param("sources:", "sources: [a]\nmore:", "unknown key 'more'", id="more"),
         pytest.param(f": {ROVER}:88", ": [1]", "sources./robot1/diff_drive: write", id="place"),
         pytest.param(
-            "/robot1/imu_driver: []", "/robot1/imu_driver: {}", "imu_driver is no l", id="r"
+            "/robot1/imu_driver: []", "/robot1/imu_driver: {}", "imu_driver is not a list", id="r"
         ),
         pytest.param(
-            "    nodes:", "    optional: x\n    nodes:", "optional is no list", id="optional"
+            "    nodes:", "    optional: x\n    nodes:", "optional is not a list", id="optional"
         ),
     ],
 )
@@ -123,10 +126,10 @@ def test_a_wrong_plan_is_one_line(
     assert err.count("\n") == 1
 
 
-def test_a_snapshot_that_is_none(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_that_is_not_a_snapshot(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     capsys.readouterr()
     assert main(["check", str(plan), "--snapshot", str(plan)]) == 2
-    assert "not JSON" in capsys.readouterr().err
+    assert "not valid JSON" in capsys.readouterr().err
 
 
 # ---------------------------------------------------------------- where a node comes from
@@ -166,7 +169,7 @@ def test_the_lines_of_a_xacro_are_those_of_the_expanded_text(tmp_path: Path) -> 
 def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = moved(as_planned(plan), "/robot1/cmd_vel", "/cmd_vel", "diff_drive")
     _, out, _ = held(plan, graph, capsys)
-    assert f"plugin diff_drive has no namespace or rule for it: see {ROVER}:88" in out
+    assert f"plugin diff_drive has no namespace or remap rule for it, see {ROVER}:88" in out
 
 
 # ---------------------------------------------------------------- what a plan has besides
@@ -192,7 +195,7 @@ def test_a_node_under_a_condition_is_optional(
 
 def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
     ends = from_yaml(plan.read_bytes(), "plan").endpoints
-    (end,) = (e for e in ends if (e.node, e.asked) == ("/robot1/velocity_smoother", "cmd_vel"))
+    (end,) = (e for e in ends if (e.node, e.code_name) == ("/robot1/velocity_smoother", "cmd_vel"))
     assert (end.type, *end.also) == ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
 
 

@@ -1,4 +1,4 @@
-"""What is played in a rehearsal: the names of the code, the rules of the table, the transforms."""
+"""The stub nodes of a rehearsal: names of the code, rules of the table, transforms."""
 
 from __future__ import annotations
 
@@ -10,22 +10,22 @@ from multibot_rewrite.graph.expectation import expect
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.rehearsal import (
     PROCESSES,
-    Actor,
-    Part,
+    StubEndpoint,
+    StubNode,
     action_parts,
-    as_played,
-    cast,
-    dealt,
     from_order,
-    stand_in,
+    split_over_processes,
+    stub_nodes,
+    substitute_type,
     to_order,
+    with_substitutes,
 )
 from multibot_rewrite.graph.snapshot import from_json
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
-from multibot_rewrite.remap.known import stack_of
-from multibot_rewrite.remap.plugins import plugin_nodes
+from multibot_rewrite.remap.node_library import stack_of
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -36,8 +36,8 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
     NodeFacts,
+    NodeRule,
     NodeTable,
-    Rule,
     Table,
 )
 from multibot_rewrite.remap.stacks import built_in
@@ -66,59 +66,61 @@ def table(layout: str = "L2") -> Table:
     return build_table(("robot1", "robot2"), (NODE, MAPPER), make_naming(layout))
 
 
-def drive(layout: str = "L2", rules: bool = True) -> Actor:
-    actors = [actor for robot, actor in cast(table(layout), {}, rules) if robot == "robot2"]
-    return next(actor for actor in actors if actor.name == "drive")
+def drive(layout: str = "L2", rules: bool = True) -> StubNode:
+    stubs = [stub for robot, stub in stub_nodes(table(layout), {}, rules) if robot == "robot2"]
+    return next(stub for stub in stubs if stub.name == "drive")
 
 
-def test_a_node_asks_as_its_code_does_and_rcl_gets_the_rules() -> None:
-    actor = drive()
-    assert actor.parts[0] == Part(TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist", False)
-    assert actor.arguments == ("--ros-args", "-r", "__ns:=/robot2", "-r", "/cmd_vel:=cmd_vel")
+def test_a_stub_has_the_names_of_the_code_and_rcl_gets_the_rules() -> None:
+    stub = drive()
+    assert stub.endpoints[0] == StubEndpoint(
+        TOPIC, SUBSCRIBES, "/cmd_vel", "geometry_msgs/msg/Twist", False
+    )
+    assert stub.arguments == ("--ros-args", "-r", "__ns:=/robot2", "-r", "/cmd_vel:=cmd_vel")
     assert drive("L4").arguments[:3] == ("--ros-args", "-r", "__node:=drive_robot2")
 
 
-def test_without_rules_a_node_keeps_its_place_only() -> None:
+def test_without_rules_a_node_keeps_only_namespace_and_name() -> None:
     assert drive(rules=False).arguments == ("--ros-args", "-r", "__ns:=/robot2")
 
 
-def test_what_hangs_on_a_condition_is_not_played() -> None:
-    assert "debug" not in {part.name for part in drive().parts}
+def test_an_endpoint_with_a_condition_is_left_out() -> None:
+    assert "debug" not in {part.name for part in drive().endpoints}
 
 
-def test_a_type_nobody_told_is_that_of_the_other_end() -> None:
-    assert Part(TOPIC, PUBLISHES, "scan", LASER, False) in drive().parts
+def test_an_unknown_type_is_that_of_the_other_endpoint() -> None:
+    assert StubEndpoint(TOPIC, PUBLISHES, "scan", LASER, False) in drive().endpoints
 
 
-def test_what_a_helper_asks_for_is_marked() -> None:
-    assert [part.name for part in drive().parts if part.helper] == ["/tf"]
+def test_endpoints_of_a_helper_are_marked() -> None:
+    assert [part.name for part in drive().endpoints if part.helper] == ["/tf"]
 
 
 def test_a_node_of_the_plugins_and_of_the_stack_is_one() -> None:
-    one = NodeTable("r", "manager", "/r", "manager", (Rule("r", "manager", "a", "b", "", ""),))
-    two = one._replace(rules=(Rule("r", "manager", "c", "d", "", ""),))
-    ((_, actor),) = cast(Table("both", (one, two), (), ()), {})
-    assert actor.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "a:=b", "-r", "c:=d")
+    one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
+    two = one._replace(rules=(NodeRule("r", "manager", "c", "d", "", ""),))
+    ((_, stub),) = stub_nodes(Table("both", (one, two), (), ()), {})
+    assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "a:=b", "-r", "c:=d")
 
 
 def test_robots_share_processes_when_they_are_many() -> None:
-    some = [(f"robot{at}", Actor(f"node{at}", (), (), ())) for at in range(3 * PROCESSES + 1)]
-    hands = dealt(some)
-    assert len(hands) == PROCESSES
-    assert sorted(len(hand) for hand in hands) == [3] * (PROCESSES - 1) + [4]
-    assert [len(hand) for hand in dealt(some[:3])] == [1, 1, 1]
+    some = [(f"robot{at}", StubNode(f"node{at}", (), (), ())) for at in range(3 * PROCESSES + 1)]
+    processes = split_over_processes(some)
+    assert len(processes) == PROCESSES
+    assert sorted(len(process) for process in processes) == [3] * (PROCESSES - 1) + [4]
+    assert [len(process) for process in split_over_processes(some[:3])] == [1, 1, 1]
 
 
 def test_an_order_survives_the_pipe() -> None:
     import json
 
-    actor = drive()._replace(edges=(Edge("odom", "base", False),))
-    assert from_order(json.loads(json.dumps(to_order([actor])))) == [actor]
+    stub = drive()._replace(edges=(Edge("odom", "base", False),))
+    assert from_order(json.loads(json.dumps(to_order([stub])))) == [stub]
 
 
 @pytest.mark.parametrize(("role", "parts"), [(SERVES, PUBLISHES), (CALLS, SUBSCRIBES)])
 def test_an_action_without_its_type_is_three_services_and_two_topics(role: str, parts: str) -> None:
-    made = list(action_parts(Part(ACTION, role, "go", "x/action/Go", False)))
+    made = list(action_parts(StubEndpoint(ACTION, role, "go", "x/action/Go", False)))
     assert [(part.kind, part.role, part.name) for part in made] == [
         (SERVICE, role, "go/_action/send_goal"),
         (SERVICE, role, "go/_action/cancel_goal"),
@@ -129,10 +131,10 @@ def test_an_action_without_its_type_is_three_services_and_two_topics(role: str, 
 
 
 @pytest.mark.parametrize("layout", ["L2", "L4"])
-def test_the_plan_is_told_what_stands_in(layout: str) -> None:
+def test_the_plan_has_the_substituted_types(layout: str) -> None:
     plan = expect(table(layout), make_naming(layout), {})
-    replaced = {"nav2_msgs/action/Spin": "", LASER: stand_in(TOPIC, LASER)}
-    played = as_played(plan, replaced).endpoints
+    replaced = {"nav2_msgs/action/Spin": "", LASER: substitute_type(TOPIC, LASER)}
+    played = with_substitutes(plan, replaced).endpoints
     assert {it.type for it in played if "mapper" in it.node} == {"std_msgs/msg/Empty"}
     there = [it for it in played if "_action" in it.name and "robot2" in it.node]
     action = "/robot2/go" if layout == "L2" else "/go/robot2"
@@ -168,7 +170,7 @@ def test_description_odometry_and_map_are_one_tree(layout: str, end: str) -> Non
     assert {parent for parent in parents.values() if parent not in parents} == {"map"}
 
 
-def test_a_base_that_the_description_calls_otherwise_is_its_root() -> None:
+def test_odometry_leads_to_the_root_of_the_description() -> None:
     assert sent("L2", "robot_localization")["ekf_filter_node"] == [
         Edge("odom/robot1", "base_footprint/robot1", False)
     ]
@@ -182,12 +184,12 @@ def test_a_robots_frames_are_declared_or_sent_and_not_shared() -> None:
     assert "map" not in frames
 
 
-def test_odometry_that_nobody_is_known_to_send_is_sent_and_told() -> None:
+def test_missing_odometry_is_added_and_reported() -> None:
     naming = make_naming("L2")
     tree = [Edge("base", "arm", True)]
     edges = {("r1", "robot_state_publisher"): tree, ("r1", "amcl"): [Edge("map", "odom", False)]}
-    filled, told = with_odometry(edges, "r1", naming)
-    assert told == "odom -> base"
+    filled, added = with_odometry(edges, "r1", naming)
+    assert added == "odom -> base"
     assert filled["r1", "robot_state_publisher"] == [*tree, Edge("odom", "base", False)]
     assert with_odometry(filled, "r1", naming) == (filled, "")
     assert with_odometry({("r1", "robot_state_publisher"): tree}, "r1", naming)[1] == ""
@@ -197,9 +199,7 @@ def test_odometry_that_nobody_is_known_to_send_is_sent_and_told() -> None:
 
 
 @pytest.mark.parametrize("seen", [0, 1])
-def test_a_look_that_sees_nothing_is_taken_again(
-    seen: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_empty_snapshot_is_taken_again(seen: int, monkeypatch: pytest.MonkeyPatch) -> None:
     graphs = FIXTURES / "graphs"
     full = from_json((graphs / "healthy.json").read_bytes(), "healthy")
     looks = [full] if seen else [full, full._replace(nodes=())]

@@ -21,9 +21,12 @@ from selenium.webdriver.support.select import Select
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 DRIVER = shutil.which("chromedriver")
-pytestmark = pytest.mark.skipif(
-    not (BROWSER and DRIVER), reason="no browser: apt install chromium chromium-driver"
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not (BROWSER and DRIVER), reason="no browser: apt install chromium chromium-driver"
+    ),
+]
 FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -123,7 +126,7 @@ def in_view(driver: webdriver.Chrome, element: Any) -> bool:
     return bool(driver.execute_script(script, element))
 
 
-def test_what_is_wrong_is_told_first(show: Open) -> None:
+def test_faults_are_first(show: Open) -> None:
     driver = show(spoiled())
     assert every(driver, "h1")[0].text.lower() == "not as planned"
     texts = [it.text for it in seen(driver, "#findings tbody tr")]
@@ -255,7 +258,7 @@ def test_what_is_open_is_printed_without_switches(show: Open) -> None:
 
 
 @pytest.mark.parametrize("case", ["healthy", "spoiled", "swarm", "nasty"])
-def test_nothing_hangs_over_the_edge(show: Open, case: str) -> None:
+def test_nothing_is_wider_than_the_page(show: Open, case: str) -> None:
     plan = nav2_graphs.nav2()
     pages = {
         "healthy": lambda: to_html(nav2_graphs.scene(plan, nav2_graphs.healthy(plan))),

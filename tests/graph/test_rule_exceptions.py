@@ -9,10 +9,10 @@ from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, w
 from graph_cases import healthy as planned
 
 from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
-from multibot_rewrite.graph.snapshot import Caveat, Frame, Snapshot
-from multibot_rewrite.graph.watching import Verdict, next_moment
+from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot
+from multibot_rewrite.graph.watching import Verdict, next_state
 from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
@@ -28,24 +28,24 @@ def fleet(tf: str, **frames: Sequence[str]) -> Expectation:
     robots, ends = [], []
     for name, own in frames.items():
         node, topic = f"/{name}/driver", tf.replace("ROBOT", name)
-        robots.append(WantedRobot(name, (node,), tuple(own), topic))
+        robots.append(PlannedRobot(name, (node,), tuple(own), topic))
         both = (topic, topic.replace("tf", "tf_static"))
-        ends += [Wanted(node, TOPIC, PUBLISHES, it, TF, it) for it in both]
+        ends += [PlannedEndpoint(node, TOPIC, PUBLISHES, it, TF, it) for it in both]
     return Expectation("frames-per-robot", tuple(robots), (), ("/rosout",), ("map",), tuple(ends))
 
 
-def graph(plan: Expectation, *more: Frame) -> Snapshot:
+def graph(plan: Expectation, *more: GraphFrame) -> Snapshot:
     """As planned: each robot's frames below its first one, and transforms besides."""
     edges = [
-        Frame(frame, robot.frames[0], robot.tf.replace("tf", "tf_static"), True, ())
+        GraphFrame(frame, robot.frames[0], robot.tf.replace("tf", "tf_static"), True, ())
         for robot in plan.robots
         for frame in robot.frames[1:]
     ]
     return sent(as_planned(plan)._replace(frames=(*edges, *more)))
 
 
-def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[Frame]:
-    return [Frame(frame, parent, topic, True, ()) for frame in frames]
+def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[GraphFrame]:
+    return [GraphFrame(frame, parent, topic, True, ()) for frame in frames]
 
 
 def found(plan: Expectation, seen: Snapshot) -> list[tuple[str, str, tuple[str, ...]]]:
@@ -127,7 +127,7 @@ def test_what_is_below_a_sensors_link_starts_with_its_word_up_to_the_dot() -> No
     assert found(DOTS, graph(DOTS, *other)) == [("MG204", "robot1", ("lidar.depth.robot1",))]
 
 
-def test_a_torn_tree_names_the_spelling_with_a_dot() -> None:
+def test_a_disconnected_tree_has_the_frame_name_with_a_dot() -> None:
     """The wheel's root is there as a child, once more with the robot's name behind a dot."""
     seen = graph(
         DOTS,
@@ -177,7 +177,7 @@ def test_what_is_not_at_home_is_not_copied() -> None:
     assert ("MG205", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
 
 
-def test_frames_that_nobody_is_known_to_send_are_no_copy() -> None:
+def test_frames_without_a_known_sender_are_no_copy() -> None:
     seen = copied(graph(PREFIXED), "")
     assert ("MG205", "robot1", (CAMERA, LASER)) in found(PREFIXED, seen)
 
@@ -235,9 +235,9 @@ def test_a_frame_without_the_robots_name_may_still_come_while_a_fleet_starts() -
     """Before everything was there once it does not count as the worst that was seen."""
     plan = read_plan("both")
     broken = next(it for it in CASES if (it.layout, it.code) == ("both", "MG207"))
-    first = next_moment(plan, broken.broken(planned("both")), None)
-    assert {it.code for it in first.found} == {"MG207"}
-    assert (first.whole, first.worst) == (False, Verdict.PLANNED)
-    later = next_moment(plan, planned("both"), first)
-    again = next_moment(plan, broken.broken(planned("both")), later)
-    assert (later.whole, again.worst) == (True, Verdict.WRONG)
+    first = next_state(plan, broken.broken(planned("both")), None)
+    assert {it.code for it in first.findings} == {"MG207"}
+    assert (first.complete, first.worst) == (False, Verdict.PLANNED)
+    later = next_state(plan, planned("both"), first)
+    again = next_state(plan, broken.broken(planned("both")), later)
+    assert (later.complete, again.worst) == (True, Verdict.WRONG)

@@ -15,22 +15,21 @@ from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.environment import (
-    listed,
     participants,
     setting_caveats,
     settings,
     view_caveats,
 )
-from multibot_rewrite.graph.live.gather import (
-    Changes,
-    Heard,
+from multibot_rewrite.graph.live.assemble import (
+    LastChange,
+    ReceivedTransform,
+    endpoints_with_process,
     frames,
     merged,
-    placed_endpoints,
-    placed_nodes,
-    processes,
-    settled,
-    topics_to_ask,
+    nodes_with_process,
+    processes_by_node,
+    topics_to_query,
+    why_settled,
 )
 from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.snapshot import (
@@ -40,8 +39,8 @@ from multibot_rewrite.graph.snapshot import (
     UNKNOWN_NODE,
     Caveat,
     Environment,
-    Frame,
     GraphEndpoint,
+    GraphFrame,
     GraphNode,
     Qos,
     Snapshot,
@@ -49,6 +48,7 @@ from multibot_rewrite.graph.snapshot import (
     incomplete,
     to_json,
 )
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import InputError, UsageError
 
 QOS = Qos("UNKNOWN", 0, "RELIABLE", "VOLATILE", math.inf, 10.0, "AUTOMATIC", math.inf)
@@ -73,7 +73,7 @@ SNAPSHOT = Snapshot(
         end("/robot1/amcl", "/robot1/amcl/get_state", "serves"),
         end("/robot1/amcl", "/robot1/go", "serves", kind="action"),
     ),
-    (Frame("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),),
+    (GraphFrame("base_link/ä", "odom", "/robot1/tf", False, ("/robot1/amcl",)),),
     AROUND,
 )
 
@@ -98,11 +98,11 @@ TIME = st.floats(0, 1e6) | st.just(math.inf)
 @given(
     st.builds(GraphNode, NAME, TEXT),
     st.builds(Qos, TEXT, st.integers(), TEXT, TEXT, TIME, TIME, TEXT, TIME),
-    st.builds(Frame, TEXT, TEXT, NAME, st.booleans(), st.lists(NAME).map(tuple)),
+    st.builds(GraphFrame, TEXT, TEXT, NAME, st.booleans(), st.lists(NAME).map(tuple)),
     st.builds(Caveat, TEXT, st.booleans(), TEXT),
 )
 def test_any_snapshot_survives_the_file(
-    node: GraphNode, qos: Qos, frame: Frame, caveat: Caveat
+    node: GraphNode, qos: Qos, frame: GraphFrame, caveat: Caveat
 ) -> None:
     ends = (end(node.name, "/x", qos=qos, process=node.process),)
     any_ = Snapshot((node, node), ends, (frame,), AROUND._replace(caveats=(caveat,)))
@@ -134,7 +134,7 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
 @pytest.mark.parametrize(
     ("data", "message"),
     [
-        (b"{", "g.json:1:2: not JSON"),
+        (b"{", "g.json:1:2: not valid JSON"),
         (b"\xff", "g.json: cannot be read as JSON"),
         (b"[" * 100_000, "g.json: cannot be read as JSON"),
         (b"[]", "g.json: not a snapshot, but []"),
@@ -146,7 +146,7 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
         (changed("nodes", 1, to="x"), 'g.json: nodes[1]: expected an object, not "x"'),
         (changed("nodes", 1, "name"), "g.json: nodes[1].name: missing"),
         (changed("nodes", 0, "name", to="a"), "nodes[0].name: expected a full name that starts"),
-        (changed("nodes", 0, "pid", to=3), "g.json: nodes[0].pid: not a key of a snapshot"),
+        (changed("nodes", 0, "pid", to=3), "g.json: nodes[0].pid: unknown key"),
         (changed("endpoints", 0, "kind", to="topik"), "one of topic, service, action, not"),
         (changed("endpoints", 0, "role", to=None), "endpoints[0].role: expected one of publishes"),
         (changed("endpoints", 0, "qos", "depth", to="1"), "qos.depth: expected a whole number"),
@@ -162,7 +162,7 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
         (changed("environment", "caveats", 0, "code"), "environment.caveats[0].code: missing"),
     ],
 )
-def test_a_wrong_file_is_told_with_its_key(data: bytes, message: str) -> None:
+def test_a_wrong_file_is_reported_with_its_key(data: bytes, message: str) -> None:
     with pytest.raises(InputError) as error:
         from_json(data, "g.json")
     assert str(error.value).startswith("g.json")
@@ -188,7 +188,7 @@ def test_a_domain_is_read_as_rcl_reads_it(word: str, domain: int) -> None:
 
 
 @pytest.mark.parametrize("word", ["abc", "-1", "1.5", "233", "0x", "08", "7 ", "99999999999"])
-def test_a_wrong_domain_is_told_before_rcl_ends_the_process(word: str) -> None:
+def test_a_wrong_domain_is_reported_before_rcl_exits(word: str) -> None:
     with pytest.raises(UsageError, match=r"ROS_DOMAIN_ID.*give 0 to 232"):
         settings({"ROS_DOMAIN_ID": word})
 
@@ -233,7 +233,7 @@ def test_peers_and_server_are_read() -> None:
         ({"ROS_DISCOVERY_SERVER": "a:1", "ROS_SUPER_CLIENT": "TRUE"}, []),
     ],
 )
-def test_odd_settings_are_told(environ: dict[str, str], codes: list[str]) -> None:
+def test_problems_in_settings_are_caveats(environ: dict[str, str], codes: list[str]) -> None:
     caveats = list(setting_caveats(environ))
     assert [caveat.code for caveat in caveats] == codes
     assert all("\n" not in caveat.message for caveat in caveats)
@@ -281,7 +281,7 @@ def test_endpoints_without_a_known_node_are_an_unfinished_view() -> None:
     assert codes_of(["/a"], ends) == [("node-name-unknown", True)]
 
 
-def test_time_up_nothing_seen_and_twins_are_told() -> None:
+def test_timeout_nothing_seen_and_same_names_are_caveats() -> None:
     assert codes_of([], []) == [("nothing-seen", True)]
     assert codes_of(["/a"], [end("/a", "/x")], TIMEOUT) == [("not-settled", True)]
     assert codes_of(["/a", "/a"], [end("/a", "/x")]) == [("same-name", False)]
@@ -303,8 +303,8 @@ def test_every_caveat_is_documented() -> None:
 
 
 def test_a_long_list_is_cut() -> None:
-    assert listed(["a", "b"]) == "a, b"
-    assert listed(list("abcdefgh")) == "a, b, c, d, e and 3 more"
+    assert shorten(["a", "b"], SEVERAL) == "a, b"
+    assert shorten(list("abcdefgh"), SEVERAL) == "a, b, c, d, e and 3 more"
 
 
 # --- when to stop, what to ask, how it fits together
@@ -323,10 +323,10 @@ def test_a_long_list_is_cut() -> None:
         (9.0, (5.5, 0.0), set(), [], QUIET),
     ],
 )
-def test_when_the_looking_ends(
+def test_when_the_observation_ends(
     now: float, changed_: tuple[float, float], seen: set[str], wanted: list[str], why: str
 ) -> None:
-    assert settled(now, Changes(*changed_), seen, wanted, 9.0) == why
+    assert why_settled(now, LastChange(*changed_), seen, wanted, 9.0) == why
 
 
 TOPICS = {
@@ -343,18 +343,18 @@ ENDS = [
 ]
 
 
-def test_the_dear_question_is_asked_where_it_is_worth_it() -> None:
-    asked = topics_to_ask(["/a", "/b"], ENDS, TOPICS, [])
+def test_the_slow_query_is_made_only_where_it_is_worth_it() -> None:
+    asked = topics_to_query(["/a", "/b"], ENDS, TOPICS, [])
     assert asked == ["/both", "/nobody", "/robot1/tf", "/rosout"]
-    assert "/one" in topics_to_ask(["/a", "/b"], ENDS, TOPICS, ["/one"])
-    assert "/gone" not in topics_to_ask(["/a"], ENDS, TOPICS, ["/gone"])
+    assert "/one" in topics_to_query(["/a", "/b"], ENDS, TOPICS, ["/one"])
+    assert "/gone" not in topics_to_query(["/a"], ENDS, TOPICS, ["/gone"])
 
 
-def test_two_nodes_of_one_name_hide_topics_so_all_are_asked_for() -> None:
-    assert topics_to_ask(["/a", "/a", "/b"], ENDS, TOPICS, []) == sorted(TOPICS)
+def test_two_nodes_of_one_name_hide_topics_so_all_are_queried() -> None:
+    assert topics_to_query(["/a", "/a", "/b"], ENDS, TOPICS, []) == sorted(TOPICS)
 
 
-def test_what_is_known_better_replaces_what_nodes_told() -> None:
+def test_endpoints_by_topic_replace_those_by_node() -> None:
     better = [end("/a", "/both", qos=QOS), end("/a", "/both", qos=QOS, process="2")]
     service = end("/a", "/both", "serves")
     result = merged([*ENDS, service], {"/both": better, "/one": []})
@@ -363,19 +363,19 @@ def test_what_is_known_better_replaces_what_nodes_told() -> None:
 
 
 def test_nodes_of_one_name_are_spread_over_its_processes() -> None:
-    groups = processes([end("/a", "/x", process="1"), end("/a", "/x", process="2")])
-    assert placed_nodes(["/a", "/b", "/a"], groups) == [
+    groups = processes_by_node([end("/a", "/x", process="1"), end("/a", "/x", process="2")])
+    assert nodes_with_process(["/a", "/b", "/a"], groups) == [
         GraphNode("/a", "1"),
         GraphNode("/a", "2"),
         GraphNode("/b", ""),
     ]
     # Both in one process: that is where they are.
-    assert placed_nodes(["/a", "/a"], {"/a": ["1"]}) == [GraphNode("/a", "1")] * 2
+    assert nodes_with_process(["/a", "/a"], {"/a": ["1"]}) == [GraphNode("/a", "1")] * 2
 
 
 def test_an_endpoint_gets_its_nodes_process_only_beyond_doubt() -> None:
     ends = [end("/a", "/x"), end("/b", "/x"), end("/b", "/y", process="2")]
-    placed = placed_endpoints(ends, {"/a": ["1"], "/b": ["1", "2"]})
+    placed = endpoints_with_process(ends, {"/a": ["1"], "/b": ["1", "2"]})
     assert [(it.node, it.name, it.process) for it in placed] == [
         ("/a", "/x", "1"),
         ("/b", "/x", ""),
@@ -383,18 +383,18 @@ def test_an_endpoint_gets_its_nodes_process_only_beyond_doubt() -> None:
     ]
 
 
-def test_an_edge_is_told_once_a_topic_and_static_where_it_was_kept() -> None:
+def test_a_transform_is_there_once_a_topic_and_static_if_latched() -> None:
     heard = [
-        Heard("/tf", False, "odom", "base_link"),
-        Heard("/tf", False, "odom", "base_link"),
-        Heard("/tf_static", True, "base_link", "lidar"),
+        ReceivedTransform("/tf", False, "odom", "base_link"),
+        ReceivedTransform("/tf", False, "odom", "base_link"),
+        ReceivedTransform("/tf_static", True, "base_link", "lidar"),
         # A subscription that takes what is sent now hears what is kept, too.
-        Heard("/tf_static", False, "base_link", "lidar"),
+        ReceivedTransform("/tf_static", False, "base_link", "lidar"),
     ]
     ends = [end("/b", "/tf"), end("/a", "/tf"), end("/c", "/tf", "subscribes")]
     assert list(frames(heard, ends)) == [
-        Frame("base_link", "odom", "/tf", False, ("/a", "/b")),
-        Frame("lidar", "base_link", "/tf_static", True, ()),
+        GraphFrame("base_link", "odom", "/tf", False, ("/a", "/b")),
+        GraphFrame("lidar", "base_link", "/tf_static", True, ()),
     ]
 
 

@@ -9,7 +9,7 @@ from graph_cases import environment, moved, without_node
 from small_fleet import healthy, plan
 
 from multibot_rewrite.graph.snapshot import CHANGING, Caveat, GraphEndpoint, GraphNode, Snapshot
-from multibot_rewrite.graph.watching import Moment, There, Verdict, final, next_moment
+from multibot_rewrite.graph.watching import Progress, Verdict, WatchState, final, next_state
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 ROBOT2 = ("/robot2/driver", "/robot2/robot_state_publisher")
@@ -39,22 +39,22 @@ def clash() -> Snapshot:
     return graph._replace(endpoints=(*graph.endpoints, end))
 
 
-def watched(graphs: Iterable[Snapshot]) -> list[Moment]:
-    moments: list[Moment] = []
+def watched(graphs: Iterable[Snapshot]) -> list[WatchState]:
+    states: list[WatchState] = []
     for graph in graphs:
-        moments.append(next_moment(plan(), graph, moments[-1] if moments else None))
-    return moments
+        states.append(next_state(plan(), graph, states[-1] if states else None))
+    return states
 
 
 def test_a_fleet_that_comes_up_and_stays_is_as_planned() -> None:
     nothing = healthy()._replace(nodes=(), endpoints=(), frames=())
     unseen = nothing._replace(environment=environment(Caveat("nothing-seen", True, "no node")))
     graphs = [moving(nothing), unseen, moving(half()), half(), moving(healthy()), healthy()]
-    moments = watched(graphs)
-    assert [moment.whole for moment in moments] == [False] * 4 + [True] * 2
-    assert moments[1].verdict == Verdict.INCONCLUSIVE
-    assert moments[3].verdict == Verdict.WRONG
-    assert final(moments[-1]) == Verdict.PLANNED
+    states = watched(graphs)
+    assert [state.complete for state in states] == [False] * 4 + [True] * 2
+    assert states[1].verdict == Verdict.INCONCLUSIVE
+    assert states[3].verdict == Verdict.WRONG
+    assert final(states[-1]) == Verdict.PLANNED
 
 
 def test_what_is_not_there_at_the_end_counts() -> None:
@@ -62,19 +62,19 @@ def test_what_is_not_there_at_the_end_counts() -> None:
 
 
 def test_what_went_away_is_remembered() -> None:
-    moments = watched([healthy(), moving(half()), half(), moving(healthy()), healthy()])
-    assert moments[-1].verdict == Verdict.PLANNED
-    assert final(moments[-1]) == Verdict.WRONG
+    states = watched([healthy(), moving(half()), half(), moving(healthy()), healthy()])
+    assert states[-1].verdict == Verdict.PLANNED
+    assert final(states[-1]) == Verdict.WRONG
 
 
 def test_a_short_gap_is_not_the_worst() -> None:
-    moments = watched([healthy(), moving(half()), moving(healthy()), healthy()])
-    assert final(moments[-1]) == Verdict.PLANNED
+    states = watched([healthy(), moving(half()), moving(healthy()), healthy()])
+    assert final(states[-1]) == Verdict.PLANNED
 
 
 def test_a_fault_counts_while_the_fleet_comes_up() -> None:
-    moments = watched([moving(clash()), moving(healthy()), healthy()])
-    assert final(moments[-1]) == Verdict.WRONG
+    states = watched([moving(clash()), moving(healthy()), healthy()])
+    assert final(states[-1]) == Verdict.WRONG
 
 
 def test_an_ended_watch_that_never_settled_is_inconclusive() -> None:
@@ -96,11 +96,11 @@ def test_changes_come_and_go() -> None:
 def test_how_much_of_a_robot_is_there(
     graph: Snapshot, robot2: tuple[tuple[int, int], tuple[int, int]]
 ) -> None:
-    (moment,) = watched([graph])
-    assert moment.robots == (There("robot1", (2, 2), (5, 5)), There("robot2", *robot2))
+    (state,) = watched([graph])
+    assert state.robots == (Progress("robot1", (2, 2), (5, 5)), Progress("robot2", *robot2))
 
 
 def test_an_unplanned_node_is_not_counted() -> None:
     graph = healthy()._replace(nodes=(*healthy().nodes, GraphNode("/robot1/other", "")))
-    (moment,) = watched([graph])
-    assert moment.robots[0].nodes == (2, 2)
+    (state,) = watched([graph])
+    assert state.robots[0].nodes == (2, 2)

@@ -127,6 +127,7 @@ def performed(context: Any, options: dict[str, Any]) -> dict[str, Any]:
     return {key: launch.perform(context, value) for key, value in options.items()}
 
 
+@pytest.mark.slow
 def test_importing_it_imports_no_launch() -> None:
     code = "import sys, multibot_rewrite.launch.frontend as f; print(*sys.modules)"
     code = code.replace("import sys,", "import sys; sys.modules['launch'] = None; import")
@@ -339,8 +340,8 @@ def test_warnings_are_logged_once(
 @pytest.mark.parametrize(
     ("make", "part"),
     [
-        (lambda fleet: launch.value("name"), "not said which robot"),
-        (lambda fleet: launch.value("name", robot="robot1"), "not said which fleet"),
+        (lambda fleet: launch.value("name"), "no robot is given"),
+        (lambda fleet: launch.value("name", robot="robot1"), "no fleet is given"),
         (lambda fleet: launch.value("nam", robot="robot1", fleet=fleet), "did you mean 'name'"),
         (lambda fleet: launch.value("pose", "w", "robot1", fleet), "'w'"),
         (lambda fleet: launch.description("robt1", fleet), "did you mean 'robot1'"),
@@ -348,7 +349,7 @@ def test_warnings_are_logged_once(
         (lambda fleet: launch.params_file("parms.yaml", fleet=fleet), "did you mean"),
     ],
 )
-def test_what_is_wrong_is_told(
+def test_what_is_wrong_is_reported(
     make: Callable[[str], Any], part: str, fleet: str, context: Any
 ) -> None:
     with pytest.raises(UsageError) as caught:
@@ -410,8 +411,8 @@ def test_xml_words(word: str, name: str, wanted: str, fleet: str, context: Any) 
 @pytest.mark.parametrize(
     ("text", "part"),
     [
-        ('<multibot_node node="amcl" exec="x" name="y"/>', "leave name= out"),
-        ('<multibot_node node="amcl" exec="x" namespace="y"/>', "leave namespace= out"),
+        ('<multibot_node node="amcl" exec="x" name="y"/>', "remove name="),
+        ('<multibot_node node="amcl" exec="x" namespace="y"/>', "remove namespace="),
         ('<multibot_node exec="x"/>', "node"),
         ("<multibot_robots/>", "fleet=FILE"),
         ("<multibot_spawn/>", "simulator"),
@@ -425,7 +426,7 @@ def test_xml_that_is_wrong(text: str, part: str, context: Any) -> None:
 
 
 def test_a_substitution_needs_a_word(frontend: Any) -> None:
-    with pytest.raises(ValueError, match="needs a word: name"):
+    with pytest.raises(ValueError, match="needs one of: name"):
         frontend.words([])
 
 

@@ -21,6 +21,8 @@ from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import ERROR
 
+pytestmark = pytest.mark.slow
+
 COMMAND = [sys.executable, "-m", "multibot_rewrite.cli.urdf_lint"]
 HARMLESS = '<robot name="r"><link name="a"/></robot>'
 BROKEN = '<robot name="r"><link name="a">'

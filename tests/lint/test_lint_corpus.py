@@ -23,6 +23,8 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import ERROR
 
+pytestmark = pytest.mark.slow
+
 UNFINISHED = {"MB001", "MB004"}
 JUDGED = [it for it in judgements() if RULES[it.code].level == ERROR]
 Found = dict[str, list[Finding]]

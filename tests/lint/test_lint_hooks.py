@@ -23,6 +23,8 @@ from multibot_rewrite.cli.lint_use import check_use
 from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.urdf_lint import main
 
+pytestmark = pytest.mark.slow
+
 HOOKS = ROOT / ".pre-commit-hooks.yaml"
 PAGE = (ROOT / "docs" / "lint-ci.md").read_text()
 HOME = "https://github.com/OWNER/multibot_rewrite"

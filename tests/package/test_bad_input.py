@@ -12,6 +12,8 @@ from paths import ROBOTS
 from postfix_command import TEN, contents, run, run_on_terminal
 from refusals import STOPPED, UNUSABLE, check_refusal, robot, xacro
 
+pytestmark = pytest.mark.slow
+
 DEEP = 5_000
 BIG = 50 * 2**20
 ROVER = (ROBOTS / "rover.urdf").read_text()

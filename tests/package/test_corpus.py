@@ -14,6 +14,8 @@ from refusal_reasons import Outcome, is_true, reason
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
 
+pytestmark = pytest.mark.slow
+
 REFUSALS = FIXTURES / "corpus_refusals.json"
 LEAST_CORPUS, LEAST_WHEELS, LEAST_WHEEL_FILES = 1000, 3, 100
 FLEET = tuple(f"r{number}" for number in range(1, 11))

@@ -40,6 +40,7 @@ def test_the_readme_shows_commands() -> None:
     assert {line.split()[0] for line in COMMANDS} == set(MODULES)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", COMMANDS)
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
     words = shlex.split(line.replace("out/", f"{tmp_path}/"))

@@ -13,6 +13,8 @@ import yaml
 from page_commands import Shown
 from paths import ROOT
 
+pytestmark = pytest.mark.slow
+
 OURS = ("two_robots_postfix", "namespace_and_prefix")
 FOLDERS = [ROOT / "examples" / name for name in OURS]
 FLEETS = [
@@ -34,6 +36,7 @@ def tried(tmp_path_factory: pytest.TempPathFactory, tf2: dict[str, str]) -> page
     return page_commands.tried(PAGES, tmp_path_factory.mktemp("pages"), 20, tf2)
 
 
+@pytest.mark.live
 @pytest.mark.parametrize("name", PAGES)
 def test_a_page_shows_what_is_printed(name: str, tried: page_commands.Tried) -> None:
     page_commands.assert_as_shown(name, tried)

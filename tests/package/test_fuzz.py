@@ -22,6 +22,8 @@ from real_robots import spread
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip
 
+pytestmark = pytest.mark.slow
+
 OPTIONS: tuple[dict[str, str], ...] = (
     {},
     {"layout": "L1"},

@@ -36,6 +36,8 @@ from multibot_rewrite.naming import make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rosnames import check_robot_name, propose_token
 
+pytestmark = pytest.mark.slow
+
 PLAIN = b'<robot name="r"><link name="base"/></robot>'
 RENAMED_ATTRIBUTES = {"name", "link", "joint", "reference"}
 

@@ -8,6 +8,8 @@ import page_commands
 import pytest
 from paths import ROOT
 
+pytestmark = pytest.mark.live
+
 PAGE = (ROOT / "docs" / "recipes.md").read_text()
 RECIPES = page_commands.sections(PAGE)
 # Questions of users, numbered, with the threads they come from.

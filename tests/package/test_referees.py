@@ -22,6 +22,8 @@ from real_robots import corpus_files, spread, wheel_files
 
 from multibot_rewrite import MultibotError, rewrite
 
+pytestmark = pytest.mark.slow
+
 SIBLINGS = FIXTURES / "robots" / "siblings.urdf"
 HAS_PIN = importlib.util.find_spec("pinocchio") is not None
 HAS_MUJOCO = importlib.util.find_spec("mujoco") is not None

@@ -2,13 +2,41 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 
 import pytest
 from paths import ROOT
 
+# Waiting for a process; when to kill one.
+CLOCKS = {"support/waiting.py", "fleets/test_build.py"}
 
+
+def test_no_test_reads_a_clock() -> None:
+    """A limit of seconds fails on a busy machine: count calls or steps, or compare two sizes."""
+    clock = re.compile(r"\b(perf_counter|process_time|monotonic|thread_time)\b|\btime\.time\b")
+    tests = ROOT / "tests"
+    own = "package/test_style.py"
+    found = {
+        path.relative_to(tests).as_posix()
+        for path in tests.rglob("*.py")
+        if clock.search(path.read_text())
+    }
+    assert found - {own} == CLOCKS
+
+
+def test_no_test_module_imports_another() -> None:
+    """What several need is in tests/support."""
+    found = [
+        f"{path.name}: {name}"
+        for path in (ROOT / "tests").rglob("*.py")
+        for name in re.findall(r"^\s*(?:from|import) (test_\w+)", path.read_text(), re.MULTILINE)
+    ]
+    assert found == []
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "arguments",
     [

@@ -8,7 +8,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.bridge import Bridged, as_yaml, bridge, known_topics
+from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml, bridge_data, bridged_topics
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.steps.collect import collect
@@ -39,7 +39,7 @@ def fleet(layout: str, source: str | bytes = ROBOT):
     inventories = {
         one.robot: collect(read_document(one.data, "rover"), builtin_tree()) for one in rewrites
     }
-    return bridge(inventories, make_naming(layout))
+    return bridged_topics(inventories, make_naming(layout))
 
 
 def names(layout: str) -> dict[str, str]:
@@ -80,7 +80,9 @@ def test_two_robots_share_the_clock_and_nothing_else(layout: str) -> None:
     carried, _ = fleet(layout)
     shared = [item for item in carried if not item.robot]
     assert shared == [
-        Bridged("", "/clock", "/clock", "rosgraph_msgs/msg/Clock", "gz.msgs.Clock", "GZ_TO_ROS")
+        BridgedTopic(
+            "", "/clock", "/clock", "rosgraph_msgs/msg/Clock", "gz.msgs.Clock", "GZ_TO_ROS"
+        )
     ]
     gz = {robot: {item.gz for item in carried if item.robot == robot} for robot in ROBOTS}
     assert gz["robot1"].isdisjoint(gz["robot2"])
@@ -122,6 +124,6 @@ def test_the_file_is_what_the_bridge_reads() -> None:
 
 def test_the_data_names_sections_and_elements_that_the_vocabulary_has() -> None:
     vocabulary = load_vocabulary(packages=False)
-    for section, topics in known_topics()["plugins"].items():
+    for section, topics in bridge_data()["plugins"].items():
         (rewriter,) = vocabulary.find("plugin", section)
         assert {topic[0] for topic in topics} <= {site.path for site in rewriter.sites}, section

@@ -24,10 +24,13 @@ from multibot_rewrite.rosnames import (
     resolve_name,
 )
 
-pytestmark = pytest.mark.skipif(
-    not importlib.util.find_spec("rclpy"),
-    reason=f"names are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not importlib.util.find_spec("rclpy"),
+        reason=f"names are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
+    ),
+]
 CHECKS = {
     "topic": check_topic_name,
     "full": check_full_name,

@@ -15,8 +15,7 @@ from paths import FIXTURES
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.forms import FORMS, as_data
-from multibot_rewrite.remap.plugins import plugin_nodes
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -27,11 +26,12 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
     NodeFacts,
+    NodeRule,
     NodeTable,
-    Rule,
     Table,
 )
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table_formats import FORMS, as_data
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -236,7 +236,7 @@ def plugin(*given: tuple[str, str]) -> dict[str, list[tuple[NodeFacts, NodeTable
                     f"/{robot}",
                     "lidar",
                     tuple(
-                        Rule(robot, "lidar", a, b.replace("ROBOT", robot), TOPIC, "")
+                        NodeRule(robot, "lidar", a, b.replace("ROBOT", robot), TOPIC, "")
                         for a, b in given
                     ),
                 ),

@@ -10,15 +10,18 @@ import pytest
 from rcl_names import INSTALL, ask
 
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.remap.forms import ros_args
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeTable, Table
 from multibot_rewrite.remap.stacks import load_stack
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.table_formats import ros_args
 
-pytestmark = pytest.mark.skipif(
-    not importlib.util.find_spec("rclpy"),
-    reason=f"tables are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
-)
+pytestmark = [
+    pytest.mark.live,
+    pytest.mark.skipif(
+        not importlib.util.find_spec("rclpy"),
+        reason=f"tables are not compared with the real rcl: no rclpy here, {INSTALL} (CPython < 3.13)",
+    ),
+]
 ROBOTS = ("robot1", "robot2")
 STACKS = ("nav2", "slam_toolbox", "robot_state", "teleop")
 POLICIES = [

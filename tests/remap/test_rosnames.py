@@ -166,7 +166,7 @@ def test_anything_else_is_no_rule(text: str) -> None:
         "${robot}a:=$(arg b)/c",
     ],
 )  # fmt: skip
-def test_every_part_stands_where_the_rule_says(text: str) -> None:
+def test_every_part_is_where_the_rule_puts_it(text: str) -> None:
     rule = split_remap(text)
     assert rule is not None
     for part, at in (

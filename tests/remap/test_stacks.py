@@ -10,7 +10,7 @@ import pytest
 from paths import ROOT
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.known import Library, extended, stack_of
+from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in, load_nodes, load_stack, user_stack
 from multibot_rewrite.remap.stacks_page import page
@@ -45,9 +45,9 @@ def endpoint(node: NodeFacts, role: str, name: str) -> Endpoint:
     return found
 
 
-def extra(text: str) -> Library:
+def extra(text: str) -> NodeLibrary:
     """The built-in library with a user's text."""
-    return extended(built_in(), text, "mine.yaml")
+    return extend(built_in(), text, "mine.yaml")
 
 
 @pytest.mark.parametrize("name", WANTED)
@@ -68,7 +68,7 @@ def test_shared_nodes_are_those_that_serve_all() -> None:
     assert [node.shared for node in load_stack("rviz_nav2")] == [False]
 
 
-def test_the_type_tells_the_kind() -> None:
+def test_the_type_decides_the_kind() -> None:
     node = load_nodes()["joint_trajectory_controller"]
     kinds = {e.name: e.kind for e in node.endpoints}
     assert kinds["~/joint_trajectory"] == TOPIC
@@ -154,7 +154,7 @@ def test_teleop_goes_through_the_mux() -> None:
     assert "/cmd_vel" in said - heard
 
 
-def test_frames_are_told_with_their_defaults() -> None:
+def test_frames_are_reported_with_their_defaults() -> None:
     frames = dict(load_nodes()["amcl"].frames)
     assert frames == {
         "base_frame_id": "base_footprint",
@@ -175,7 +175,7 @@ def test_the_example_of_the_page_is_read() -> None:
     assert endpoint(nodes["twist_mux"], "subscribes", "pad_vel").fixed == ""
 
 
-def test_unknown_stack_is_told_with_the_nearest() -> None:
+def test_unknown_stack_is_reported_with_the_nearest() -> None:
     with pytest.raises(UsageError, match=r"stack 'nav' is not known; did you mean 'nav2'\? known:"):
         load_stack("nav")
 
@@ -232,29 +232,33 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        pytest.param("nodes: [", "mine.yaml:1: broken YAML, correct it: ", id="broken"),
-        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2: broken YAML", id="two-documents"),
-        pytest.param("- a", "mine.yaml:1: the file is a list, write keys and values", id="list"),
+        pytest.param("nodes: [", "mine.yaml:1: not valid YAML: ", id="broken"),
+        pytest.param("a: 1\n--- \nb: 2", "mine.yaml:2: not valid YAML", id="two-documents"),
+        pytest.param("- a", "mine.yaml:1: the file is a list; write keys and values", id="list"),
         pytest.param(
             "\nnode: {}", "mine.yaml:2: key 'node' is not known; did you mean 'nodes'", id="key"
         ),
-        pytest.param("nodes:\n  a: {}\n  a: {}", "mine.yaml:3: 'a' stands here twice", id="twice"),
+        pytest.param(
+            "nodes:\n  a: {}\n  a: {}", "mine.yaml:3: the key 'a' is repeated", id="twice"
+        ),
         pytest.param(
             "nodes:\n  ? [a]\n  : b", "mine.yaml:2: a key is a mapping or a list", id="odd-key"
         ),
-        pytest.param("nodes: &a {b: *a}", "mine.yaml:1: the alias stands inside", id="endless"),
         pytest.param(
-            "nodes: {a: text}", "node 'a' is the text 'text', write keys", id="no-mapping"
+            "nodes: &a {b: *a}", "mine.yaml:1: the alias is inside the value", id="endless"
+        ),
+        pytest.param(
+            "nodes: {a: text}", "node 'a' is the text 'text'; write keys", id="no-mapping"
         ),
         pytest.param("nodes: {1a: {}}", "mine.yaml:1: node name '1a': ", id="node-name"),
         pytest.param(
             "nodes: {a: {shared: 'yes'}}",
-            "shared is the text 'yes', write true or false",
+            "shared is the text 'yes'; write true or false",
             id="flag",
         ),
-        pytest.param("nodes: {a: {note: {}}}", "note is a mapping, write a text", id="text"),
+        pytest.param("nodes: {a: {note: {}}}", "note is a mapping; write a text", id="text"),
         pytest.param(
-            "nodes: {a: {fixed: true}}", "fixed is true or false, write a list", id="no-list"
+            "nodes: {a: {fixed: true}}", "fixed is true or false; write a list", id="no-list"
         ),
         pytest.param(
             "nodes: {a: {with: [tf_lis]}}",
@@ -268,7 +272,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
             id="endpoint-key",
         ),
         pytest.param(
-            "nodes: {a: {calls: {b: Empty}}}", "'Empty' is no type; write it like", id="type"
+            "nodes: {a: {calls: {b: Empty}}}", "'Empty' is not a ROS type; write it like", id="type"
         ),
         pytest.param(
             "nodes: {a: {calls: {b: std_msgs/msg/Empty}}}",
@@ -285,7 +289,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
             "node 'amlc' is not known; did you mean 'amcl'?",
             id="node",
         ),
-        pytest.param("stacks: {a: {nodes: [{as: b}]}}", "the entry names no node", id="no-node"),
+        pytest.param("stacks: {a: {nodes: [{as: b}]}}", "the entry has no node", id="no-node"),
         pytest.param("stacks: {a: {nodes: [{node: amcl, as: a-b}]}}", "node name 'a-b': ", id="as"),
         pytest.param(
             "stacks: {a: {nodes: [{node: amcl, names: {scam: x}}]}}",
@@ -314,12 +318,12 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         ),
         pytest.param(
             "stacks: {a: {nodes: [amcl, {node: map_server, as: amcl}]}}",
-            "stack 'a' has two different nodes 'amcl'",
+            "stack 'a' has two different nodes called 'amcl'",
             id="two-nodes",
         ),
     ],
 )
-def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:
+def test_what_is_wrong_is_reported_with_its_place(text: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         extra(text)
     assert str(caught.value).startswith("mine.yaml:")
@@ -327,7 +331,7 @@ def test_what_is_wrong_is_told_with_its_place(text: str, message: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"none\.yaml: cannot be read: No such file"):
         user_stack(str(tmp_path / "none.yaml"))
     (tmp_path / "latin.yaml").write_bytes(b"about: \xe4")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import cast
@@ -46,9 +46,6 @@ NAMELESS = {("model", ""), ("link", ""), ("joint", "")}
 # A row of the vocabulary: its section, path and line.
 Row = tuple[str, str, int]
 
-every = pytest.mark.parametrize("case", REWRITTEN, ids=lambda case: case.name)
-every_rewriter = pytest.mark.parametrize("rewriter", REWRITERS, ids=lambda rewriter: rewriter.name)
-
 
 def run(case: Case, source: bytes | None = None) -> Rewrite:
     """The rewrite of the case's input, or of another ``source``, for the first robot."""
@@ -90,8 +87,7 @@ def test_no_case_was_lost() -> None:
     assert len(CASES) >= LEAST_CASES
 
 
-@every
-def test_output_is_byte_exact(case: Case) -> None:
+def the_output_is_byte_exact(case: Case) -> None:
     result = run(case)
     assert result.data == case.output
     assert places(result.findings) == sorted(case.finds)
@@ -105,22 +101,19 @@ def test_refused_with_that_code(case: Case) -> None:
     assert errors == {case.refusal}
 
 
-@every
-def test_identity(case: Case) -> None:
+def nothing_renamed_is_the_input(case: Case) -> None:
     naming = make_naming(**policy(case))._replace(separators={}, topics=POSTFIX)
     template = pipeline.prepare(case.source, case.name, naming, builtin_tree(), outside(case))
     assert fill(template.pieces, ROBOTS[0]) == case.source
     assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)
 
 
-@every
-def test_strip_gives_the_input_back(case: Case) -> None:
+def strip_gives_the_input_back(case: Case) -> None:
     stripped = strip(run(case).data, ROBOTS[0], **policy(case), **beside(case))
     assert stripped == case.source
 
 
-@every
-def test_two_robots_are_disjoint(case: Case) -> None:
+def two_robots_are_disjoint(case: Case) -> None:
     first, second = (result.data for result in rewrite_all(case.source, ROBOTS, **case.options))
     old = declared(case.source)
     assert (declared(first) - old).isdisjoint(declared(second) - old)
@@ -134,8 +127,7 @@ def declared(data: bytes) -> set[tuple[str, str]]:
     return {(str(element.tag), element.get("name", "")) for element in found} - NAMELESS
 
 
-@every
-def test_line_ends_stay_crlf(case: Case) -> None:
+def line_ends_stay_crlf(case: Case) -> None:
     assert run(case, crlf(case.source)).data == crlf(case.output)
 
 
@@ -144,8 +136,7 @@ def crlf(data: bytes) -> bytes:
     return data.replace(b"\r\n", b"\n").replace(b"\n", b"\r\n")
 
 
-@every
-def test_only_lines_with_edits_change(case: Case) -> None:
+def only_lines_with_edits_change(case: Case) -> None:
     result = run(case)
     plan = result.template.plan
     if plan.insertions:
@@ -158,8 +149,7 @@ def test_only_lines_with_edits_change(case: Case) -> None:
 # ---------------------------------------------------------------- another reader
 
 
-@every
-def test_yourdfpy_sees_the_same(case: Case) -> None:
+def yourdfpy_sees_the_same(case: Case) -> None:
     before = sizes(case.source) if is_urdf(case) else None
     assert before is None or sizes(run(case).data) == before
 
@@ -185,28 +175,66 @@ def sizes(data: bytes) -> tuple[int, int] | None:
     return len(robot.robot.links), len(robot.robot.joints)
 
 
-# ---------------------------------------------------------------- what the cases cover
-
-
-@every
-def test_the_named_rewriter_is_at_work(case: Case) -> None:
+def the_named_rewriter_is_at_work(case: Case) -> None:
     _, claims, hosts, *_ = run(case).template.inventory
     served = {host.node.rewriter.name for host in hosts if host.node.rewriter is not None}
     assert case.rewriter in served | {claim.site.section for claim in claims}
 
 
-@every_rewriter
-def test_every_rewriter_has_a_changed_and_a_same_case(rewriter: Rewriter) -> None:
+CHECKS = (
+    the_output_is_byte_exact,
+    nothing_renamed_is_the_input,
+    strip_gives_the_input_back,
+    two_robots_are_disjoint,
+    line_ends_stay_crlf,
+    only_lines_with_edits_change,
+    yourdfpy_sees_the_same,
+    the_named_rewriter_is_at_work,
+)
+
+
+@pytest.mark.parametrize("case", REWRITTEN, ids=lambda case: case.name)
+def test_case(case: Case) -> None:
+    """All checks in one test, since there are thousands of cases; each says what it finds."""
+    failed = [f"{check.__name__}: {problem}" for check in CHECKS if (problem := fault(check, case))]
+    assert not failed, "\n".join(failed)
+
+
+def fault(check: Callable[[Case], None], case: Case) -> str:
+    """What a check finds wrong; empty for nothing."""
+    try:
+        check(case)
+    except AssertionError as error:
+        return str(error) or "failed"
+    return ""
+
+
+# ---------------------------------------------------------------- what the cases cover
+
+
+def test_every_rewriter_has_a_changed_and_a_same_case() -> None:
+    lacking = {rewriter.name: wanted(rewriter) - outcomes(rewriter) for rewriter in REWRITERS}
+    assert {name: left for name, left in lacking.items() if left} == {}
+
+
+def wanted(rewriter: Rewriter) -> set[str]:
     renames = any(site.role != "keep" for site in rewriter.sites)
-    wanted = {"changed", "same"} if renames else {"same"}
-    assert wanted <= {case.expect for case in CASES if case.rewriter == rewriter.name}
+    return {"changed", "same"} if renames else {"same"}
 
 
-@every_rewriter
-def test_every_default_and_hard_wired_topic_is_inserted(rewriter: Rewriter) -> None:
+def outcomes(rewriter: Rewriter) -> set[str]:
+    return {case.expect for case in CASES if case.rewriter == rewriter.name}
+
+
+def test_every_default_and_hard_wired_topic_is_inserted() -> None:
+    inserting = [rewriter for rewriter in REWRITERS if rewriter.inserts]
+    lacking = {it.name: literals(it) - inserted(it) for it in inserting}
+    assert {name: left for name, left in lacking.items() if left} == {}
+
+
+def inserted(rewriter: Rewriter) -> set[str]:
     cases = [case for case in REWRITTEN if case.rewriter == rewriter.name]
-    inserted = {item.old for case in cases for item in run(case).template.plan.insertions}
-    assert not rewriter.inserts or literals(rewriter) <= inserted
+    return {item.old for case in cases for item in run(case).template.plan.insertions}
 
 
 def literals(rewriter: Rewriter) -> set[str]:

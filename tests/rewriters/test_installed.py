@@ -19,6 +19,8 @@ from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
 from multibot_rewrite.rewriters.vocabulary.installed import announcing, installed
 
+pytestmark = pytest.mark.slow
+
 ACME = FIXTURES / "third_party" / "acme_robots"
 CASE = read_case("acme", (ACME / "cases" / "acme_winch.case").read_bytes())
 COMMAND = (sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix")

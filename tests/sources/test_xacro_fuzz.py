@@ -13,6 +13,8 @@ from paths import FIXTURES
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.expand import expand
 
+pytestmark = pytest.mark.slow
+
 XACRO = "http://www.ros.org/wiki/xacro"
 ROVER = (FIXTURES / "robots" / "rover.urdf.xacro").read_bytes()
 # Some of all there is in xacro.
@@ -69,6 +71,14 @@ def outcomes(times: int, folder: Path) -> Counter[str]:
             assert "\n" not in str(error)
             counts["refused"] += 1
     return counts
+
+
+@pytest.mark.parametrize("tag", ["nope", "macro", "if", "robot"])
+def test_a_root_in_the_xacro_namespace_is_refused(tmp_path: Path, tag: str) -> None:
+    file = tmp_path / "my.urdf.xacro"
+    file.write_text(f'<xacro:{tag} xmlns:xacro="{XACRO}" name="r"><link name="a"/></xacro:{tag}>')
+    with pytest.raises(InputError, match=rf"my\.urdf\.xacro: the root element is <xacro:{tag}>"):
+        expand(str(file), {})
 
 
 def assert_both(counts: Counter[str]) -> None:

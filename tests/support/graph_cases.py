@@ -15,13 +15,13 @@ from typing import NamedTuple
 from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main as multibot
-from multibot_rewrite.graph.expectation import Expectation, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
     Caveat,
     Environment,
-    Frame,
     GraphEndpoint,
+    GraphFrame,
     GraphNode,
     Qos,
     Snapshot,
@@ -90,7 +90,7 @@ def as_planned(plan: Expectation) -> Snapshot:
     return sent(Snapshot(tuple(nodes), tuple(ends), tuple(edges), environment()))
 
 
-def robot_edges(robot: WantedRobot) -> Iterator[Frame]:
+def robot_edges(robot: PlannedRobot) -> Iterator[GraphFrame]:
     """Its frames in one tree: a rover's as its description has them, else all below the first."""
     bare = {unspelled(frame, robot.name): frame for frame in robot.frames}
     root = bare.get("odom") or robot.frames[0]
@@ -99,7 +99,7 @@ def robot_edges(robot: WantedRobot) -> Iterator[Frame]:
             parent = bare.get(PARENTS.get(name, "base_link"), root)
             static = name not in MOVING
             topic = robot.tf.replace("tf", "tf_static", 1) if static else robot.tf
-            yield Frame(frame, root if parent == frame else parent, topic, static, ())
+            yield GraphFrame(frame, root if parent == frame else parent, topic, static, ())
 
 
 def unspelled(frame: str, robot: str) -> str:
@@ -189,7 +189,7 @@ def renamed_node(graph: Snapshot, old: str, new: str) -> Snapshot:
 
 
 def reframed(
-    change: Callable[[Frame], Frame | None], *more: Frame
+    change: Callable[[GraphFrame], GraphFrame | None], *more: GraphFrame
 ) -> Callable[[Snapshot], Snapshot]:
     """The graph with each of its transforms changed, or left out, and some more."""
 
@@ -200,7 +200,7 @@ def reframed(
     return broken
 
 
-def of(robot: str, frame: Frame) -> bool:
+def of(robot: str, frame: GraphFrame) -> bool:
     return robot in frame.child or robot in frame.topic
 
 
@@ -264,17 +264,17 @@ def unheard(graph: Snapshot) -> Snapshot:
     return graph._replace(nodes=nodes, endpoints=tuple(ends))
 
 
-def bare(frame: Frame) -> Frame:
+def bare(frame: GraphFrame) -> GraphFrame:
     """A transform as the description has it that was not rewritten."""
     return frame._replace(child=frame.child.split("/")[0], parent=frame.parent.split("/")[0])
 
 
-def prefixed(frame: Frame, robot: str) -> Frame:
+def prefixed(frame: GraphFrame, robot: str) -> GraphFrame:
     """A transform under ``frame_prefix``."""
     return frame._replace(child=f"{robot}/{frame.child}", parent=f"{robot}/{frame.parent}")
 
 
-def on(topic: str, frame: Frame) -> Frame:
+def on(topic: str, frame: GraphFrame) -> GraphFrame:
     return frame._replace(topic=topic.replace("tf", "tf_static") if frame.static else topic)
 
 
@@ -331,7 +331,7 @@ CASES = (
     Case(L2, "MG111", ("MG111",), unheard),
     Case(
         L2, "MG201", ("MG201",),
-        reframed(lambda f: f, Frame("base_footprint/robot1", "map", "/tf", False, ())),
+        reframed(lambda f: f, GraphFrame("base_footprint/robot1", "map", "/tf", False, ())),
     ),
     Case(L2, "MG202", ("MG202",), reframed(bare)),
     Case(
@@ -341,8 +341,8 @@ CASES = (
     Case(
         L2, "MG204", ("MG204",),
         reframed(
-            lambda f: f, Frame("laser/robot1", "base_link/robot1", STATIC, True, ()),
-            Frame("camera_depth_frame/robot1", "camera_link/robot1", STATIC, True, ()),
+            lambda f: f, GraphFrame("laser/robot1", "base_link/robot1", STATIC, True, ()),
+            GraphFrame("camera_depth_frame/robot1", "camera_link/robot1", STATIC, True, ()),
         ),
     ),
     Case(

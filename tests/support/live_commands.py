@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SERVICE, SUBSCRIBES, TOPIC
 
@@ -41,17 +41,17 @@ def node(robot: str, name: str = NODES[0], **more: object) -> dict[str, Any]:
 def write_plan(path: Path, robots: Iterable[str], nodes: Sequence[str] = NODES) -> Path:
     """The plan of these robots, each with these nodes, as a file."""
     full = {robot: tuple(f"/{robot}/{name}" for name in nodes) for robot in robots}
-    fleet = tuple(WantedRobot(robot, there, (), f"/{robot}/tf") for robot, there in full.items())
+    fleet = tuple(PlannedRobot(robot, there, (), f"/{robot}/tf") for robot, there in full.items())
     ends = tuple(end for robot, there in full.items() for it in there for end in _wanted(robot, it))
     path.write_text(to_yaml(Expectation("both", fleet, (), SHARED, ("map",), ends)))
     return path
 
 
-def _wanted(robot: str, name: str) -> list[Wanted]:
+def _wanted(robot: str, name: str) -> list[PlannedEndpoint]:
     return [
-        Wanted(name, TOPIC, SUBSCRIBES, f"/{robot}/cmd_vel", TEXT, "/cmd_vel"),
-        Wanted(name, TOPIC, PUBLISHES, f"/{robot}/odom", TEXT, "odom"),
-        Wanted(name, SERVICE, SERVES, f"/{robot}/reset", TRIGGER, "reset"),
+        PlannedEndpoint(name, TOPIC, SUBSCRIBES, f"/{robot}/cmd_vel", TEXT, "/cmd_vel"),
+        PlannedEndpoint(name, TOPIC, PUBLISHES, f"/{robot}/odom", TEXT, "odom"),
+        PlannedEndpoint(name, SERVICE, SERVES, f"/{robot}/reset", TRIGGER, "reset"),
     ]
 
 

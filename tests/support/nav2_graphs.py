@@ -11,14 +11,14 @@ from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.graph.check import check
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import (
     Caveat,
     Environment,
-    Frame,
     GraphEndpoint,
+    GraphFrame,
     GraphNode,
     Snapshot,
 )
@@ -66,7 +66,7 @@ def fleet(robots: int, topics: int) -> Expectation:
     return Expectation(
         "both",
         tuple(
-            WantedRobot(
+            PlannedRobot(
                 robot,
                 (f"/{robot}/driver", f"/{robot}/planner"),
                 (f"{robot}/base_link", f"{robot}/laser"),
@@ -81,13 +81,13 @@ def fleet(robots: int, topics: int) -> Expectation:
     )
 
 
-def _topic(robot: str, at: int) -> tuple[Wanted, Wanted]:
+def _topic(robot: str, at: int) -> tuple[PlannedEndpoint, PlannedEndpoint]:
     ends = (f"/{robot}/driver", f"/{robot}/planner")
     name = f"/{robot}/topic{at}"
     giver, taker = ends if at % 2 else ends[::-1]
     return (
-        Wanted(giver, TOPIC, PUBLISHES, name, TEXT, f"topic{at}"),
-        Wanted(taker, TOPIC, SUBSCRIBES, name, TEXT, f"topic{at}"),
+        PlannedEndpoint(giver, TOPIC, PUBLISHES, name, TEXT, f"topic{at}"),
+        PlannedEndpoint(taker, TOPIC, SUBSCRIBES, name, TEXT, f"topic{at}"),
     )
 
 
@@ -111,12 +111,12 @@ def healthy(plan: Expectation) -> Snapshot:
     )
 
 
-def _chain(robot: WantedRobot) -> Iterable[Frame]:
+def _chain(robot: PlannedRobot) -> Iterable[GraphFrame]:
     """map, then the robot's frames below one another."""
     static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
-    yield Frame(robot.frames[0], "map", robot.tf, False, ())
+    yield GraphFrame(robot.frames[0], "map", robot.tf, False, ())
     for parent, child in zip(robot.frames, robot.frames[1:], strict=False):
-        yield Frame(child, parent, static, True, ())
+        yield GraphFrame(child, parent, static, True, ())
 
 
 def environment(*caveats: Caveat) -> Environment:
@@ -154,23 +154,25 @@ def spoiled(plan: Expectation) -> Snapshot:
     graph = moved(graph, "/robot2/scan", "/robot1/scan", "amcl")
     graph = without_node(graph, "/robot2/bt_navigator")
     graph = with_end(graph, "/rviz2", "/robot1/map")
-    second = Frame("lidar_link/robot1", "map", "/tf", False, ())
+    second = GraphFrame("lidar_link/robot1", "map", "/tf", False, ())
     return graph._replace(frames=(*graph.frames, second))
 
 
 def nasty(plan: Expectation) -> tuple[Expectation, Snapshot]:
     """A plan and a graph where robots, nodes, topics, types, frames and caveats have names that
     bite; the odd robot talks across."""
-    odd = WantedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
+    odd = PlannedRobot(f'"></title>{NASTY[1]}', ("/odd",), (NASTY[2],), NASTY[0])
     first = plan.robots[0].nodes[0]
-    missed = (Wanted(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY)
+    missed = (
+        PlannedEndpoint(first, TOPIC, PUBLISHES, f"{name}/missed", name, name) for name in NASTY
+    )
     worse = plan._replace(
         layout=odd.name, robots=(*plan.robots, odd), endpoints=(*plan.endpoints, *missed)
     )
     graph = with_end(healthy(plan), "/odd", NASTY[1])
     for name in NASTY:
         graph = with_end(with_end(graph, f"{name}/node", name), first, name, PUBLISHES)
-    frames = (Frame(name, "base_link/robot1", name, False, (name,)) for name in NASTY)
+    frames = (GraphFrame(name, "base_link/robot1", name, False, (name,)) for name in NASTY)
     around = environment(*(Caveat("note", True, name) for name in NASTY))._replace(rmw=NASTY[0])
     return worse, graph._replace(frames=(*graph.frames, *frames), environment=around)
 

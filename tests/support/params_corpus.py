@@ -16,8 +16,8 @@ import yaml
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import make_context
-from multibot_rewrite.companions.params.rewrite import params
-from multibot_rewrite.companions.template import fill
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import ERROR, Finding, InputError
 from multibot_rewrite.naming import Naming, make_naming
@@ -54,7 +54,7 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
         document = read_yaml(data, file)
         naming = make_naming(layout=layout, affix=affix)
         context = make_context(declared(document), naming, facts())
-        companion = params(document, context, robots=(ROBOT,))
+        companion = rewrite_params(document, context, robots=(ROBOT,))
     except InputError as error:
         return Outcome(reason(str(error), file), "")
     except Exception as error:
@@ -62,7 +62,7 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
     bad = next((it.code for it in companion.findings if it.level == ERROR), "")
     if bad:
         return Outcome(bad, "", companion.findings)
-    text = fill(companion.template, ROBOT, ROBOT)
+    text = fill_template(companion.template, ROBOT, ROBOT)
     return Outcome("", "; ".join(problems(document, text, naming)), companion.findings)
 
 
@@ -75,7 +75,7 @@ def reason(message: str, file: str) -> str:
     """An error without its place and the names in it."""
     text = message.removeprefix(file)
     text = re.sub(r"^[:\d]*: ", "", text)
-    return re.sub(r"[&*]\w+: ", "", text)
+    return re.sub(r" \([&*]\w+\)", "", text)
 
 
 def declared(document: YamlText) -> dict[str, dict[str, None]]:

@@ -12,9 +12,9 @@ import yaml
 from multibot_rewrite import RewriteRefused, rewrite_all
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
-from multibot_rewrite.fleets.artefacts import make_artefacts
+from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.plan import plan_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.settings import Settings
 
@@ -111,7 +111,7 @@ def _fleet(rule: Rule, keys: dict[str, Any], folder: Path) -> list[Finding]:
         _write(folder, {"robot.urdf": DESCRIPTION})
     _write(folder, {"fleet.yaml": yaml.safe_dump({**FLEET, **rule.options, **keys})})
     plan = plan_fleet(read_fleet(str(folder / "fleet.yaml")))
-    return list(make_artefacts(plan).findings)
+    return list(make_outputs(plan).findings)
 
 
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {

@@ -8,7 +8,7 @@ from graph_cases import (
 )
 
 from multibot_rewrite.graph.expectation import Expectation, expect, spelled
-from multibot_rewrite.graph.snapshot import Frame, Snapshot
+from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.records import (
     PUBLISHES,
@@ -61,7 +61,7 @@ def healthy(layout: str = "L2") -> Snapshot:
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        Frame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
+        GraphFrame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
         for robot in plan(layout).robots
     )
     return sent(graph._replace(frames=(*graph.frames, *odometry)))

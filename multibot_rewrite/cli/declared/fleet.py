@@ -29,7 +29,7 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
-# Those of ``remap.forms``, which a help text does not import.
+# Those of ``remap.table_formats``, which a help text does not import.
 REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
 
 _DESCRIPTION = Group(

@@ -1,1 +1,1 @@
-"""MoveIt's files."""
+"""MoveIt's YAML files: kinematics, joint limits, controllers, planners, sensors, servo."""

@@ -1,7 +1,7 @@
-"""MoveIt's YAML files for any number of robots: which kind a file is, its names, what they become.
+"""MoveIt's YAML files for any number of robots: the kind of a file, its names, their new text.
 
-They are read by MoveItConfigsBuilder (PyYAML) and given to move_group as parameters, so nothing gets
-a section of a node, anchors are legal, and of a key that is there twice the last one counts.
+MoveItConfigsBuilder reads them with PyYAML and passes them to move_group as parameters. So there are
+no sections of nodes, anchors are legal, and of a repeated key the last value counts.
 """
 
 from __future__ import annotations
@@ -13,22 +13,43 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Companion, Context
-from multibot_rewrite.companions.moveit.sites import (
-    Kind,
-    Site,
-    Sites,
+from multibot_rewrite.companions.moveit.name_sites import (
+    FileKind,
+    MoveitName,
+    MoveitNames,
     entries,
-    find_sites,
+    find_names,
     kinds,
 )
-from multibot_rewrite.companions.params.sections import PARAMETERS, finding
-from multibot_rewrite.companions.params.spelled import SPELLERS, expressible, is_plain
-from multibot_rewrite.companions.params.spelled import node as node_name
-from multibot_rewrite.companions.params.topics import FROM_NODE, Facts, facts_by_name, topic
-from multibot_rewrite.companions.params.undeclared import lacks, mentions, renamed, said_of
-from multibot_rewrite.companions.respell import respell
-from multibot_rewrite.companions.template import GRAPH, SPELLED, cut
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, is_text, line_of, quoted
+from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible, is_plain
+from multibot_rewrite.companions.names.by_kind import node as node_name
+from multibot_rewrite.companions.names.node_topics import (
+    FROM_NODE,
+    Facts,
+    facts_by_name,
+    spell_topic,
+)
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.names.undeclared import (
+    holds_a_name,
+    is_undeclared,
+    renamed_names,
+    undeclared_message,
+)
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.template import (
+    TAG_SLOT,
+    check_no_slots,
+    make_template,
+)
+from multibot_rewrite.companions.yaml_text import (
+    Splice,
+    YamlText,
+    finding_at,
+    is_text,
+    line_of,
+    quoted,
+)
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import NodeFacts
@@ -36,21 +57,21 @@ from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rosnames import check_topic_name
 
 EMPTY = "empty"
-# The nodes that these files are for, as the stacks call them.
+# The nodes that read these files, as the stacks call them.
 MOVE_GROUP, SERVO = "move_group", "servo_node"
 _CLOSED = ("joint", "link", "frame", "group")
 _GRAPH_WORDS = ("topic", "service")
-# An anchor or a tag in front of what is the value.
+# An anchor or a tag before the value.
 _MARKS = re.compile(r"(?:[&!][^\s,\[\]{}]*\s+)*")
 _EVALUATOR = re.compile(r"\s*(joint|link)s?\s*\(([^()]*)\)\s*")
-# moveit_ros_control_interface asks below the root where nothing else is said.
+# moveit_ros_control_interface looks for the manager below the root unless this is set.
 _MANAGER = "moveit_controller_manager"
 _ROS_CONTROL, _CONTROL_NAMESPACE = "moveit_ros_control_interface/", "ros_control_namespace"
 _DEPTH = 4
 
 
-class _Desk(NamedTuple):
-    """What every step about one file needs; ``node`` is the stack's name of the one it is for."""
+class _MoveitJob(NamedTuple):
+    """One file to rewrite, and all that its steps need; ``node`` is the node that reads it."""
 
     document: YamlText
     context: Context
@@ -58,20 +79,24 @@ class _Desk(NamedTuple):
     facts: Facts
 
 
-def moveit(document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()) -> Companion:
-    """A file of MoveIt with holes for a robot, and what a person should know about it.
+def rewrite_moveit(
+    document: YamlText, context: Context, facts: Iterable[NodeFacts] = ()
+) -> Companion:
+    """A MoveIt file with slots for a robot, and the findings about it.
 
-    What an SRDF declares is known where ``with_semantics`` has added it; ``facts`` are those of the
-    robot's nodes, whose remap rules move topics too. Raises InputError for a file that is none of
-    MoveIt's, and for a name shared by an alias that would need two spellings.
+    Groups of an SRDF are known if ``with_srdf`` has added them; ``facts`` are those of the robot's
+    nodes, whose remap rules move topics too. Raises InputError for a file that is not MoveIt's, and
+    for an alias whose value would need two new names.
     """
     try:
         return _moveit(document, context, facts_by_name(facts))
     except RecursionError:
-        raise InputError(f"{document.file}:1: nested too deep; MoveIt's files never are") from None
+        raise InputError(
+            f"{document.file}:1: the YAML is nested too deeply for a MoveIt file"
+        ) from None
 
 
-def with_semantics(context: Context, declared: Declared) -> Context:
+def with_srdf(context: Context, declared: Declared) -> Context:
     """The context with the groups and virtual joints that an SRDF declares (not rewritten)."""
     both = dict(context.names.declared)
     for kind in ("group", "joint"):
@@ -80,31 +105,31 @@ def with_semantics(context: Context, declared: Declared) -> Context:
     return context._replace(names=names, topics=topics)
 
 
-def kind_of(document: YamlText) -> str:
-    """Which kind of MoveIt's files this is, by what is in it; its name decides where that does not.
+def file_kind(document: YamlText) -> str:
+    """Which kind of MoveIt file this is, by its content, else by its name; ``empty`` if it is empty.
 
-    ``empty`` where nothing is in it. Raises InputError, with the reason, where it is none.
+    Raises InputError if it is not a MoveIt file.
     """
     kind = _kind(document)
     return kind.name if kind else EMPTY
 
 
-def _kind(document: YamlText) -> Kind | None:
+def _kind(document: YamlText) -> FileKind | None:
     root = document.root
     if root is None or root.tag == "tag:yaml.org,2002:null":
         return None
     if not isinstance(root, yaml.MappingNode):
         place = f"{document.file}:{line_of(root)}"
-        raise InputError(f"{place}: no file of MoveIt's: it is not a map; write key: value")
+        raise InputError(f"{place}: not a MoveIt file: it is not a map of keys and values")
     _refuse_params(document, root, _DEPTH)
     paths = set(_paths(root))
-    told = (kind for kind in kinds() if not paths.isdisjoint(kind.tells))
-    if kind := next(told, None) or _by_values(root) or _by_name(document.file):
+    known = (kind for kind in kinds() if not paths.isdisjoint(kind.marks))
+    if kind := next(known, None) or _by_values(root) or _by_name(document.file):
         return kind
     words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
     raise InputError(
-        f"{document.file}:{line_of(root)}: no file of MoveIt's that is known: it starts with"
-        f" {words or 'nothing'}; leave it out, or give a parameter file under params"
+        f"{document.file}:{line_of(root)}: not a known kind of MoveIt file: it starts with"
+        f" {words or 'nothing'}; leave it out, or list a parameter file under params"
     )
 
 
@@ -112,7 +137,9 @@ def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:
     for key, value in entries(node) if depth else ():
         if key.value == PARAMETERS:
             place = f"{document.file}:{line_of(key)}"
-            raise InputError(f"{place}: it has {PARAMETERS}: a parameter file, put it under params")
+            raise InputError(
+                f"{place}: {PARAMETERS} makes it a parameter file; list it under params"
+            )
         _refuse_params(document, value, depth - 1)
 
 
@@ -125,44 +152,42 @@ def _paths(root: yaml.Node) -> Iterator[str]:
             yield from (f"{first}.{word}", f"*.{word}")
 
 
-def _by_values(root: yaml.Node) -> Kind | None:
-    """Numbers and nothing else are positions of joints."""
+def _by_values(root: yaml.Node) -> FileKind | None:
+    """A file of numbers only holds joint positions."""
     values = [value for _, value in entries(root)]
     if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
         return next(kind for kind in kinds() if kind.name == "initial_positions")
     return None
 
 
-def _by_name(file: str) -> Kind | None:
+def _by_name(file: str) -> FileKind | None:
     name = file.replace("\\", "/").rpartition("/")[2].lower()
     return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)
 
 
 def _moveit(document: YamlText, context: Context, facts: Facts) -> Companion:
-    for hole in (GRAPH, SPELLED):
-        if hole in document.text:
-            raise InputError(f"{document.file}: the word {hole} is this tool's own; write another")
+    check_no_slots(document.text, document.file)
     kind = _kind(document)
-    sites = find_sites(document.root, kind.names if kind else {}, context.names)
+    sites = find_names(document.root, kind.names if kind else {}, context.names)
     node = SERVO if kind and kind.name == "servo" else MOVE_GROUP
-    desk = _Desk(document, context, node, facts)
-    splices = [*_spliced(desk, sites.names), *_inserted(document, context)]
+    job = _MoveitJob(document, context, node, facts)
+    splices = [*_spliced(job, sites.names), *_inserted(document, context)]
     shift = [Splice(0, 0, document.bom)] if document.bom else []
     found = sorted(set(_findings(document, context, sites)), key=lambda it: it[5:])
-    return Companion(cut(document.text, [*shift, *splices]), tuple(found))
+    return Companion(make_template(document.text, [*shift, *splices]), tuple(found))
 
 
-def _spliced(desk: _Desk, sites: Iterable[Site]) -> Iterator[Splice]:
+def _spliced(job: _MoveitJob, sites: Iterable[MoveitName]) -> Iterator[Splice]:
     """One splice for each scalar; a key may hold several names, an alias may reach one twice."""
-    texts: dict[int, dict[int, tuple[Site, str]]] = {}
+    texts: dict[int, dict[int, tuple[MoveitName, str]]] = {}
     for site in sites:
-        new = _respelled(desk, site.word, site.text)
+        new = _new_text(job, site.word, site.text)
         _, other = texts.setdefault(id(site.scalar), {}).setdefault(site.at, (site, new))
         if other != new:
-            place = f"{desk.document.file}:{line_of(site.scalar)}"
+            place = f"{job.document.file}:{line_of(site.scalar)}"
             raise InputError(
-                f"{place}: an alias uses {site.text!r} as two kinds of name, which become {other!r}"
-                f" and {new!r}; write it out at both places".replace(SPELLED, "ROBOT")
+                f"{place}: an alias uses {site.text!r} as two kinds of name, {other!r} and {new!r};"
+                " write the value out in both places".replace(TAG_SLOT, "ROBOT")
             )
     for parts in texts.values():
         scalar, value = next(iter(parts.values()))[0].scalar, ""
@@ -170,7 +195,7 @@ def _spliced(desk: _Desk, sites: Iterable[Site]) -> Iterator[Splice]:
         for at, (site, new) in sorted(parts.items(), reverse=True):
             value = value[:at] + new + value[at + len(site.text) :]
         if value != scalar.value:
-            yield _replaced(desk.document, scalar, value)
+            yield _replaced(job.document, scalar, value)
 
 
 def _replaced(document: YamlText, scalar: yaml.ScalarNode, new: str) -> Splice:
@@ -178,35 +203,37 @@ def _replaced(document: YamlText, scalar: yaml.ScalarNode, new: str) -> Splice:
     start, end = scalar.start_mark.index, scalar.end_mark.index
     if scalar.style in ("|", ">"):
         place = f"{document.file}:{line_of(scalar)}"
-        raise InputError(f"{place}: a name is a block of text; write it behind its key")
+        raise InputError(
+            f"{place}: a name is written as a block of text; write it on the line of its key"
+        )
     marks = _MARKS.match(document.text, start, end)
     return Splice(marks.end() if marks else start, end, quoted(new, scalar.style or ""))
 
 
-def _respelled(desk: _Desk, word: str, value: str) -> str:
+def _new_text(job: _MoveitJob, word: str, value: str) -> str:
     if word == "id":
         return value
     if word in _GRAPH_WORDS:
-        return topic(desk.context, desk.node, word, value, FROM_NODE, desk.facts).text
+        return spell_topic(job.context, job.node, word, value, FROM_NODE, job.facts).text
     if word == "controller_topic":
-        return _controller_topic(desk, value)
+        return _controller_topic(job, value)
     if word == "controller":
-        return node_name(desk.context, value) if is_plain(value) else value
-    return SPELLERS[word](desk.context, value)
+        return node_name(job.context, value) if is_plain(value) else value
+    return SPELLERS[word](job.context, value)
 
 
-def _controller_topic(desk: _Desk, value: str) -> str:
-    """``/arm_controller/joint_trajectory``: below a node, whose name it follows."""
+def _controller_topic(job: _MoveitJob, value: str) -> str:
+    """``/arm_controller/joint_trajectory``: a topic below a node is renamed with the node."""
     head, slash, rest = value.rpartition("/")
     if not is_plain(value) or not head or value.startswith("~"):
-        return topic(desk.context, desk.node, "topic", value, FROM_NODE, desk.facts).text
-    if desk.context.topics.naming.topics == NAMESPACE:
-        return respell(desk.context.topics, "topic", value)
-    return node_name(desk.context, head) + slash + rest
+        return spell_topic(job.context, job.node, "topic", value, FROM_NODE, job.facts).text
+    if job.context.topics.naming.topics == NAMESPACE:
+        return spell(job.context.topics, "topic", value)
+    return node_name(job.context, head) + slash + rest
 
 
 def _asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
-    """The key that has MoveIt ask a controller manager, if the file does not say where that is."""
+    """The key that selects ros2_control, if the file does not set the manager's namespace."""
     keys = {str(key.value): (key, value) for key, value in entries(document.root)}
     if _MANAGER not in keys or _CONTROL_NAMESPACE in keys:
         return None
@@ -215,7 +242,7 @@ def _asks_below_root(document: YamlText) -> yaml.ScalarNode | None:
 
 
 def _inserted(document: YamlText, context: Context) -> Iterator[Splice]:
-    """The namespace of the controller manager, where the default is the root's."""
+    """The namespace of the controller manager, if it is not set: the default is the root."""
     key = _asks_below_root(document)
     default = SPELLERS["namespace"](context, "/")
     flow = isinstance(document.root, yaml.MappingNode) and document.root.flow_style
@@ -230,35 +257,35 @@ def _inserted(document: YamlText, context: Context) -> Iterator[Splice]:
     yield Splice(at, at, f"{_CONTROL_NAMESPACE}: {default}{end}{' ' * key.start_mark.column}")
 
 
-def _findings(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
+def _findings(document: YamlText, context: Context, sites: MoveitNames) -> Iterator[Finding]:
     for key in sites.twice:
-        message = f"{key.value!r} stands here twice, and PyYAML takes the last one"
-        yield finding(document, key, "MF303", WARNING, message, "delete one of them")
+        message = f"{key.value!r} is set twice; PyYAML keeps only the last value"
+        yield finding_at(document, key, "MF303", WARNING, message, "remove one of them")
     yield from _unreachable(document, context, sites)
-    told: set[tuple[str, str]] = set()
+    reported: set[tuple[str, str]] = set()
     for site in sites.names:
         for word, text in _named(site):
-            if (word, text) not in told:
-                told.add((word, text))
-                yield from _about(document, context, site, (word, text))
+            if (word, text) not in reported:
+                reported.add((word, text))
+                yield from _name_finding(document, context, site, (word, text))
     yield from _mentions(document, context, sites.unclaimed)
 
 
-def _unreachable(document: YamlText, context: Context, sites: Sites) -> Iterator[Finding]:
-    """Without namespaces each robot's manager has a name of its own."""
-    asked = [
+def _unreachable(document: YamlText, context: Context, sites: MoveitNames) -> Iterator[Finding]:
+    """Without namespaces each robot's controller manager has a different name."""
+    keys = [
         _asks_below_root(document),
         *(it.scalar for it in sites.names if it.word == "namespace"),
     ]
-    for key in asked if context.names.naming.topics != NAMESPACE else ():
+    for key in keys if context.names.naming.topics != NAMESPACE else ():
         if key is not None:
-            message = "MoveIt asks for /controller_manager, and each robot's has a name of its own"
-            hint = "use moveit_simple_controller_manager, or a layout with namespaces"
-            yield finding(document, key, "MF308", WARNING, message, hint)
+            message = "MoveIt looks for /controller_manager, but each robot's has a different name"
+            hint = "use moveit_simple_controller_manager or a layout with namespaces"
+            yield finding_at(document, key, "MF308", WARNING, message, hint)
 
 
-def _named(site: Site) -> Iterator[tuple[str, str]]:
-    """The names that are looked for in the description."""
+def _named(site: MoveitName) -> Iterator[tuple[str, str]]:
+    """The names that the description must declare."""
     found = _EVALUATOR.fullmatch(site.text) if site.word == "words" else None
     if found:
         yield from ((found[1], word.strip()) for word in found[2].split(","))
@@ -266,26 +293,31 @@ def _named(site: Site) -> Iterator[tuple[str, str]]:
         yield site.word, site.text
 
 
-def _about(
-    document: YamlText, context: Context, site: Site, name: tuple[str, str]
+def _name_finding(
+    document: YamlText, context: Context, site: MoveitName, name: tuple[str, str]
 ) -> Iterator[Finding]:
     word, text = name
     naming = context.names.naming
-    if word in _CLOSED and lacks(context, word, text):
-        yield finding(document, site.scalar, "MF301", WARNING, *said_of(context, word, text))
+    if word in _CLOSED and is_undeclared(context, word, text):
+        yield finding_at(
+            document, site.scalar, "MF301", WARNING, *undeclared_message(context, word, text)
+        )
     elif text and not is_plain(text) and _matters(context, word):
-        message = f"{word} {text!r} holds a substitution, and stays as it is"
-        hint = "see that what it is filled with is the robot's own name of it"
-        yield finding(document, site.scalar, "MF304", WARNING, message, hint)
+        message = f"{word} {text!r} holds a substitution and stays unchanged"
+        hint = "make sure that it results in the robot's own name"
+        yield finding_at(document, site.scalar, "MF304", WARNING, message, hint)
     elif word == "group" and "group" in naming.separators and not _has_groups(context):
-        message = f"groups are renamed, but the SRDF that has {text!r} is not known: it stays"
-        yield finding(document, site.scalar, "MF305", WARNING, message, "give the SRDF: srdf:")
+        message = f"groups are renamed, but no SRDF is given, so {text!r} stays unchanged"
+        yield finding_at(
+            document, site.scalar, "MF305", WARNING, message, "name the SRDF under srdf:"
+        )
     elif not expressible(context, word):
-        message = f"{word} can only stand before names, and the naming is a postfix"
-        yield finding(document, site.scalar, "MF306", WARNING, message, "use affix: prefix")
+        message = f"{word} can only add a prefix, but the fleet uses a postfix"
+        yield finding_at(document, site.scalar, "MF306", WARNING, message, "set affix: prefix")
     elif word in _GRAPH_WORDS and is_plain(text) and (fault := check_topic_name(text)):
-        message = f"{word} {text!r} is none: {fault.reason}"
-        yield finding(document, site.scalar, "MF307", WARNING, message, "correct it")
+        message = f"{text!r} is not a valid {word} name: {fault.reason}"
+        hint = "it stays unchanged; correct it"
+        yield finding_at(document, site.scalar, "MF307", WARNING, message, hint)
 
 
 def _has_groups(context: Context) -> bool:
@@ -294,7 +326,7 @@ def _has_groups(context: Context) -> bool:
 
 
 def _matters(context: Context, word: str) -> bool:
-    """Would a name of this kind be spelled for the robot?"""
+    """Would a name of this kind be renamed for a robot?"""
     if word in _CLOSED:
         return word in context.names.naming.separators
     return word in _GRAPH_WORDS or word == "controller"
@@ -303,10 +335,10 @@ def _matters(context: Context, word: str) -> bool:
 def _mentions(
     document: YamlText, context: Context, unclaimed: Iterable[yaml.ScalarNode]
 ) -> Iterator[Finding]:
-    names = renamed(context)
+    names = renamed_names(context)
     for scalar in unclaimed:
         text = str(scalar.value)
-        if is_text(scalar) and mentions(text, names):
-            message = f"unclaimed mention: {text!r}, and nothing known says what it means"
-            hint = "it stays as it is: see whether it has to name one robot's"
-            yield finding(document, scalar, "MF302", WARNING, message, hint)
+        if is_text(scalar) and holds_a_name(text, names):
+            message = f"{text!r} is a name of the robot, but its use here is not known"
+            hint = "it stays unchanged; if each robot needs its own, rename it by hand"
+            yield finding_at(document, scalar, "MF302", WARNING, message, hint)

@@ -5,7 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from multibot_rewrite.companions.params.known import Known, KnownNode, Param, built_in_params
+from multibot_rewrite.companions.params.known_nodes import (
+    KnownNode,
+    KnownNodes,
+    Param,
+    built_in_nodes,
+)
 
 START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
 HEAD = """
@@ -14,12 +19,12 @@ HEAD = """
 """
 
 
-def page(known: Known) -> str:
+def page(known: KnownNodes) -> str:
     """The table as Markdown, a row for each node that has names in its parameters."""
     return START + HEAD + "".join(_rows(known))
 
 
-def _rows(known: Known) -> Iterator[str]:
+def _rows(known: KnownNodes) -> Iterator[str]:
     for node in sorted(known.nodes.values(), key=lambda it: it.name):
         names = [it for it in node.params.values() if it.kind != "keep"]
         if names:
@@ -46,4 +51,4 @@ def _inserted(node: KnownNode) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(page(built_in_params()))
+    sys.stdout.write(page(built_in_nodes()))

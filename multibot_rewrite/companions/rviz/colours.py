@@ -1,20 +1,19 @@
-"""Colours of robots: as people write them, and a palette for those without one."""
+"""Colours of robots: as people write them, and a palette for robots without one."""
 
 from __future__ import annotations
 
 from colorsys import hls_to_rgb
 
-from multibot_rewrite.companions.rviz.read import rviz_data
+from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.model import InputError
 
 Colour = tuple[int, int, int]
-# Steps of the golden angle never come back near a hue that was there.
+# Steps of the golden angle never repeat a hue.
 _STEP = 0.618034
 
 
 def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
-    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else, which names
-    the robot."""
+    """A colour from a name, ``#rrggbb`` or three numbers; InputError for anything else."""
     if not isinstance(given, str):
         red, green, blue = given
         return red, green, blue
@@ -33,12 +32,12 @@ def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
 
     near = get_close_matches(given, known, 1, 0.5)
     hint = f"did you mean {near[0]!r}?" if near else "write #rrggbb or [r, g, b]"
-    whose = f"robot {robot!r}: " if robot else ""
-    raise InputError(f"{whose}colour {given!r} is not known; {hint}")
+    place = f"robot {robot!r}: " if robot else ""
+    raise InputError(f"{place}colour {given!r} is not known; {hint}")
 
 
 def palette(at: int) -> Colour:
-    """The colour of the robot at this place, told apart from those of all the others."""
+    """The colour of the robot at this place, different from all others."""
     first = rviz_data()["palette"]
     if at < len(first):
         red, green, blue = first[at]

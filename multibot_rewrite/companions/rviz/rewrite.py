@@ -1,4 +1,4 @@
-"""An RViz config for one robot -> one for all robots, or one for each where a window sees one tf."""
+"""An RViz config for one robot -> one for all robots, or one for each robot with its own tf topic."""
 
 from __future__ import annotations
 
@@ -7,38 +7,44 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.rviz.blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
-from multibot_rewrite.companions.rviz.groups import (
-    grouped,
+from multibot_rewrite.companions.rviz.display_groups import (
     inserted,
     leaves,
-    make_job,
+    make_rviz_job,
     panels,
     remark,
+    robot_groups,
     tool_edits,
     tools,
     windows,
 )
-from multibot_rewrite.companions.rviz.names import RvizRobot, edits, frame_of
-from multibot_rewrite.companions.rviz.notes import notes
-from multibot_rewrite.companions.rviz.read import ABSOLUTE, PROCESS, Config, read_config, value
+from multibot_rewrite.companions.rviz.findings import config_findings
+from multibot_rewrite.companions.rviz.read_config import (
+    ABSOLUTE,
+    PROCESS,
+    RvizConfig,
+    read_config,
+    value,
+)
+from multibot_rewrite.companions.rviz.values import RvizRobot, frame_of, item_splices
+from multibot_rewrite.companions.yaml_blocks import as_item, blocks, cut_out, is_block, newline
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, spliced
 from multibot_rewrite.model import Finding, ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.table import target_of
 
-__all__ = ["RvizRobot", "RvizText", "rviz", "start_command", "world_frame"]
+__all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]
 
 
-# Robots whose result is parsed again.
+# The number of results that are parsed again as a check.
 PROVED = 4
 
 
 class RvizText(NamedTuple):
-    """A config. ``robot`` is empty where it shows all robots; ``namespace`` and ``remaps`` are what
-    rviz2 has to be started with; ``relays`` are topics that must be forwarded (from, to) first."""
+    """A config. ``robot`` is empty if it shows all robots. rviz2 must be started with ``namespace``
+    and ``remaps``; ``relays`` are topics that must be forwarded first (from, to)."""
 
     robot: str
     text: str
@@ -47,18 +53,18 @@ class RvizText(NamedTuple):
     relays: tuple[tuple[str, str], ...] = ()
 
 
-def rviz(
+def rewrite_rviz(
     document: YamlText, robots: Sequence[RvizRobot], *, world: str = "", relayed: bool = False
 ) -> tuple[tuple[RvizText, ...], tuple[Finding, ...]]:
-    """The configs of a fleet, and what a person should know about them.
+    """The configs of a fleet, and the findings about them.
 
-    One window hears one tf topic: a layout with a tf topic for each robot gives a config for each,
-    unless its frames differ and the topics are ``relayed`` to ``/tf``. ``world`` is the frame that
-    all robots are in (default: ``world_frame``). Raises InputError for a file that is no config of
-    RViz 2 or a colour that is none, UsageError where there is no robot.
+    One window reads one tf topic: a layout with a tf topic for each robot gives a config for each,
+    unless the frames differ and the topics are ``relayed`` to ``/tf``. ``world`` is the frame that
+    all robots are in (default: ``world_frame``). Raises InputError for a file that is not a config
+    of RViz 2 and for an unknown colour, UsageError if there is no robot.
     """
     if not robots:
-        raise UsageError("no robot to show; name one")
+        raise UsageError("there is no robot to show; name at least one")
     config = read_config(document)
     naming = robots[0].names.naming
     together = not naming.layout.tf_per_robot or (relayed and naming.layout.frames)
@@ -71,20 +77,20 @@ def rviz(
         return tuple(map(lambda *it: _for_one(config, *it), robots[:upto], colours))
 
     made = make(len(robots))
-    # All others differ from these in words alone.
+    # All others differ from these in names only.
     for text in made[:PROVED] if len(robots) <= PROVED else make(PROVED):
         _prove(text.text, document.file)
-    return made, tuple(notes(config, robots, world, together))
+    return made, tuple(config_findings(config, robots, world, together))
 
 
 def world_frame(naming: Naming) -> str:
-    """The frame that robots of this policy share: the map, else the world, else any."""
+    """The frame that all robots share: map, else world, else any other shared frame."""
     shared = sorted(naming.shared_frames)
     return next((frame for frame in ("map", "world", *shared) if frame in shared), "")
 
 
 def start_command(made: RvizText, file: str) -> list[str]:
-    """The words that start rviz2 with a config written to ``file``."""
+    """The command that starts rviz2 with a config written to ``file``."""
     words = [f"__ns:={made.namespace}"] if made.namespace else []
     words += [f"{source}:={target}" for source, target in made.remaps]
     given = [text for word in words for text in ("-r", word)]
@@ -92,7 +98,7 @@ def start_command(made: RvizText, file: str) -> list[str]:
 
 
 def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
-    """The colour asked for; one robot among others gets one of its own anyway."""
+    """The robot's colour; one of several robots without a colour gets one of the palette."""
     if robot.colour:
         return read_colour(robot.colour, robot.name)
     return palette(at) if count > 1 else None
@@ -102,11 +108,11 @@ def _prove(text: str, file: str) -> None:
     try:
         yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
     except yaml.YAMLError as error:
-        raise ProofError(f"{file}: what was made of it is no YAML: {error}") from None
+        raise ProofError(f"{file}: the rewritten config is not valid YAML: {error}") from None
 
 
 def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
-    """Where the robot's tf goes, in full."""
+    """The remappings to the robot's tf topics, with absolute targets."""
     name, naming = robot.topics.robot, robot.topics.naming
     found = []
     for topic in TF_TOPICS:
@@ -117,11 +123,11 @@ def _tf_topics(robot: RvizRobot) -> tuple[tuple[str, str], ...]:
 
 
 def _for_all(
-    config: Config, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
+    config: RvizConfig, robots: Sequence[RvizRobot], colours: tuple[Colour | None, ...], world: str
 ) -> RvizText:
-    job = make_job(config, robots, colours)
+    job = make_rviz_job(config, robots, colours)
     splices = [
-        *grouped(job),
+        *robot_groups(job),
         *tools(job),
         *panels(job),
         *windows(job),
@@ -132,8 +138,8 @@ def _for_all(
     return RvizText("", spliced(config.document, splices), relays=tuple(relays))
 
 
-def _for_one(config: Config, robot: RvizRobot, colour: Colour | None) -> RvizText:
-    """The config of a window that sees one robot; it runs in the robot's namespace if there is one."""
+def _for_one(config: RvizConfig, robot: RvizRobot, colour: Colour | None) -> RvizText:
+    """The config of a window for one robot; it runs in the robot's namespace if there is one."""
     document = config.document
     namespaced = robot.names.naming.layout.namespaced
     gone = (ABSOLUTE,) if namespaced else (ABSOLUTE, PROCESS)
@@ -142,30 +148,30 @@ def _for_one(config: Config, robot: RvizRobot, colour: Colour | None) -> RvizTex
         if one.flag in gone:
             splices.append(Splice(one.block.start, one.block.end, remark(document, one)))
         else:
-            splices += edits(one, robot, colour if robot.colour else None)
+            splices += item_splices(one, robot, colour if robot.colour else None)
     for tool in config.tools:
         if tool.flag in gone:
             splices.append(Splice(tool.block.start, tool.block.end, remark(document, tool)))
         else:
             splices += tool_edits(document, tool, robot)
     for node in (fixed_frame(config), *_targets(config)):
-        splices += _respelled(node, robot)
+        splices += _frame_splice(node, robot)
     namespace = f"/{robot.topics.robot}" if namespaced else ""
     return RvizText(robot.name, spliced(document, splices), namespace, _tf_topics(robot))
 
 
-def fixed_frame(config: Config) -> yaml.Node | None:
+def fixed_frame(config: RvizConfig) -> yaml.Node | None:
     """The frame that everything is shown in."""
     return value(value(config.manager, "Global Options"), "Fixed Frame")
 
 
-def _respelled(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
+def _frame_splice(node: yaml.Node | None, robot: RvizRobot) -> list[Splice]:
     new = frame_of(node, robot)
     return [replaced(node, new)] if isinstance(node, yaml.ScalarNode) and new != node.value else []
 
 
-def _fixed_frame(config: Config, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
-    """One frame serves all robots only if none of them has it for itself."""
+def _fixed_frame(config: RvizConfig, robots: Sequence[RvizRobot], world: str) -> list[Splice]:
+    """The world frame, if some robot has its own version of the Fixed Frame."""
     node = fixed_frame(config)
     if not isinstance(node, yaml.ScalarNode) or not world:
         return []
@@ -173,12 +179,12 @@ def _fixed_frame(config: Config, robots: Sequence[RvizRobot], world: str) -> lis
     return [replaced(node, world)] if own else []
 
 
-def _views_of(config: Config) -> tuple[yaml.Node | None, yaml.Node | None]:
+def _views_of(config: RvizConfig) -> tuple[yaml.Node | None, yaml.Node | None]:
     views = value(config.manager, "Views")
     return value(views, "Current"), value(views, "Saved")
 
 
-def _targets(config: Config) -> Iterator[yaml.Node]:
+def _targets(config: RvizConfig) -> Iterator[yaml.Node]:
     current, saved = _views_of(config)
     listed = saved.value if isinstance(saved, yaml.SequenceNode) else []
     for view in (current, *listed):
@@ -187,13 +193,13 @@ def _targets(config: Config) -> Iterator[yaml.Node]:
             yield target
 
 
-def _views(config: Config, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
-    """The present view follows the first robot; each robot has a saved one that follows it."""
+def _views(config: RvizConfig, robots: Sequence[RvizRobot]) -> Iterator[Splice]:
+    """The current view follows the first robot; each robot has a saved view that follows it."""
     document = config.document
     current, saved = _views_of(config)
     copies = ""
     if _follows(current, robots):
-        yield from _respelled(value(current, "Target Frame"), robots[0])
+        yield from _frame_splice(value(current, "Target Frame"), robots[0])
         listed = isinstance(saved, yaml.SequenceNode)
         column = saved.start_mark.column if saved and listed else _column(config) + 2
         copies = "".join(_saved(document, current, robot, column) for robot in robots)
@@ -214,7 +220,7 @@ def _saved_views(
             yield Splice(start, end, "".join(made))
 
 
-def _column(config: Config) -> int:
+def _column(config: RvizConfig) -> int:
     """Where the keys of ``Views`` start."""
     views = value(config.manager, "Views")
     return int(views.start_mark.column) if views is not None else 0
@@ -236,7 +242,7 @@ def _saved(document: YamlText, view: yaml.Node | None, robot: RvizRobot, column:
 
 
 def _named(document: YamlText, view: yaml.Node, robot: RvizRobot, start: int, end: int) -> str:
-    splices = _respelled(value(view, "Target Frame"), robot)
+    splices = _frame_splice(value(view, "Target Frame"), robot)
     name = value(view, "Name")
     if isinstance(name, yaml.ScalarNode):
         splices.append(replaced(name, f"{robot.name} {name.value}"))

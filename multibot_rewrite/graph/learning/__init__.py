@@ -1,1 +1,1 @@
-"""Running nodes -> what their code asks for, as a file of nodes and stacks."""
+"""Running nodes -> a file of nodes and stacks with the names in their code."""

@@ -1,4 +1,4 @@
-"""Which nodes of a graph are a robot's, which are tools, and which help another node."""
+"""Which nodes of a graph to learn: without tools, and without helper nodes of other nodes."""
 
 from __future__ import annotations
 
@@ -11,47 +11,47 @@ from multibot_rewrite.graph.snapshot import LISTENER, Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.rosnames import check_full_name, check_namespace
 
-# A tf2 listener that was made without a node makes one of its own, called by its address.
+# A tf2 listener without a node creates its own node, named after its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
-# What people look with, no part of a robot. A leading underscore hides a node.
+# Tools to look at a graph, not part of a robot. A leading underscore hides a node.
 TOOL = re.compile(r"_.*|launch_ros_\d+|rqt_.*|rviz.*|rosbag2_.*|foxglove_bridge")
 
 
 class Helpers(NamedTuple):
-    """Helper nodes in a node's process; ``sure`` where they can be of no other node."""
+    """Helper nodes in a node's process; ``sure`` if no other node is in that process."""
 
     names: tuple[str, ...] = ()
     sure: bool = True
 
 
-def choose(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple[str, ...]:
-    """Full names of the nodes to learn, sorted: ``names``, or all below ``namespace`` that are part
-    of a robot.
+def choose_nodes(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple[str, ...]:
+    """Full names of the nodes to learn, sorted: ``names``, or all below ``namespace`` but tools.
 
-    Raises UsageError for one that is not there, not below, or there twice, and if there is none.
+    Raises UsageError for a node that is not in the graph, not below the namespace, or in the graph
+    twice, and if there is no node at all.
     """
-    base = base_of(namespace)
+    base = namespace_prefix(namespace)
     times = Counter(node.name for node in graph.nodes)
     for name in names:
         if name not in times:
-            raise UsageError(f"{name}: there is no such node; {_near(name, times)}")
+            raise UsageError(f"{name}: no node has this name; {_suggestion(name, times)}")
         if not name.startswith(f"{base}/"):
-            raise UsageError(f"{name}: it is not below {base}, where --namespace says it is")
+            raise UsageError(f"{name}: the node is not below --namespace {base}")
     below = (name for name in times if name.startswith(f"{base}/") and not _is_tool(name))
     chosen = sorted(set(names) or below)
     if not chosen:
         where = f"below {base}" if base else "in this graph"
-        raise UsageError(f"there is no node to learn {where}; {_near(base, times)}")
+        raise UsageError(f"there is no node to learn {where}; {_suggestion(base, times)}")
     for name in chosen:
         check_seen_name("node", name)
         if times[name] > 1:
-            hint = "end all but one; one that was killed stays in view for 20 s"
+            hint = "stop all but one; a node that was killed stays visible for 20 s"
             raise UsageError(f"{name}: {times[name]} nodes have this name; {hint}")
     return tuple(chosen)
 
 
-def base_of(namespace: str) -> str:
-    """A namespace as the names below it begin, empty for the root; UsageError where it is none."""
+def namespace_prefix(namespace: str) -> str:
+    """A namespace without a slash at its end, empty for the root; UsageError if it is not valid."""
     base = namespace.rstrip("/")
     fault = check_namespace(base) if base else None
     if fault:
@@ -60,7 +60,7 @@ def base_of(namespace: str) -> str:
 
 
 def check_seen_name(what: str, name: str) -> None:
-    """Raise UsageError where ``name`` can be in no graph."""
+    """Raise UsageError for a name that is not valid in a ROS graph."""
     fault = check_full_name(name)
     if fault:
         raise UsageError(f"{what} name {name!r} in the graph: {fault.reason}")
@@ -71,17 +71,17 @@ def _is_tool(name: str) -> bool:
     return bool(TOOL.fullmatch(own) or HELPER.fullmatch(own))
 
 
-def _near(name: str, known: Iterable[str]) -> str:
+def _suggestion(name: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches  # only a message needs it
 
-    there = sorted(node for node in known if not _is_tool(node))
-    near = get_close_matches(name, there, 3, 0.5) or there[:3]
-    return f"there is {', '.join(near)}" if near else "only tools are there, or none"
+    nodes = sorted(node for node in known if not _is_tool(node))
+    near = get_close_matches(name, nodes, 3, 0.5) or nodes[:3]
+    return f"running are {', '.join(near)}" if near else "no nodes are running, or only tools"
 
 
 def helpers_of(graph: Snapshot, names: Sequence[str]) -> dict[str, Helpers]:
-    """The helpers that nodes may have, by process; none of ``names`` is taken for a helper."""
-    inside, mains = _processes(graph, names)
+    """The helper nodes in the process of each node; none of ``names`` counts as a helper."""
+    inside, mains = _nodes_by_process(graph, names)
     return {
         node.name: Helpers(tuple(sorted(inside[node.process])), mains[node.process] == 1)
         for node in graph.nodes
@@ -89,14 +89,14 @@ def helpers_of(graph: Snapshot, names: Sequence[str]) -> dict[str, Helpers]:
     }
 
 
-def strays(graph: Snapshot, names: Sequence[str]) -> tuple[str, ...]:
-    """Helper nodes in whose process no other node is seen: whose they are cannot be told."""
-    inside, mains = _processes(graph, names)
+def helpers_without_owner(graph: Snapshot, names: Sequence[str]) -> tuple[str, ...]:
+    """Helper nodes that are alone in their process, so that their node is not known."""
+    inside, mains = _nodes_by_process(graph, names)
     alone = (helpers for process, helpers in inside.items() if not mains[process])
     return tuple(sorted(name for helpers in alone for name in helpers))
 
 
-def _processes(
+def _nodes_by_process(
     graph: Snapshot, names: Sequence[str]
 ) -> tuple[Mapping[str, list[str]], Counter[str]]:
     """By process: its helper nodes, and how many others it has."""

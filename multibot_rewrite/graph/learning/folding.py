@@ -1,4 +1,4 @@
-"""Many endpoints of a graph are one thing in a node's code: an action, an image, a known part."""
+"""Several endpoints in a graph that are one in a node's code: an action, an image, a known part."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _HIDDEN = "/_action/"
 _SEND_GOAL = "_SendGoal"
 
 
-class Key(NamedTuple):
+class EndpointId(NamedTuple):
     """One endpoint of a node; ``name`` is fully qualified."""
 
     kind: str
@@ -31,49 +31,49 @@ class Key(NamedTuple):
     name: str
 
 
-# The types an endpoint was seen with, sorted.
-Seen = Mapping[Key, tuple[str, ...]]
+# The types of each endpoint, sorted.
+Seen = Mapping[EndpointId, tuple[str, ...]]
 
 
-def fold_actions(seen: Seen) -> dict[Key, tuple[str, ...]]:
+def fold_actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
     """``seen`` with an action in place of the services and topics it is made of.
 
-    Who has only topics of an action listens to it, without being its client: those stay topics.
+    A node with only the topics of an action is not its client: those topics stay.
     """
     actions = _actions(seen)
     whole = {(key.role, key.name) for key in actions}
     rest = {
         key: types
         for key, types in seen.items()
-        if key.kind != ACTION and (_HIDDEN not in key.name or _owner(key) not in whole)
+        if key.kind != ACTION and (_HIDDEN not in key.name or _action_of(key) not in whole)
     }
     return {**actions, **rest}
 
 
-def _owner(key: Key) -> tuple[str, str]:
+def _action_of(key: EndpointId) -> tuple[str, str]:
     """Role and name of the action that a hidden endpoint belongs to."""
     role = SERVES if key.role in (SERVES, PUBLISHES) else CALLS
     return role, key.name.partition(_HIDDEN)[0]
 
 
-def _actions(seen: Seen) -> dict[Key, tuple[str, ...]]:
+def _actions(seen: Seen) -> dict[EndpointId, tuple[str, ...]]:
     kinds = defaultdict(set)
     found = {}
     for key, types in seen.items():
         if _HIDDEN in key.name:
-            kinds[_owner(key)].add(key.kind)
+            kinds[_action_of(key)].add(key.kind)
         if key.kind == SERVICE and key.name.endswith(f"{_HIDDEN}send_goal") and types:
             whole = tuple(type_.removesuffix(_SEND_GOAL) for type_ in types)
-            found[Key(ACTION, *_owner(key))] = whole
-    told = {key: types for key, types in seen.items() if key.kind == ACTION and types}
-    # rcl calls everybody who listens to the feedback a client.
-    listens = {key for key in told if kinds.get((key.role, key.name)) == {TOPIC}}
-    return found | {key: types for key, types in told.items() if key not in listens}
+            found[EndpointId(ACTION, *_action_of(key))] = whole
+    listed = {key: types for key, types in seen.items() if key.kind == ACTION and types}
+    # rcl lists every subscriber of the feedback as a client.
+    only_topics = {key for key in listed if kinds.get((key.role, key.name)) == {TOPIC}}
+    return found | {key: types for key, types in listed.items() if key not in only_topics}
 
 
-def fold_images(seen: Seen) -> tuple[dict[Key, tuple[str, ...]], frozenset[Key]]:
-    """``seen`` without the topics image_transport makes of an image, and the images that had some."""
-    images: dict[Key, set[Key]] = {}
+def fold_images(seen: Seen) -> tuple[dict[EndpointId, tuple[str, ...]], frozenset[EndpointId]]:
+    """``seen`` without the topics of image_transport, and the images that had such topics."""
+    images: dict[EndpointId, set[EndpointId]] = {}
     for key, types in seen.items():
         siblings = {key._replace(name=f"{key.name}/{transport}") for transport in TRANSPORTS}
         if key.kind == TOPIC and types == (IMAGE,) and not siblings.isdisjoint(seen):
@@ -86,31 +86,31 @@ def fold_images(seen: Seen) -> tuple[dict[Key, tuple[str, ...]], frozenset[Key]]
 def fold_parts(
     endpoints: Iterable[Endpoint], parts: Mapping[str, tuple[Endpoint, ...]], in_root: bool
 ) -> tuple[list[Endpoint], tuple[str, ...]]:
-    """``endpoints`` without those of the parts that are there whole, and the names of these.
+    """``endpoints`` without those of complete parts, and the names of these parts.
 
-    ``in_root`` tells that ``/x`` may be ``x`` in the code.
+    With ``in_root`` the graph name ``/x`` may be ``x`` in the code.
     """
-    left = {_traits(end, end.name): end for end in endpoints}
-    whole = []
+    left = {_signature(end, end.name): end for end in endpoints}
+    complete = []
     for name, part in parts.items():
-        wanted = [_wanted(end, in_root) for end in part if end.name != CLOCK]
-        if all(any(traits in left for traits in either) for either in wanted):
-            whole.append(name)
+        wanted = [_signatures(end, in_root) for end in part if end.name != CLOCK]
+        if all(any(it in left for it in variants) for variants in wanted):
+            complete.append(name)
             for end in part:
-                for traits in _wanted(end, in_root):
-                    left.pop(traits, None)
-    return list(left.values()), tuple(whole)
+                for signature in _signatures(end, in_root):
+                    left.pop(signature, None)
+    return list(left.values()), tuple(complete)
 
 
-_Traits = tuple[str, str, str, str, tuple[str, ...], bool]
+_Signature = tuple[str, str, str, str, tuple[str, ...], bool]
 
 
-def _wanted(end: Endpoint, in_root: bool) -> list[_Traits]:
-    """What an endpoint of a part may look like."""
+def _signatures(end: Endpoint, in_root: bool) -> list[_Signature]:
+    """How an endpoint of a part may appear in the graph."""
     relative = end.name[0] not in "/~"
-    spellings = [end.name, f"/{end.name}"] if in_root and relative else [end.name]
-    return [_traits(end, name) for name in spellings]
+    names = [end.name, f"/{end.name}"] if in_root and relative else [end.name]
+    return [_signature(end, name) for name in names]
 
 
-def _traits(end: Endpoint, name: str) -> _Traits:
+def _signature(end: Endpoint, name: str) -> _Signature:
     return end.kind, end.role, name, end.type, end.also, end.helper

@@ -1,7 +1,7 @@
-"""What running nodes ask for, learned from the graph they are in. Pure, no ROS needed.
+"""The endpoints of running nodes, learned from their graph. Pure, needs no ROS.
 
-The code and the rules of a running node are not visible, only the names they led to. A name is
-spelled so that the rule a table makes of it serves whatever the code may say.
+The code and the remap rules of a running node are not visible, only the resulting names. Of all
+names that the code may have, the one is written whose remap rule is right for the others as well.
 """
 
 from __future__ import annotations
@@ -11,10 +11,15 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.learning.choosing import Helpers, base_of, check_seen_name, helpers_of
+from multibot_rewrite.graph.learning.choosing import (
+    Helpers,
+    check_seen_name,
+    helpers_of,
+    namespace_prefix,
+)
 from multibot_rewrite.graph.learning.folding import (
     CLOCK,
-    Key,
+    EndpointId,
     Seen,
     fold_actions,
     fold_images,
@@ -23,8 +28,8 @@ from multibot_rewrite.graph.learning.folding import (
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import TF_TOPICS
-from multibot_rewrite.remap.bridge import TF_TYPE
-from multibot_rewrite.remap.known import Library
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import (
     ACTION,
     PUBLISHES,
@@ -38,11 +43,11 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.rosnames import expand
 
-HELPED = "asked for by transform_listener_impl_<address>"
-UNSURE = "its process has several nodes, so what a helper there asks for is given to each"
-BARE = "nothing of it is seen but its name"
+FROM_HELPER = "asked for by transform_listener_impl_<address>"
+SHARED_PROCESS = "its process has several nodes, each gets the endpoints of the helper nodes there"
+NO_ENDPOINTS = "only its name is seen, no endpoints"
 EVERY_NODE, SIM_TIME = "every_node", "use_sim_time"
-# What every node has since Jazzy, beside the part of that name.
+# On every node since Jazzy, besides the endpoints of the part every_node.
 SINCE_JAZZY = (SERVES, "~/get_type_description")
 _TF = tuple(f"/{topic}" for topic in TF_TOPICS)
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
@@ -50,11 +55,11 @@ _WORDS = {TOPIC: ("msg", "action"), SERVICE: ("srv", "action"), ACTION: ("action
 _Slot = tuple[str, str]
 
 
-class Learned(NamedTuple):
-    """A node as it was seen, its full name there, and the facts made of it.
+class LearnedNode(NamedTuple):
+    """What was learned of a node; ``seen`` is its full name in the graph.
 
     Its endpoints are its ``own`` and those of ``parts``, which the library describes; ``remarks``
-    are what a person should know.
+    are notes for the user.
     """
 
     seen: str
@@ -64,88 +69,88 @@ class Learned(NamedTuple):
     remarks: tuple[str, ...]
 
 
-class _Place(NamedTuple):
+class _SeenPlace(NamedTuple):
     """Where a node was seen.
 
     ``base`` is the robot's namespace, empty for the root; ``node`` the node's name below it.
-    ``wired`` are names below the base that the code is known to write as they are.
+    ``literal_names`` are names below the base that the code is known to contain as they are.
     """
 
     base: str
     node: str
-    wired: frozenset[str]
+    literal_names: frozenset[str]
 
 
 def learn(
-    graph: Snapshot, names: Sequence[str], namespace: str, library: Library
-) -> tuple[Learned, ...]:
-    """Facts of the nodes ``names``, seen below ``namespace``, the robot's.
+    graph: Snapshot, names: Sequence[str], namespace: str, library: NodeLibrary
+) -> tuple[LearnedNode, ...]:
+    """Facts of the nodes ``names`` below ``namespace``, the robot's namespace.
 
-    ``library`` tells which endpoints are a part, and how the code of known nodes writes its names.
-    Raises UsageError for an endpoint that no node can have.
+    ``library`` has the known parts, and the names in the code of known nodes. Raises UsageError
+    for an endpoint that no node can have.
     """
-    base = base_of(namespace)
+    base = namespace_prefix(namespace)
     ends: dict[str, list[GraphEndpoint]] = defaultdict(list)
     for end in graph.endpoints:
         ends[end.node].append(end)
     helpers = helpers_of(graph, names)
     return tuple(
-        _learned(name, base, ends, helpers.get(name, Helpers()), library) for name in names
+        _learn_node(name, base, ends, helpers.get(name, Helpers()), library) for name in names
     )
 
 
-def _learned(
+def _learn_node(
     name: str,
     base: str,
     ends: Mapping[str, Sequence[GraphEndpoint]],
     helpers: Helpers,
-    library: Library,
-) -> Learned:
+    library: NodeLibrary,
+) -> LearnedNode:
     node = name.removeprefix(f"{base}/")
     known = library.nodes.get(node)
-    place = _Place(base, node, frozenset(_wired(known)) if known else frozenset())
-    usual = _usual(library)
+    place = _SeenPlace(base, node, frozenset(_literal_names(known)) if known else frozenset())
+    usual = _on_every_node(library)
     found = _with_helpers(name, ends, helpers, place)
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
     own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
     taken = (end for part in parts for end in library.parts[part])
     facts = NodeFacts(node, "", (*own, *taken), note=f"seen as {name}")
-    remarks = [] if ends.get(name) else [BARE]
-    remarks += [] if helpers.sure else [f"{UNSURE}: {', '.join(helpers.names)}"]
-    remarks += [_compared(facts, known, usual)] if known else []
-    return Learned(name, facts, tuple(own), parts, tuple(remarks))
+    remarks = [] if ends.get(name) else [NO_ENDPOINTS]
+    remarks += [] if helpers.sure else [f"{SHARED_PROCESS}: {', '.join(helpers.names)}"]
+    remarks += [_compare(facts, known, usual)] if known else []
+    return LearnedNode(name, facts, tuple(own), parts, tuple(remarks))
 
 
 def _order(end: Endpoint) -> tuple[int, str]:
     return ROLES.index(end.role), end.name
 
 
-def _usual(library: Library) -> frozenset[_Slot]:
-    """What every node has, by role and name; that it listens to the clock is worth telling."""
+def _on_every_node(library: NodeLibrary) -> frozenset[_Slot]:
+    """The endpoints of every node, by role and name; without the clock, which some do not use."""
     every = {(end.role, end.name) for end in library.parts[EVERY_NODE] if end.name != CLOCK}
     return frozenset({*every, SINCE_JAZZY})
 
 
-def _full(name: str, node: str) -> str:
-    """A name of ``node`` as it is where the robot is in the root."""
+def _full_name(name: str, node: str) -> str:
+    """The full name of a name in the code of ``node``, with the robot in the root namespace."""
     above, _, own = node.rpartition("/")
     return expand(name, f"/{above}", own)
 
 
-def _wired(known: NodeFacts) -> Iterator[str]:
-    """Full names that the code writes with a slash, or below its own name without a ``~``."""
+def _literal_names(known: NodeFacts) -> Iterator[str]:
+    """Full names that the code writes with a slash, or below the node's name without a ``~``."""
     for end in known.endpoints:
-        full = _full(end.name, known.name)
+        full = _full_name(end.name, known.name)
         if end.name.startswith("/") or (end.name[0] != "~" and full.startswith(f"/{known.name}/")):
             yield full
 
 
-def _endpoints(ends: Iterable[GraphEndpoint], place: _Place) -> dict[_Slot, Endpoint]:
-    """What a node asks for, by role and name as its code may write it."""
-    seen, images = fold_images(fold_actions(_seen(ends)))
+def _endpoints(ends: Iterable[GraphEndpoint], place: _SeenPlace) -> dict[_Slot, Endpoint]:
+    """A node's endpoints, by role and the name that its code may have."""
+    seen, images = fold_images(fold_actions(_types_by_endpoint(ends)))
     found: dict[_Slot, Endpoint] = {}
     for key, types in sorted(seen.items()):
-        name = _spelled(key.name, types, place)
+        name = _name_in_code(key.name, types, place)
         end = Endpoint(
             key.kind,
             key.role,
@@ -156,98 +161,102 @@ def _endpoints(ends: Iterable[GraphEndpoint], place: _Place) -> dict[_Slot, Endp
             when=SIM_TIME if (key.role, name) == (SUBSCRIBES, CLOCK) else "",
         )
         slot = key.role, name
-        found[slot] = _joined(found[slot], end, key) if slot in found else end
+        found[slot] = _merge(found[slot], end, key) if slot in found else end
     return found
 
 
-def _seen(ends: Iterable[GraphEndpoint]) -> Seen:
-    types: dict[Key, set[str]] = defaultdict(set)
+def _types_by_endpoint(ends: Iterable[GraphEndpoint]) -> Seen:
+    types: dict[EndpointId, set[str]] = defaultdict(set)
     for end in ends:
         check_seen_name(end.kind, end.name)
         if (end.kind == TOPIC) != (end.role in (PUBLISHES, SUBSCRIBES)):
-            raise UsageError(f"{end.node} {end.role} the {end.kind} {end.name}, which nobody can")
-        found = types[Key(end.kind, end.role, end.name)]
-        if _fits(end):
+            raise UsageError(
+                f"{end.node} {end.role} the {end.kind} {end.name}, which is not possible in ROS"
+            )
+        found = types[EndpointId(end.kind, end.role, end.name)]
+        if _is_valid_type(end):
             found.add(end.type)
     return {key: tuple(sorted(found)) for key, found in types.items()}
 
 
-def _fits(end: GraphEndpoint) -> bool:
-    """Whether a file of nodes can hold the type; another one counts as not known."""
+def _is_valid_type(end: GraphEndpoint) -> bool:
+    """Whether the type is valid for its kind; another type counts as not known."""
     found = _TYPE.fullmatch(end.type)
     return found is not None and found[1] in _WORDS[end.kind]
 
 
-def _spelled(name: str, types: Sequence[str], place: _Place) -> str:
-    """A name as the code may write it, so that the rule for it serves every way to write it.
+def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
+    """A name that the code may have, whose remap rule is right for the other possible names too.
 
-    In the robot's root ``x`` and ``/x`` are one name, and the rule for ``/x`` moves both.
+    In the root namespace ``x`` and ``/x`` are one name, and the rule for ``/x`` remaps both.
     """
     full = f"{place.base}/{place.node}"
     above = full.rpartition("/")[0]
     level = name.removeprefix(place.base) if name.startswith(f"{place.base}/") else name
-    # tf2 writes a slash: what is seen in a namespace was led there by a rule.
-    if level in place.wired or (level in _TF and TF_TYPE in types):
+    # tf2 uses /tf: if it is in a namespace, a remap rule moved it there.
+    if level in place.literal_names or (level in _TF and TF_TYPE in types):
         return level
     if name.startswith(f"{full}/"):
         return f"~{name[len(full) :]}"
     return name[len(above) + 1 :] if above and name.startswith(f"{above}/") else level
 
 
-def _joined(first: Endpoint, second: Endpoint, key: Key) -> Endpoint:
-    """One endpoint of two that are spelled alike; of an action and a service, the action: its rules
-    serve both."""
+def _merge(first: Endpoint, second: Endpoint, key: EndpointId) -> Endpoint:
+    """One endpoint for two with the same name in the code.
+
+    For an action and a service it is the action, whose rules are right for both.
+    """
     if first.kind != second.kind:
-        return first._replace(note=f"there is a {key.kind} of this name, too")
+        return first._replace(note=f"there is a {key.kind} with this name too")
     types = sorted({*filter(None, (first.type, *first.also, second.type, *second.also))})
     return first._replace(
         type="".join(types[:1]),
         also=tuple(types[1:]),
         transport=first.transport or second.transport,
-        note=f"seen as {key.name}, too",
+        note=f"also seen as {key.name}",
     )
 
 
 def _with_helpers(
-    name: str, ends: Mapping[str, Sequence[GraphEndpoint]], helpers: Helpers, place: _Place
+    name: str, ends: Mapping[str, Sequence[GraphEndpoint]], helpers: Helpers, place: _SeenPlace
 ) -> dict[_Slot, Endpoint]:
-    """What a node asks for, and what helper nodes ask for beside it, as its own."""
+    """A node's endpoints, with those of its helper nodes."""
     found = _endpoints(ends.get(name, ()), place)
     for helper in helpers.names:
         private = f"{helper}/"
-        asked = (end for end in ends.get(helper, ()) if not end.name.startswith(private))
-        theirs = _endpoints((end for end in asked if end.name != CLOCK), place)
+        public = (end for end in ends.get(helper, ()) if not end.name.startswith(private))
+        theirs = _endpoints((end for end in public if end.name != CLOCK), place)
         for slot, end in theirs.items():
-            found.setdefault(slot, end._replace(helper=True, note=HELPED))
+            found.setdefault(slot, end._replace(helper=True, note=FROM_HELPER))
     return found
 
 
-def _compared(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str:
-    """What was seen beside what the library says of a node of this name."""
+def _compare(facts: NodeFacts, known: NodeFacts, usual: frozenset[_Slot]) -> str:
+    """Compare what was seen with the node of this name in the library."""
     described = [_pattern(end, known.name) for end in known.endpoints]
-    seen = {_traits(end, facts.name): end for end in facts.endpoints}
+    seen = {_signature(end, facts.name): end for end in facts.endpoints}
     more = [
         end
-        for traits, end in seen.items()
+        for signature, end in seen.items()
         if (end.role, end.name) not in usual
         and end.name != CLOCK
-        and not any(pattern.fullmatch(" ".join(traits)) for pattern in described)
+        and not any(pattern.fullmatch(" ".join(signature)) for pattern in described)
     ]
     always = (end for end in known.endpoints if not end.when and "<" not in end.name)
-    less = [end for end in always if _traits(end, known.name) not in seen]
-    told = [f"seen besides: {_listed(more)}"] * bool(more)
-    told += [f"not seen: {_listed(less)}"] * bool(less)
+    less = [end for end in always if _signature(end, known.name) not in seen]
+    differences = [f"additional: {_listed(more)}"] * bool(more)
+    differences += [f"not seen: {_listed(less)}"] * bool(less)
     head = f"known as {known.name} of {known.package}"
-    return "; ".join([head, *(told or ["all is as described"])])
+    return "; ".join([head, *(differences or ["as described there"])])
 
 
-def _traits(end: Endpoint, node: str) -> tuple[str, str, str]:
-    return end.kind, end.role, _full(end.name, node)
+def _signature(end: Endpoint, node: str) -> tuple[str, str, str]:
+    return end.kind, end.role, _full_name(end.name, node)
 
 
 def _pattern(end: Endpoint, node: str) -> re.Pattern[str]:
-    """What is made at run time may be anything, with a slash before it, too."""
-    kind, role, full = _traits(end, node)
+    """A pattern for an endpoint: <...> in its name stands for anything, a leading slash too."""
+    kind, role, full = _signature(end, node)
     text = re.escape(f"{kind} {role} {end.name if end.name[0] == '<' else full}")
     return re.compile(re.sub(r"<[^<>/]+>", ".+", text))
 

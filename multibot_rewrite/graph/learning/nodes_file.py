@@ -1,45 +1,45 @@
-"""Learned nodes as a file of nodes and stacks, proved by reading it as ``--nodes`` does."""
+"""Learned nodes as a file of nodes and stacks, checked by reading it as ``--nodes`` does."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-from multibot_rewrite.graph.learning.learn import Learned
+from multibot_rewrite.graph.learning.learn import LearnedNode
 from multibot_rewrite.model import ProofError, UsageError
-from multibot_rewrite.remap.known import Library, extended, stack_of
+from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import ROLES, Endpoint
 
 HEAD = """\
 # Nodes as they were seen in a running graph, written by multibot learn for --nodes.
-# The code and the rules of a running node are not seen, only the names they led to:
-#   /x   may be x or /x in the code: the rule for /x serves both, in every layout
-#   x    was seen in a namespace with the node; if the code says /x and a rule led it there, write /x
-#   ~/x  was seen below the node's name; if the code does not say ~/x, write /node/x
-# Not seen at all: conditions (when), parameters, frames, nodes that serve all robots (shared: true).
+# The code and the remap rules of a running node are not visible, only the resulting names:
+#   /x   may be x or /x in the code: the rule for /x is right for both, in every layout
+#   x    was seen in the node's namespace; if the code has /x and a rule remapped it, write /x
+#   ~/x  was seen below the node's name; if the code does not have ~/x, write /node/x
+# Not visible: conditions (when), parameters, frames, nodes that serve all robots (shared: true).
 """
 WIDTH = 100
-_ENDLESS = 1 << 30
+_NO_WRAP = 1 << 30
 
 
-def to_yaml(learned: Sequence[Learned], stack: str, library: Library) -> str:
+def to_yaml(learned: Sequence[LearnedNode], stack: str, library: NodeLibrary) -> str:
     """The text of a file with the nodes and one stack of them.
 
-    Raises ProofError where reading it does not give the same nodes.
+    Raises ProofError if reading it does not give the same nodes.
     """
     text = "".join(f"{line}\n" for line in _lines(learned, stack))
     facts = tuple(node.facts for node in learned)
     try:
-        read = stack_of(extended(library, text, stack), stack)
+        read = stack_of(extend(library, text, stack), stack)
     except UsageError as error:
-        raise ProofError(f"what was learned cannot be read: {error}") from None
+        raise ProofError(f"the learned nodes cannot be read back: {error}") from None
     if read != facts:
         wrong = ", ".join(node.name for node in facts if node not in read)
-        raise ProofError(f"what was learned is read as something else: {wrong}")
+        raise ProofError(f"the learned nodes are read back differently: {wrong}")
     return text
 
 
-def _lines(learned: Sequence[Learned], stack: str) -> Iterator[str]:
+def _lines(learned: Sequence[LearnedNode], stack: str) -> Iterator[str]:
     yield from HEAD.splitlines()
     yield from _comment(f"Of: {' '.join(node.seen for node in learned)}", "")
     yield from ("", "nodes:")
@@ -51,7 +51,7 @@ def _lines(learned: Sequence[Learned], stack: str) -> Iterator[str]:
     yield from (f"      - {_scalar(node.facts.name)}" for node in learned)
 
 
-def _node(node: Learned) -> Iterator[str]:
+def _node(node: LearnedNode) -> Iterator[str]:
     facts = node.facts
     for remark in node.remarks:
         yield from _comment(remark, "  ")
@@ -68,7 +68,7 @@ def _node(node: Learned) -> Iterator[str]:
 
 def _value(end: Endpoint) -> str:
     """An endpoint's type alone, or all that is known of it."""
-    told = {
+    fields = {
         "type": end.type,
         "also": list(end.also),
         "transport": end.transport,
@@ -76,20 +76,20 @@ def _value(end: Endpoint) -> str:
         "helper": end.helper,
         "note": end.note,
     }
-    there = {key: value for key, value in told.items() if value}
-    return _scalar(end.type) if list(there) == ["type"] else _flow(there)
+    known = {key: value for key, value in fields.items() if value}
+    return _scalar(end.type) if list(known) == ["type"] else _flow(known)
 
 
 def _scalar(text: str) -> str:
     import yaml
 
-    return str(yaml.safe_dump(text, width=_ENDLESS)).removesuffix("...\n").rstrip("\n")
+    return str(yaml.safe_dump(text, width=_NO_WRAP)).removesuffix("...\n").rstrip("\n")
 
 
 def _flow(value: object) -> str:
     import yaml
 
-    dumped = yaml.safe_dump(value, width=_ENDLESS, default_flow_style=True, sort_keys=False)
+    dumped = yaml.safe_dump(value, width=_NO_WRAP, default_flow_style=True, sort_keys=False)
     return str(dumped).rstrip("\n")
 
 

@@ -1,1 +1,1 @@
-"""Speaking to the live graph: a child process with rclpy, and the command's side of it."""
+"""Access to the live graph: child processes that use rclpy, and the command's side of them."""

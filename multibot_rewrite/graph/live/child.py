@@ -1,4 +1,7 @@
-"""Speaking to the graph from a process that cannot be taken down by rcl: the speaking is a child."""
+"""The command's side of the child processes that use rclpy.
+
+rcl may end its process, so the command never loads it.
+"""
 
 from __future__ import annotations
 
@@ -18,25 +21,25 @@ INSTALL = (
     "source ROS 2 (. /opt/ros/jazzy/setup.bash) or, with Python 3.10 to 3.12,"
     " pip install 'multibot_rewrite[ros]'"
 )
-LOOK, PLAY = "multibot_rewrite.graph.live.look", "multibot_rewrite.graph.live.play"
-# For import and start, for the dear questions in a fleet of 500 nodes, and for tf.
+OBSERVE, RUN_STUBS = "multibot_rewrite.graph.live.observe", "multibot_rewrite.graph.live.stub_nodes"
+# For import and start, for the slow queries in a fleet of 500 nodes, and for tf.
 SLACK_SECONDS = 45.0
-_PATIENCE = 3.0
+_EXIT_SECONDS = 3.0
 
 
 class RosUnusable(MultibotError):
-    """There is no rclpy, or it does not start; the message says why and what to do."""
+    """rclpy is missing or does not start; the message says why and what to do."""
 
 
-class Child(NamedTuple):
-    """A process of ours that speaks to the graph, and what it says besides its messages."""
+class RosProcess(NamedTuple):
+    """A child process that uses rclpy; ``errors`` is its standard error."""
 
     process: subprocess.Popen[bytes]
     errors: IO[bytes]
     environ: Mapping[str, str]
 
-    def next(self) -> bytes | None:
-        """Its next message, or None where it ended well; raises RosUnusable where it did not."""
+    def next_message(self) -> bytes | None:
+        """The next message, or None at the end; raises RosUnusable if the process failed."""
         assert self.process.stdout is not None
         length = self.process.stdout.readline()
         data = self.process.stdout.read(int(length)) if length else b""
@@ -46,47 +49,47 @@ class Child(NamedTuple):
         if code == 0:
             return None
         self.errors.seek(0)
-        said = self.errors.read().decode("utf-8", "replace")
-        raise RosUnusable(_explained(code, said, self.environ))
+        output = self.errors.read().decode("utf-8", "replace")
+        raise RosUnusable(_explain(code, output, self.environ))
 
 
 def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
-    """A snapshot of the graph that ``environ`` leads to; raises RosUnusable.
+    """A snapshot of the graph with the variables of ``environ``; raises RosUnusable.
 
-    No process is left behind, whatever ends this call.
+    No process is left running, however this call ends.
     """
-    seen = _observe(request, environ)
-    # A node killed while it was looked at stays for 20 s; who looks anew does not see it.
-    return _observe(request, environ) if _haunted(seen) else seen
+    seen = _observe_once(request, environ)
+    # A node that was killed meanwhile stays visible for 20 s, but not for a new participant.
+    return _observe_once(request, environ) if _may_contain_dead_nodes(seen) else seen
 
 
-def _haunted(seen: Snapshot) -> bool:
-    """Whether a dead node may be in the view: under a name that is there again, or without one."""
+def _may_contain_dead_nodes(seen: Snapshot) -> bool:
+    """Whether a view may have dead nodes: a node name occurs twice, or one is unknown."""
     names = [node.name for node in seen.nodes]
     nameless = any(UNKNOWN_NODE in end.node for end in seen.endpoints)
     return nameless or len(set(names)) < len(names)
 
 
-def _observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
+def _observe_once(request: Request, environ: Mapping[str, str]) -> Snapshot:
     limit = request.timeout + SLACK_SECONDS
-    with running(LOOK, to_text(request), environ, limit) as child:
-        data = child.next()
+    with running(OBSERVE, to_text(request), environ, limit) as child:
+        data = child.next_message()
     assert data is not None
     return from_json(data, "the view of the graph")
 
 
 def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, None, None]:
-    """Snapshots of the graph for ``request.timeout`` seconds, one whenever something changed.
+    """Snapshots of the graph for ``request.timeout`` seconds, one after each change.
 
-    Raises RosUnusable. No process is left behind once the iterator is closed.
+    Raises RosUnusable. No process is left running once the iterator is closed.
     """
     order = to_text(request._replace(watch=True))
-    with running(LOOK, order, environ) as child:
+    with running(OBSERVE, order, environ) as child:
         seconds = min(request.timeout, threading.TIMEOUT_MAX)
         end = threading.Timer(seconds, child.process.terminate)
         end.daemon = True
         end.start()
-        while (data := child.next()) is not None:
+        while (data := child.next_message()) is not None:
             yield from_json(data, "the view of the graph")
         end.cancel()
 
@@ -94,8 +97,8 @@ def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, N
 @contextmanager
 def running(
     module: str, order: str, environ: Mapping[str, str], seconds: float | None = None
-) -> Iterator[Child]:
-    """The child, told its order; ends with the block, and after ``seconds`` at the latest."""
+) -> Iterator[RosProcess]:
+    """Run the child with its order; it ends with the block, and after ``seconds`` at the latest."""
     command = [sys.executable, "-m", module]
     pipe = subprocess.PIPE
     with tempfile.TemporaryFile() as errors:
@@ -104,52 +107,54 @@ def running(
         limit.daemon = True
         limit.start()
         try:
-            _tell(process, order)
-            yield Child(process, errors, environ)
+            _send(process, order)
+            yield RosProcess(process, errors, environ)
         finally:
             limit.cancel()
-            _end(process)
+            _stop(process)
 
 
-def _tell(process: subprocess.Popen[bytes], order: str) -> None:
+def _send(process: subprocess.Popen[bytes], order: str) -> None:
     assert process.stdin is not None
     try:
         process.stdin.write(f"{order}\n".encode())
         process.stdin.flush()
     except BrokenPipeError:
-        # It ended before it read: its exit code says why.
+        # The child ended before it read the order: its exit code says why.
         return
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Ask, insist, force: a clean end takes it out of everybody's view at once."""
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """Close its input, then terminate, then kill; only a clean exit leaves the graph at once."""
     assert process.stdin is not None and process.stdout is not None
-    # What was not sent to a process that is gone does not matter.
+    # The process may be gone already.
     with suppress(BrokenPipeError):
         process.stdin.close()
-    for insist in (process.terminate, process.kill):
+    for force in (process.terminate, process.kill):
         try:
-            process.wait(_PATIENCE)
+            process.wait(_EXIT_SECONDS)
             break
         except subprocess.TimeoutExpired:
-            insist()
+            force()
     process.wait()
     process.stdout.close()
 
 
-def _explained(code: int, said: str, environ: Mapping[str, str]) -> str:
-    """Why the child ended with ``code``, in one line with what to do."""
-    lines = [line.strip() for line in said.splitlines() if line.strip()]
-    # rclpy ends its reason with lines of places.
-    last = next((line for line in reversed(lines) if not line.startswith(",")), "it said nothing")
+def _explain(code: int, output: str, environ: Mapping[str, str]) -> str:
+    """Why the child ended with ``code``, and what to do, in one line."""
+    lines = [line.strip() for line in output.splitlines() if line.strip()]
+    # rclpy puts lines with source locations after its reason.
+    last = next((line for line in reversed(lines) if not line.startswith(",")), "no output")
     if code == NO_RCLPY:
         return f"rclpy cannot be imported ({last}); {INSTALL}"
     if code == RMW_MISMATCH:
         wanted = environ.get("RMW_IMPLEMENTATION", "")
-        remedy = "unset it, or install that RMW beside rclpy"
-        return f"RMW_IMPLEMENTATION={wanted!r} is not what this rclpy comes with; {remedy}"
+        remedy = "unset it, or install that RMW"
+        return f"RMW_IMPLEMENTATION={wanted!r} is not available to this rclpy; {remedy}"
     if code == ENDED:
-        return f"the look at the graph was ended from outside; start it again. It said: {last}"
+        return (
+            f"the process that reads the graph was stopped; start the command again. Output: {last}"
+        )
     if code < 0:
-        return f"rclpy was ended by signal {-code} or did not answer in time; it said: {last}"
+        return f"rclpy was stopped by signal {-code}, or it took too long; output: {last}"
     return f"rclpy does not start (exit code {code}): {last}; {INSTALL}"

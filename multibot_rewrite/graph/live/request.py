@@ -1,4 +1,4 @@
-"""What is asked of a process that speaks to the graph, and the words between it and the command."""
+"""The request to a child process that uses rclpy, and the messages between it and the command."""
 
 from __future__ import annotations
 
@@ -12,18 +12,19 @@ _LINE = b"\n"
 
 
 class Request(NamedTuple):
-    """Stop when the nodes of ``expected`` (full names) are seen, at the latest after ``timeout``
-    seconds; also tell QoS and process of ``topics``.
+    """What a snapshot is asked for.
 
-    With ``watch`` it never stops, and tells a snapshot whenever something changed. With
-    ``stand_ins`` transforms are also read from the messages a rehearsal has without tf2_msgs.
+    The observation ends when the nodes of ``expected`` (full names) are in the graph, and after
+    ``timeout`` seconds at the latest. The snapshot has QoS and process of ``topics``. With
+    ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
+    transforms are also read from the messages that a rehearsal has without tf2_msgs.
     """
 
     timeout: float
     expected: tuple[str, ...] = ()
     topics: tuple[str, ...] = ()
     watch: bool = False
-    stand_ins: bool = False
+    substitutes: bool = False
 
 
 def to_text(order: tuple[Any, ...]) -> str:
@@ -33,10 +34,10 @@ def to_text(order: tuple[Any, ...]) -> str:
 
 def from_text(text: str) -> Request:
     """Read what ``to_text`` made of a Request."""
-    timeout, expected, topics, watch, stand_ins = json.loads(text)
-    return Request(float(timeout), tuple(expected), tuple(topics), watch, stand_ins)
+    timeout, expected, topics, watch, substitutes = json.loads(text)
+    return Request(float(timeout), tuple(expected), tuple(topics), watch, substitutes)
 
 
 def framed(data: bytes) -> bytes:
-    """A message with its length before it: several follow one another in a pipe."""
+    """A message with its length before it, so that several can follow one another in a pipe."""
     return b"%d" % len(data) + _LINE + data

@@ -1,6 +1,6 @@
-"""rclpy: the only module that imports it, and what the others need of it.
+"""The only module that imports rclpy, with the functions that the others need.
 
-Runs in a process of its own (``graph.live.look``, ``graph.live.play``), since rcl may end its process.
+It runs in child processes (``live.observe``, ``live.stub_nodes``), since rcl may end its process.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _BROKEN = (ImportError, AttributeError, OSError)
 
 
 class Session(NamedTuple):
-    """A context of its own, that no command line and no rule of the process reaches."""
+    """An own rclpy context, without arguments or remap rules from the process's command line."""
 
     context: Context
     executor: SingleThreadedExecutor
@@ -37,7 +37,7 @@ def missing() -> str:
 
 @contextmanager
 def opened() -> Iterator[Session]:
-    """A session, left cleanly with the block: its nodes go out of everybody's view at once."""
+    """A session; at the end of the block its nodes leave the graph at once."""
     import rclpy
     from rclpy.context import Context
     from rclpy.executors import SingleThreadedExecutor
@@ -59,8 +59,7 @@ def opened() -> Iterator[Session]:
 def add_node(
     session: Session, name: str, namespace: str = "/", arguments: Sequence[str] = ()
 ) -> Node:
-    """A node of the session without parameter services; ``arguments`` are what follows its name on
-    a command line."""
+    """Add a node without parameter services; ``arguments`` are those of its command line."""
     from rclpy.node import Node
 
     node = Node(
@@ -77,14 +76,14 @@ def add_node(
 
 
 def spin(session: Session, seconds: float) -> None:
-    """Handle what comes for ``seconds``."""
+    """Run callbacks for ``seconds``."""
     end = time.monotonic() + seconds
     while (left := end - time.monotonic()) > 0:
         session.executor.spin_once(timeout_sec=left)
 
 
-def gone() -> type[Exception]:
-    """What a node raises when it is asked about one that is not there."""
+def node_gone_error() -> type[Exception]:
+    """The exception for a query about a node that is not in the graph."""
     from rclpy.node import NodeNameNonExistentError
 
     error: type[Exception] = NodeNameNonExistentError
@@ -105,15 +104,15 @@ def action_clients(node: Node, name: str, namespace: str) -> Any:
     return get_action_client_names_and_types_by_node(node, name, namespace)
 
 
-def type_of(word: str) -> tuple[Any, str]:
-    """The class of a type such as ``std_msgs/msg/String``, or None and why it cannot be had."""
+def message_class(type_: str) -> tuple[Any, str]:
+    """The class of a type such as ``std_msgs/msg/String``, or None and why there is none."""
     from rclpy.exceptions import NoTypeSupportImportedException
     from rosidl_generator_py.import_type_support_impl import UnsupportedTypeSupport
 
-    package, kind, name = word.split("/")
+    package, kind, name = type_.split("/")
     try:
         found = getattr(import_module(f"{package}.{kind}"), name)
-        # Half installed, it fails only where it is used.
+        # A type whose support library is missing fails only where it is used.
         _check_support(kind, found)
     except (*_BROKEN, NoTypeSupportImportedException, UnsupportedTypeSupport) as error:
         return None, str(error)
@@ -130,26 +129,26 @@ def _check_support(kind: str, type_: Any) -> None:
 
 
 def subscribe(
-    node: Node, type_: Any, topic: str, latched: bool, take: Callable[[Any], None]
+    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[Any], None]
 ) -> Callable[[], None]:
-    """Hand every message to ``take``; gives what ends it. ``latched`` reads what was sent before."""
-    # Best effort reads from reliable senders too, but latched samples come to reliable readers.
-    subscription = node.create_subscription(type_, topic, take, _qos(latched, latched))
+    """Subscribe; returns what ends it. With ``latched`` earlier messages are received too."""
+    # Best effort works with reliable publishers too, but latched samples need a reliable reader.
+    subscription = node.create_subscription(type_, topic, callback, _qos(latched, latched))
     return lambda: node.destroy_subscription(subscription)
 
 
 def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:
-    """A reliable publisher; what a ``latched`` one sent is kept for those who come later."""
+    """A reliable publisher; with ``latched`` later subscribers receive its messages too."""
     return node.create_publisher(type_, topic, _qos(latched, True))
 
 
-def listen(node: Node, type_: Any, topic: str) -> None:
-    """A subscription as most nodes have it, which drops what it gets."""
+def subscribe_and_drop(node: Node, type_: Any, topic: str) -> None:
+    """A subscription with the usual QoS that ignores its messages."""
     node.create_subscription(type_, topic, lambda _: None, _qos(False, True))
 
 
 def serve_action(node: Node, type_: Any, name: str) -> None:
-    """An action that is there, though no goal of it ever succeeds."""
+    """An action server whose goals never succeed."""
     from rclpy.action import ActionServer
 
     ActionServer(node, type_, name, lambda goal: type_.Result())

@@ -1,9 +1,9 @@
-"""The manners of a process that speaks to the graph for a command: how it is told, how it ends.
+"""Start, protocol and end of a child process that uses rclpy.
 
 Its order is the first line of its standard input. It ends when that input is closed, on SIGTERM
-and on Ctrl-C, and always leaves the graph cleanly: what is killed stays in everybody's view for
-20 s. What it tells goes to standard output as messages with their length before them; what
-libraries print goes to standard error.
+and on Ctrl-C, and always leaves the graph cleanly: a process that is killed stays visible in the
+graph for 20 s. Its messages go to standard output, each with its length before it; what libraries
+print goes to standard error.
 """
 
 from __future__ import annotations
@@ -18,41 +18,41 @@ from contextlib import suppress
 from multibot_rewrite.graph.live import ros
 from multibot_rewrite.graph.live.request import NO_RCLPY, framed
 
-Tell = Callable[[bytes], None]
-Work = Callable[[str, threading.Event, Tell], int]
+Send = Callable[[bytes], None]
+Worker = Callable[[str, threading.Event, Send], int]
 _LINE = b"\n"
 
 
-def work(run: Work) -> int:
-    """Run ``run(order, stop, tell)``; ``stop`` is set when it has to end. Returns the exit code."""
-    result = _own_standard_output()
+def run_worker(run: Worker) -> int:
+    """Run ``run(order, stop, send)``; ``stop`` is set when it has to end. Returns the exit code."""
+    result = _private_output()
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda *_: stop.set())
-    order = _order()
+    order = _read_order()
     threading.Thread(target=_wait_for_end, args=(stop,), daemon=True).start()
     missing = ros.missing()
     if missing:
         sys.stderr.write(f"{missing}\n")
         return NO_RCLPY
 
-    def tell(data: bytes) -> None:
-        # Whoever listened is gone, and the input will be closed, too.
+    def send(data: bytes) -> None:
+        # The command has ended; the input will be closed as well.
         with suppress(BrokenPipeError):
             _write_all(result, framed(data))
 
-    return run(order, stop, tell)
+    return run(order, stop, send)
 
 
-def _own_standard_output() -> int:
-    """A descriptor nobody else writes to."""
+def _private_output() -> int:
+    """A descriptor for messages; what libraries print to standard output goes to standard error."""
     result = os.dup(1)
     os.dup2(2, 1)
     return result
 
 
-def _order() -> str:
-    """The first line of standard input, read without taking more than was sent at once."""
+def _read_order() -> str:
+    """The first line of standard input; reads no more than was sent with it."""
     data = b""
     while _LINE not in data:
         more = os.read(0, 1 << 16)
@@ -63,7 +63,7 @@ def _order() -> str:
 
 
 def _wait_for_end(stop: threading.Event) -> None:
-    # Unbuffered, because a thread inside sys.stdin would block the interpreter's end.
+    # Unbuffered, because a thread that reads sys.stdin would keep the interpreter from exiting.
     with suppress(OSError):
         while os.read(0, 4096):
             pass

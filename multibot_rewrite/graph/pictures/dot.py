@@ -1,17 +1,17 @@
-"""The scene as a Graphviz graph: ``dot -Tsvg``, ``-Tpdf``."""
+"""The scene as a graph for Graphviz: ``dot -Tsvg``, ``dot -Tpdf``."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.pictures.chart import Chart, fitting
-from multibot_rewrite.graph.pictures.marks import MISSING, OK, UNEXPECTED
+from multibot_rewrite.graph.pictures.chart import Chart, largest_fitting
 from multibot_rewrite.graph.pictures.mermaid import COLOURS
-from multibot_rewrite.graph.pictures.scene import Name, Node, Scene
+from multibot_rewrite.graph.pictures.scene import DrawnName, DrawnNode, Scene
+from multibot_rewrite.graph.pictures.states import MISSING, OK, UNEXPECTED
 from multibot_rewrite.graph.pictures.text import counted, visible
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
-# More takes dot minutes, and nobody reads it.
+# With more dot takes minutes, and the picture is not readable.
 MOST_EDGES = 3000
 SHAPES = {TOPIC: "ellipse", SERVICE: "component", ACTION: "hexagon"}
 STYLES = {MISSING: "dashed", UNEXPECTED: "dotted"}
@@ -24,8 +24,8 @@ digraph multibot {
 
 
 def to_dot(scene: Scene) -> bytes:
-    """The graph, a cluster a robot."""
-    chart = fitting(scene, lambda chart: len(chart.arrows) <= MOST_EDGES)
+    """The graph, with a cluster for each robot."""
+    chart = largest_fitting(scene, lambda chart: len(chart.arrows) <= MOST_EDGES)
     return (HEAD + "\n".join(_lines(chart)) + "\n}\n").encode()
 
 
@@ -37,32 +37,32 @@ def _lines(chart: Chart) -> Iterator[str]:
         yield from (f"    {id_} {_node(node)};" for id_, node in cluster.nodes)
         yield from (f"    {id_} {_name(name)};" for id_, name in cluster.names)
         yield "  }"
-    for at, robot in enumerate(chart.calm):
-        yield f"  c{at} [label={_quoted(robot)}, shape=box{_looks(OK)}];"
+    for at, robot in enumerate(chart.healthy):
+        yield f"  c{at} [label={_quoted(robot)}, shape=box{_style(OK)}];"
     for arrow in chart.arrows:
         wide = 1 if arrow.state in (OK, UNEXPECTED) else 2
         style = STYLES.get(arrow.state, "solid")
         colour = COLOURS[arrow.state][1]
-        looks = f'color="{colour}", style={style}, penwidth={wide}'
-        yield f"  {arrow.start} -> {arrow.end} [{looks}];"
+        attributes = f'color="{colour}", style={style}, penwidth={wide}'
+        yield f"  {arrow.start} -> {arrow.end} [{attributes}];"
 
 
-def _node(node: Node) -> str:
-    return f"[label={_quoted(node.name)}, shape=box{_looks(node.state)}]"
+def _node(node: DrawnNode) -> str:
+    return f"[label={_quoted(node.name)}, shape=box{_style(node.state)}]"
 
 
-def _name(name: Name) -> str:
-    text = f"{counted(len(name.merged), name.kind)} nobody calls" if name.merged else name.name
-    return f"[label={_quoted(text)}, shape={SHAPES[name.kind]}{_looks(name.state)}]"
+def _name(name: DrawnName) -> str:
+    text = f"{counted(len(name.merged), name.kind)} without a client" if name.merged else name.name
+    return f"[label={_quoted(text)}, shape={SHAPES[name.kind]}{_style(name.state)}]"
 
 
-def _looks(state: str) -> str:
+def _style(state: str) -> str:
     fill, line, text = COLOURS[state]
     style = f"filled,{STYLES.get(state, 'solid')}"
     return f', style="{style}", fillcolor="{fill}", color="{line}", fontcolor="{text}"'
 
 
 def _quoted(text: str) -> str:
-    """A quoted string; dot reads entities and its own escapes in it."""
+    """A quoted string, safe from the entities and escapes of dot."""
     safe = visible(text).replace("&", "&amp;").replace("\\", "\\\\").replace('"', '\\"')
     return f'"{safe}"'

@@ -1,7 +1,7 @@
-"""Where things stand in the picture of a group: who offers, the names, who uses. Pure.
+"""The layout of a group's picture: publishers and servers, names, subscribers and clients. Pure.
 
-Lengths are pixels. The order of names and nodes is settled by barycenters: each thing moves towards
-the middle of what it is joined to, which leaves few crossings; what is wrong stands on top.
+Lengths are pixels. Names and nodes are ordered by barycenters: each moves towards the middle of what
+it is connected to, which leaves few crossings. Faulty names are at the top.
 """
 
 from __future__ import annotations
@@ -10,36 +10,36 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.pictures.marks import STATES, TROUBLE
-from multibot_rewrite.graph.pictures.scene import Edge, Group, Name, Node
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, Group
+from multibot_rewrite.graph.pictures.states import FAULTY, STATES
 from multibot_rewrite.remap.records import PUBLISHES, SERVES
 
 ROW, NODE_ROW, TOP = 24, 34, 40
 SWEEPS = 6
-OFFERS = (PUBLISHES, SERVES)
+OFFERING = (PUBLISHES, SERVES)
 
 
-class Layout(NamedTuple):
-    """Middles of the things of each column from the top, and the height of it all.
+class GroupLayout(NamedTuple):
+    """The nodes and names of each column with their vertical middle, and the total height.
 
-    A node that offers and uses stands in both columns.
+    A node that offers and uses names is in both columns.
     """
 
-    left: tuple[tuple[Node, float], ...]
-    names: tuple[tuple[Name, float], ...]
-    right: tuple[tuple[Node, float], ...]
+    left: tuple[tuple[DrawnNode, float], ...]
+    names: tuple[tuple[DrawnName, float], ...]
+    right: tuple[tuple[DrawnNode, float], ...]
     height: float
 
 
-_Key = tuple[str, str]
+_NameKey = tuple[str, str]
 
 
-def lay_out(group: Group) -> Layout:
+def lay_out(group: Group) -> GroupLayout:
     """The layout of one group."""
     nodes = {node.name: node for node in group.nodes}
-    offers = _joined(edge for edge in group.edges if edge.role in OFFERS)
-    uses = _joined(edge for edge in group.edges if edge.role not in OFFERS)
-    names = _ordered(group, offers, uses)
+    offers = _names_by_node(edge for edge in group.edges if edge.role in OFFERING)
+    uses = _names_by_node(edge for edge in group.edges if edge.role not in OFFERING)
+    names = _ordered_names(group, offers, uses)
     height = max(len(names) * ROW, max(len(offers), len(uses)) * NODE_ROW)
     lead = (height - len(names) * ROW) / 2
     at = {key: lead + ROW * (rank + 0.5) for rank, key in enumerate(names)}
@@ -48,7 +48,7 @@ def lay_out(group: Group) -> Layout:
     for rank, node in enumerate(idle):
         left[node] = height + NODE_ROW * (rank + 0.5)
     by_key = {(name.kind, name.name): name for name in group.names}
-    return Layout(
+    return GroupLayout(
         tuple((nodes[node], TOP + y) for node, y in left.items()),
         tuple((by_key[key], TOP + y) for key, y in at.items()),
         tuple((nodes[node], TOP + y) for node, y in right.items()),
@@ -56,32 +56,32 @@ def lay_out(group: Group) -> Layout:
     )
 
 
-def _joined(edges: Iterable[Edge]) -> dict[str, list[_Key]]:
-    found: dict[str, list[_Key]] = defaultdict(list)
+def _names_by_node(edges: Iterable[DrawnEdge]) -> dict[str, list[_NameKey]]:
+    found: dict[str, list[_NameKey]] = defaultdict(list)
     for edge in edges:
         found[edge.node].append((edge.kind, edge.name))
     return found
 
 
-def _ordered(
-    group: Group, offers: Mapping[str, Sequence[_Key]], uses: Mapping[str, Sequence[_Key]]
-) -> list[_Key]:
-    """The names, the worst first, those as bad in an order with few crossings."""
-    calm = {(name.kind, name.name): len(STATES) for name in group.names}
+def _ordered_names(
+    group: Group, offers: Mapping[str, Sequence[_NameKey]], uses: Mapping[str, Sequence[_NameKey]]
+) -> list[_NameKey]:
+    """The names, the worst first, within the same state in an order with few crossings."""
+    severity = {(name.kind, name.name): len(STATES) for name in group.names}
     for edge in group.edges:
-        if edge.state in TROUBLE:
+        if edge.state in FAULTY:
             key = edge.kind, edge.name
-            calm[key] = min(calm[key], STATES.index(edge.state))
-    names = sorted(calm, key=lambda key: (calm[key], key))
+            severity[key] = min(severity[key], STATES.index(edge.state))
+    names = sorted(severity, key=lambda key: (severity[key], key))
     for _ in range(SWEEPS):
         rank = {key: float(at) for at, key in enumerate(names)}
-        pulls: dict[_Key, list[float]] = defaultdict(list)
+        pulls: dict[_NameKey, list[float]] = defaultdict(list)
         for side in (offers, uses):
             for keys in side.values():
                 middle = _middle([rank[key] for key in keys])
                 for key in keys:
                     pulls[key].append(middle)
-        names.sort(key=lambda key: (calm[key], _middle(pulls[key]), key))
+        names.sort(key=lambda key: (severity[key], _middle(pulls[key]), key))
     return names
 
 
@@ -90,9 +90,9 @@ def _middle(values: Sequence[float]) -> float:
 
 
 def _column(
-    joined: Mapping[str, Sequence[_Key]], at: Mapping[_Key, float], height: float
+    joined: Mapping[str, Sequence[_NameKey]], at: Mapping[_NameKey, float], height: float
 ) -> dict[str, float]:
-    """Each node beside the middle of its names, moved apart where two would overlap."""
+    """Each node beside the middle of its names, moved where two would overlap."""
     wish = {node: _middle([at[key] for key in keys]) for node, keys in joined.items()}
     order = sorted(wish, key=lambda node: (wish[node], node))
     places: dict[str, float] = {}

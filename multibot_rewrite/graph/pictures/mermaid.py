@@ -1,4 +1,4 @@
-"""The scene as a Mermaid flowchart, as GitHub and GitLab draw it in a page of Markdown."""
+"""The scene as a Mermaid flowchart, which GitHub and GitLab draw in Markdown."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import re
 from collections import defaultdict
 from collections.abc import Iterator
 
-from multibot_rewrite.graph.pictures.chart import Chart, fitting
-from multibot_rewrite.graph.pictures.marks import (
+from multibot_rewrite.graph.pictures.chart import Chart, largest_fitting
+from multibot_rewrite.graph.pictures.scene import DrawnName, Scene
+from multibot_rewrite.graph.pictures.states import (
     CLASH,
     CROSS_TALK,
     LEAK,
@@ -15,11 +16,10 @@ from multibot_rewrite.graph.pictures.marks import (
     OK,
     UNEXPECTED,
 )
-from multibot_rewrite.graph.pictures.scene import Name, Scene
 from multibot_rewrite.graph.pictures.text import counted, visible
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
-# Mermaid draws no more by default (config.schema.yaml: maxEdges, maxTextSize).
+# The limits of Mermaid (config.schema.yaml: maxEdges, maxTextSize).
 MOST_EDGES, MOST_LETTERS = 500, 50_000
 SHAPES = {TOPIC: ("([", "])"), SERVICE: ("[[", "]]"), ACTION: ("{{", "}}")}
 # Fill, line, text: readable on a light and on a dark page.
@@ -32,13 +32,13 @@ COLOURS = {
     UNEXPECTED: ("#eaf1fa", "#2b66b1", "#1d4577"),
 }
 DASHED = {MISSING: ",stroke-dasharray:5 3", UNEXPECTED: ",stroke-dasharray:2 3"}
-# Whatever else may mean something to Mermaid is written by its number.
+# Any other character may have a meaning in Mermaid and is written by its number.
 _PLAIN = re.compile(r"[^\w/ .,:()~-]", re.ASCII)
 
 
 def to_mermaid(scene: Scene) -> bytes:
-    """The flowchart; of a large fleet with only as much in it as Mermaid draws."""
-    return _text(fitting(scene, _fits)).encode()
+    """The flowchart; for a large fleet with only as much in it as Mermaid draws."""
+    return _text(largest_fitting(scene, _fits)).encode()
 
 
 def _fits(chart: Chart) -> bool:
@@ -60,14 +60,14 @@ def _lines(chart: Chart) -> Iterator[str]:
             start, end = SHAPES[name.kind]
             yield f'    {id_}{start}"{_quoted(_label(name))}"{end}:::{_class(name.state)}'
         yield "  end"
-    for at, robot in enumerate(chart.calm):
+    for at, robot in enumerate(chart.healthy):
         yield f'  c{at}["{_quoted(robot)}"]:::ok'
     for arrow in chart.arrows:
         yield f"  {arrow.start} {'-.->' if arrow.state == MISSING else '-->'} {arrow.end}"
-    yield from _looks(chart)
+    yield from _style(chart)
 
 
-def _looks(chart: Chart) -> Iterator[str]:
+def _style(chart: Chart) -> Iterator[str]:
     by_state: dict[str, list[str]] = defaultdict(list)
     for at, arrow in enumerate(chart.arrows):
         by_state[arrow.state].append(str(at))
@@ -86,8 +86,8 @@ def _class(state: str) -> str:
     return state.replace("-", "")
 
 
-def _label(name: Name) -> str:
-    return f"{counted(len(name.merged), name.kind)} nobody calls" if name.merged else name.name
+def _label(name: DrawnName) -> str:
+    return f"{counted(len(name.merged), name.kind)} without a client" if name.merged else name.name
 
 
 def _quoted(text: str) -> str:

@@ -1,32 +1,32 @@
-"""The picture of the whole fleet: a box a robot, and an arrow where one reaches into another."""
+"""The picture of the fleet: a box for each robot, an arrow where one uses another's names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.pictures.marks import TROUBLE
-from multibot_rewrite.graph.pictures.scene import Reach
-from multibot_rewrite.graph.pictures.svg import LETTER, MEANING, WIDTH, safe, told
+from multibot_rewrite.graph.pictures.scene import Crossing
+from multibot_rewrite.graph.pictures.states import FAULTY
+from multibot_rewrite.graph.pictures.svg import LETTER, MEANINGS, WIDTH, safe, tooltip
 from multibot_rewrite.graph.pictures.text import clipped, counted
 
-# Up to that many robots: boxes in a row, width and height of a box, the gap below it.
-# Room for the arrows above the first row and below the last one.
+# Space for the arrows above the first row and below the last one.
 MARGIN = 44
+# Up to so many robots: boxes in a row, width and height of a box, the gap below it.
 SIZES = ((4, 4, 230, 58, 74), (30, 6, 160, 54, 60), (100_000, 10, 106, 40, 40))
-# More nodes that are no robot's are one box; more arrows have no words on them.
-MOST_NODES, MOST_WORDS = 8, 12
-OTHERS, NOBODYS = "other nodes", "names of no robot"
+# More shared nodes than this are one box; more arrows than this have no labels.
+MOST_NODES, MOST_LABELS = 8, 12
+OTHERS, NO_ROBOT = "other nodes", "names of no robot"
 
 
 class Tile(NamedTuple):
-    """What is said of a box: its key in a reach, a line below the name, where it links to."""
+    """A box: its key in a crossing, its title, a line below it, its link, its CSS class."""
 
     key: str
     title: str
     note: str
     link: str
-    looks: str
+    css_class: str
 
 
 class _Box(NamedTuple):
@@ -36,23 +36,23 @@ class _Box(NamedTuple):
     high: float
 
 
-def overview(robots: Sequence[Tile], reaches: Sequence[Reach], shared: Iterable[str]) -> str:
-    """The picture; ``shared`` are the nodes that are no robot's."""
-    below = list(_below(reaches, list(shared)))
+def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iterable[str]) -> str:
+    """The picture; ``shared`` are the nodes of no robot."""
+    below = list(_shared_tiles(crossings, list(shared)))
     middle = _height(len(robots)) if below else 0.0
     places = {**_rows(robots, 0), **_rows(below, middle)}
     tiles = (*robots, *below)
     high = max((box.y + box.high for box in places.values()), default=0.0) + MARGIN
-    arrows, words = [], []
-    for reach in sorted(reaches, key=lambda reach: reach.state in TROUBLE):
-        path, x, y = _path(*_ends(reach, places))
-        arrows.append(_arrow(reach, path))
-        if len(reaches) <= MOST_WORDS and reach.target and reach.state in TROUBLE:
-            words.append(_word(reach, x, y))
+    arrows, labels = [], []
+    for crossing in sorted(crossings, key=lambda crossing: crossing.state in FAULTY):
+        path, x, y = _path(*_boxes(crossing, places))
+        arrows.append(_arrow(crossing, path))
+        if len(crossings) <= MOST_LABELS and crossing.target and crossing.state in FAULTY:
+            labels.append(_label(crossing, x, y))
     boxes = (_tile(tile, places[tile.key]) for tile in tiles)
     return (
         f'<svg class="overview" viewBox="0 0 {WIDTH} {high:g}" role="group" aria-label="the fleet">'
-        f"{_TIPS}{''.join((*arrows, *boxes, *words))}</svg>"
+        f"{_TIPS}{''.join((*arrows, *boxes, *labels))}</svg>"
     )
 
 
@@ -65,16 +65,16 @@ _TIPS = "<defs>{}</defs>".format(
 )
 
 
-def _below(reaches: Sequence[Reach], shared: Sequence[str]) -> Iterator[Tile]:
-    """Boxes for the nodes that are no robot's, and for the names that should be a robot's."""
+def _shared_tiles(crossings: Sequence[Crossing], shared: Sequence[str]) -> Iterator[Tile]:
+    """Boxes for the nodes of no robot, and for names of no robot that should belong to one."""
     if len(shared) > MOST_NODES:
         yield Tile(OTHERS, counted(len(shared), "other node"), "of no robot", "#shared", "shared")
     else:
         yield from (Tile(node, node, "of no robot", "#shared", "shared") for node in shared)
-    leaked = dict.fromkeys(name for r in reaches if not r.target for name in r.names)
+    leaked = dict.fromkeys(name for r in crossings if not r.target for name in r.names)
     if leaked:
         names = dict.fromkeys(name.partition(" ")[2] for name in leaked)
-        yield Tile(NOBODYS, NOBODYS, ", ".join(names), "#shared", "bad")
+        yield Tile(NO_ROBOT, NO_ROBOT, ", ".join(names), "#shared", "bad")
 
 
 def _size(number: int) -> tuple[int, int, int, int]:
@@ -104,35 +104,37 @@ def _tile(tile: Tile, box: _Box) -> str:
     room = int((box.wide - 16) / LETTER)
     middle = f'x="{box.x + box.wide / 2:g}"'
     return (
-        f'<a href="{safe(tile.link)}"><g class="tile {tile.looks}">'
+        f'<a href="{safe(tile.link)}"><g class="tile {tile.css_class}">'
         f'<rect x="{box.x:g}" y="{box.y:g}" width="{box.wide:g}" height="{box.high:g}" rx="7"/>'
         f'<text class="title" {middle} y="{box.y + box.high * 0.44:g}">'
         f"{safe(clipped(tile.title, room))}</text>"
         f'<text class="note" {middle} y="{box.y + box.high * 0.8:g}">'
         f"{safe(clipped(tile.note, room))}</text>"
-        f"{told(tile.title, tile.note)}</g></a>"
+        f"{tooltip(tile.title, tile.note)}</g></a>"
     )
 
 
-def _ends(reach: Reach, places: Mapping[str, _Box]) -> tuple[_Box, _Box]:
-    start = places.get(reach.source or reach.node) or places[OTHERS]
-    return start, places[reach.target or NOBODYS]
+def _boxes(crossing: Crossing, places: Mapping[str, _Box]) -> tuple[_Box, _Box]:
+    start = places.get(crossing.source or crossing.node) or places[OTHERS]
+    return start, places[crossing.target or NO_ROBOT]
 
 
-def _arrow(reach: Reach, path: str) -> str:
-    looks, tip = ("bad", "tip-bad") if reach.state in TROUBLE else ("calm", "tip")
-    title = told(f"{reach.source or reach.node}: {MEANING[reach.state]}", *reach.names)
-    return f'<path class="reach {looks}" d="{path}" marker-end="url(#{tip})">{title}</path>'
+def _arrow(crossing: Crossing, path: str) -> str:
+    css_class, tip = ("bad", "tip-bad") if crossing.state in FAULTY else ("calm", "tip")
+    title = tooltip(
+        f"{crossing.source or crossing.node}: {MEANINGS[crossing.state]}", *crossing.names
+    )
+    return f'<path class="reach {css_class}" d="{path}" marker-end="url(#{tip})">{title}</path>'
 
 
-def _word(reach: Reach, x: float, y: float) -> str:
-    first = reach.names[0].partition(" ")[2]
-    text = clipped(first, 40) if len(reach.names) == 1 else counted(len(reach.names), "name")
+def _label(crossing: Crossing, x: float, y: float) -> str:
+    first = crossing.names[0].partition(" ")[2]
+    text = clipped(first, 40) if len(crossing.names) == 1 else counted(len(crossing.names), "name")
     return f'<text class="reach-note" x="{x:g}" y="{y:g}">{safe(text)}</text>'
 
 
 def _path(start: _Box, end: _Box) -> tuple[str, float, float]:
-    """A curve from box to box and the middle of it; to and fro do not lie on one another."""
+    """A curve from box to box and its middle; the two directions do not overlap."""
     x, to_x = start.x + start.wide / 2 + 12, end.x + end.wide / 2 - 12
     if start.y == end.y:
         y, bend = start.y, 46 if x < to_x else 26

@@ -18,7 +18,7 @@ function clear() {
   document.body.classList.remove("picked");
 }
 
-// Marks these parts wherever they are drawn, and what joins them; of one part, all that it has.
+// Highlights these elements wherever they are drawn, and their edges; for one element all its edges.
 function mark(ids) {
   clear();
   const wanted = new Set(ids);

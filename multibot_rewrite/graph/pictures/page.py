@@ -1,4 +1,4 @@
-"""The scene as one HTML file: no network, no font from outside, the same bytes for the same input."""
+"""The scene as one HTML file without external resources; the same input gives the same bytes."""
 
 from __future__ import annotations
 
@@ -10,43 +10,43 @@ from functools import cache
 from importlib.resources import files
 from itertools import groupby
 
-from multibot_rewrite.graph.environment import listed
-from multibot_rewrite.graph.pictures.lighter import rest
-from multibot_rewrite.graph.pictures.marks import MISSING, STATES
-from multibot_rewrite.graph.pictures.outlines import Outline
 from multibot_rewrite.graph.pictures.overview import Tile, overview
-from multibot_rewrite.graph.pictures.parts import (
+from multibot_rewrite.graph.pictures.page_sections import (
     LEVELS,
     SMALL_FLEET,
-    Part,
-    drawn,
-    hits_of,
+    PageSection,
+    ids_in,
+    ids_of,
     link_to,
     make_ids,
-    make_parts,
-    summary,
+    make_sections,
+    summarize,
 )
 from multibot_rewrite.graph.pictures.scene import Scene
-from multibot_rewrite.graph.pictures.svg import MEANING, Ids, graph, outline, safe
+from multibot_rewrite.graph.pictures.simplify import only_common
+from multibot_rewrite.graph.pictures.states import MISSING, STATES
+from multibot_rewrite.graph.pictures.svg import MEANINGS, Ids, group_svg, safe, tree_svg
 from multibot_rewrite.graph.pictures.text import counted
+from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree
 from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import QUIET
 from multibot_rewrite.graph.watching import Verdict
+from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import LAYOUTS
 
-# What a verdict is called, and how it looks.
+# The heading for a verdict, and its CSS class.
 VERDICTS = {
     Verdict.PLANNED: ("as planned", "good"),
     Verdict.INCONCLUSIVE: ("inconclusive", "unsure"),
     Verdict.WRONG: ("not as planned", "bad"),
 }
 NOTHING = (
-    "Nothing wrong was found, but the view may be incomplete.",
-    "Nothing is wrong: what is planned is there, and nothing leaks.",
+    "No faults were found, but the view of the graph may be incomplete.",
+    "No faults: everything planned is in the graph, and no name leaks.",
 )
-# That many robots with nothing wrong are put away together.
-MANY_CALM = 12
+# So many robots without faults are folded together.
+MANY_HEALTHY = 12
 
 
 def to_html(scene: Scene) -> bytes:
@@ -56,8 +56,8 @@ def to_html(scene: Scene) -> bytes:
         f"default-src 'none'; style-src '{_hash(css)}'; script-src '{_hash(js)}';"
         " base-uri 'none'; form-action 'none'"
     )
-    ids, parts = make_ids(scene), make_parts(scene)
-    pieces = (
+    ids, sections = make_ids(scene), make_sections(scene)
+    parts = (
         '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
@@ -65,13 +65,13 @@ def to_html(scene: Scene) -> bytes:
         f"<title>{safe(_title(scene))}</title>\n<style>{css}</style>\n</head>\n<body>\n",
         *_header(scene),
         "<main>\n",
-        *_findings(scene, ids, parts),
-        *_graphs(scene, ids, parts),
+        *_findings(scene, ids, sections),
+        *_graphs(scene, ids, sections),
         *_trees(scene, ids),
         *_environment(scene),
         f"</main>\n<script>{js}</script>\n</body>\n</html>\n",
     )
-    return "".join(pieces).encode()
+    return "".join(parts).encode()
 
 
 @cache
@@ -89,16 +89,16 @@ def _title(scene: Scene) -> str:
 
 
 def _header(scene: Scene) -> Iterator[str]:
-    verdict, looks = VERDICTS[scene.verdict]
+    verdict, css_class = VERDICTS[scene.verdict]
     about = next((one.about for one in LAYOUTS if scene.layout in (one.name, one.short)), "")
-    nodes = {n.name for g in scene.groups for n in g.nodes if not n.whole and n.state != MISSING}
+    nodes = {n.name for g in scene.groups for n in g.nodes if not n.is_robot and n.state != MISSING}
     facts = (
-        summary(Counter(finding.level for finding in scene.findings)) or "no findings",
-        f"{counted(len(scene.robots), 'robot')}: {listed(scene.robots)}",
+        summarize(Counter(finding.level for finding in scene.findings)) or "no findings",
+        f"{counted(len(scene.robots), 'robot')}: {shorten(scene.robots, SEVERAL)}",
         counted(len(nodes), "node"),
         f"layout {scene.layout}{f': {about}' if about else ''}",
     )
-    yield f'<header class="{looks}">\n<p>multibot check</p>\n<h1>{verdict}</h1>\n<ul>'
+    yield f'<header class="{css_class}">\n<p>multibot check</p>\n<h1>{verdict}</h1>\n<ul>'
     yield "".join(f"<li>{safe(fact)}</li>" for fact in facts)
     yield "</ul>\n"
     for caveat in scene.environment.caveats:
@@ -107,26 +107,29 @@ def _header(scene: Scene) -> Iterator[str]:
     yield "</header>\n"
 
 
-def _findings(scene: Scene, ids: Ids, parts: Sequence[Part]) -> Iterator[str]:
+def _findings(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[str]:
     yield '<section id="findings">\n<h2>Findings</h2>\n'
     if not scene.findings:
         yield f'<p class="none">{NOTHING[scene.verdict == Verdict.PLANNED]}</p>\n'
     else:
         yield from _filters(scene)
-        heads = "".join(f"<th>{head}</th>" for head in ("level", "code", "robot", "node", "what"))
+        heads = "".join(
+            f"<th>{head}</th>"
+            for head in ("level", "code", "robot", "node", "message and likely cause")
+        )
         yield f'<div class="wide"><table><thead><tr>{heads}</tr></thead>\n<tbody>\n'
         order = {robot: at for at, robot in enumerate(scene.robots)}
-        there = {part.group.robot: (part.id, drawn(part, ids)) for part in parts}
+        inside = {one.group.robot: (one.id, ids_in(one, ids)) for one in sections}
         for finding, about in zip(scene.findings, scene.targets, strict=True):
-            hits = hits_of(about, ids)
-            link = link_to(finding, hits, there)
-            yield _row(finding, order.get(finding.robot, -1), hits, link)
+            targets = ids_of(about, ids)
+            link = link_to(finding, targets, inside)
+            yield _row(finding, order.get(finding.robot, -1), targets, link)
         yield "</tbody></table></div>\n"
     yield "</section>\n"
 
 
 def _filters(scene: Scene) -> Iterator[str]:
-    """Shown by the script, which they need."""
+    """The filters, which the script shows because they need it."""
     found = {finding.robot for finding in scene.findings}
     robots = [(str(at), name) for at, name in enumerate(scene.robots) if name in found]
     if found - set(scene.robots):
@@ -144,11 +147,11 @@ def _select(name: str, default: str, options: Iterable[tuple[str, str]]) -> str:
     return f'<label>{name} <select name="{name}">{first}{inner}</select></label> '
 
 
-def _row(finding: GraphFinding, robot: int, hits: Iterable[str], link: str) -> str:
+def _row(finding: GraphFinding, robot: int, targets: Iterable[str], link: str) -> str:
     cause = f"<small>{safe(finding.cause)}</small>" if finding.cause else ""
     level = safe(finding.level)
     return (
-        f'<tr data-level="{level}" data-robot="{robot}" data-hits="{" ".join(hits)}">'
+        f'<tr data-level="{level}" data-robot="{robot}" data-hits="{" ".join(targets)}">'
         f'<td><b class="level {level}">{level}</b></td>'
         f'<td><a href="{link}">{safe(finding.code)}</a></td>'
         f"<td>{safe(finding.robot)}</td><td><code>{safe(finding.node)}</code></td>"
@@ -156,87 +159,91 @@ def _row(finding: GraphFinding, robot: int, hits: Iterable[str], link: str) -> s
     )
 
 
-def _graphs(scene: Scene, ids: Ids, parts: Sequence[Part]) -> Iterator[str]:
+def _graphs(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterator[str]:
     yield '<section id="graph">\n<h2>Robots</h2>\n'
-    tiles = [_tile(part) for part in parts if part.group.robot]
-    shared = [node.name for node in parts[-1].group.nodes if not (node.robot or node.whole)]
-    yield f"{overview(tiles, scene.reaches, shared)}\n"
-    yield '<input type="checkbox" id="more"><label for="more">also what every node has:'
-    yield " parameters, life cycle, /rosout, tf, the inner parts of actions</label>\n"
+    tiles = [_tile(section) for section in sections if section.group.robot]
+    shared = [node.name for node in sections[-1].group.nodes if not (node.robot or node.is_robot)]
+    yield f"{overview(tiles, scene.crossings, shared)}\n"
+    yield '<input type="checkbox" id="more"><label for="more">show what every node has:'
+    yield " parameters, life cycle, /rosout, tf, the topics and services of actions</label>\n"
     yield f'<ul class="legend">{"".join(_legend())}</ul>\n<div class="groups">\n'
-    calm = [part for part in parts if part.group.robot and not part.wrong]
-    hidden = calm if len(calm) >= MANY_CALM else []
-    away = {part.id for part in hidden}
-    for part in parts:
-        if part.id not in away:
-            yield from _group(part, ids)
+    healthy = [section for section in sections if section.group.robot and not section.faulty]
+    hidden = healthy if len(healthy) >= MANY_HEALTHY else []
+    hidden_ids = {section.id for section in hidden}
+    for section in sections:
+        if section.id not in hidden_ids:
+            yield from _group(section, ids)
     if hidden:
         title = f"{counted(len(hidden), 'more robot')} as planned"
         yield f'<details><summary class="good"><b>{title}</b></summary>\n<div>\n'
-        yield from (line for part in hidden for line in _group(part, ids))
+        yield from (line for section in hidden for line in _group(section, ids))
         yield "</div></details>\n"
     yield "</div>\n</section>\n"
 
 
 def _legend() -> Iterator[str]:
     for state in STATES:
-        yield f'<li class="{state}">{safe(MEANING[state])}</li>'
+        yield f'<li class="{state}">{safe(MEANINGS[state])}</li>'
 
 
-def _tile(part: Part) -> Tile:
-    robot = part.group.robot
-    nodes = counted(sum(node.robot == robot for node in part.group.nodes), "node")
-    looks = "bad" if part.levels[ERROR] else "odd" if part.wrong else "good"
-    reached = "reached into" if part.wrong else nodes
-    return Tile(robot, robot, summary(part.levels) or reached, f"#{part.id}", looks)
+def _tile(section: PageSection) -> Tile:
+    robot = section.group.robot
+    nodes = counted(sum(node.robot == robot for node in section.group.nodes), "node")
+    # Without findings of its own, only another robot's node makes a robot faulty.
+    note = summarize(section.levels) or ("used by another robot" if section.faulty else nodes)
+    return Tile(robot, robot, note, f"#{section.id}", _css_class(section))
 
 
-def _group(part: Part, ids: Ids) -> Iterator[str]:
-    title = part.group.robot or "shared and others"
-    nodes = counted(sum(not node.whole for node in part.group.nodes), "node")
-    words = f"{nodes}, {counted(len(part.group.names), 'name')}"
-    told = summary(part.levels)
-    looks = "bad" if part.levels[ERROR] else "odd" if part.wrong else "good"
-    yield f'<details id="{part.id}"{" open" if part.open else ""}><summary class="{looks}">'
-    yield f"<b>{safe(title)}</b> <span>{words}</span> <em>{told}</em></summary>\n"
-    yield f"<div>{graph(part.light, ids, f'{part.id}-')}</div>\n"
-    more = rest(part.group)
+def _css_class(section: PageSection) -> str:
+    return "bad" if section.levels[ERROR] else "odd" if section.faulty else "good"
+
+
+def _group(section: PageSection, ids: Ids) -> Iterator[str]:
+    title = section.group.robot or "shared and others"
+    nodes = counted(sum(not node.is_robot for node in section.group.nodes), "node")
+    counts = f"{nodes}, {counted(len(section.group.names), 'name')}"
+    findings = summarize(section.levels)
+    opened = " open" if section.open else ""
+    yield f'<details id="{section.id}"{opened}><summary class="{_css_class(section)}">'
+    yield f"<b>{safe(title)}</b> <span>{counts}</span> <em>{findings}</em></summary>\n"
+    yield f"<div>{group_svg(section.shown, ids, f'{section.id}-')}</div>\n"
+    more = only_common(section.group)
     if more.edges:
-        yield f'<div class="more">{graph(more, ids, "")}</div>\n'
+        yield f'<div class="more">{group_svg(more, ids, "")}</div>\n'
     yield "</details>\n"
 
 
 def _trees(scene: Scene, ids: Ids) -> Iterator[str]:
     yield '<section id="tf">\n<h2>tf</h2>\n'
-    if not scene.outlines:
-        yield '<p class="none">No tf was heard.</p>\n'
-    for topic, trees in groupby(scene.outlines, key=lambda one: one.topic):
+    if not scene.trees:
+        yield '<p class="none">No tf messages were received.</p>\n'
+    for topic, trees in groupby(scene.trees, key=lambda tree: tree.topic):
         static = "/".join("tf_static" if word == "tf" else word for word in topic.split("/"))
         yield f"<h3>{safe(topic)} <span>and {safe(static)}</span></h3>\n"
         yield '<div class="trees">\n'
-        for one in trees:
-            yield _panel(one, scene, ids)
+        for tree in trees:
+            yield _panel(tree, scene, ids)
         yield "</div>\n"
     yield "</section>\n"
 
 
-def _panel(one: Outline, scene: Scene, ids: Ids) -> str:
-    frames = counted(len({row.frame for row in one.rows}), "frame")
-    wrong = any(row.words for row in one.rows)
-    title = f"<b>{safe(one.robot or 'no robot')}</b> <span>{frames}</span>"
-    if not one.heard:
-        title += " <em>declared, not heard</em>"
+def _panel(tree: FrameTree, scene: Scene, ids: Ids) -> str:
+    frames = counted(len({row.frame for row in tree.rows}), "frame")
+    wrong = any(row.faults for row in tree.rows)
+    title = f"<b>{safe(tree.robot or 'no robot')}</b> <span>{frames}</span>"
+    if not tree.received:
+        title += " <em>declared, not received</em>"
     opened = " open" if wrong or len(scene.robots) <= SMALL_FLEET else ""
-    looks = "bad" if wrong else "good" if one.heard else "odd"
+    css_class = "bad" if wrong else "good" if tree.received else "odd"
     return (
-        f'<details{opened}><summary class="{looks}">{title}</summary>\n'
-        f'<div class="wide">{outline(one, scene.robots, ids)}</div></details>\n'
+        f'<details{opened}><summary class="{css_class}">{title}</summary>\n'
+        f'<div class="wide">{tree_svg(tree, scene.robots, ids)}</div></details>\n'
     )
 
 
 def _environment(scene: Scene) -> Iterator[str]:
     around = scene.environment
-    why = "no change any more" if around.settled == QUIET else around.settled
+    why = "no more changes" if around.settled == QUIET else around.settled
     server = around.discovery_server or "none"
     rows = (
         ("domain", str(around.domain)),
@@ -245,7 +252,7 @@ def _environment(scene: Scene) -> Iterator[str]:
         ("RMW", around.rmw),
         ("discovery server", f"{server}{', super client' if around.super_client else ''}"),
         ("participants", str(around.participants)),
-        ("looked", f"{around.seconds:.1f} s ({why})"),
+        ("observed for", f"{around.seconds:.1f} s ({why})"),
     )
     yield '<section id="environment">\n<h2>Environment</h2>\n<dl>'
     yield "".join(f"<div><dt>{key}</dt><dd>{safe(value)}</dd></div>" for key, value in rows)

@@ -1,4 +1,4 @@
-"""What is to be drawn of a checked graph, each part with its state. Pure, no drawing here."""
+"""What is drawn of a checked graph, each part with its state. Pure, and without any drawing."""
 
 from __future__ import annotations
 
@@ -6,38 +6,39 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.expectation import Expectation, Wanted
-from multibot_rewrite.graph.pictures.marks import (
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
+from multibot_rewrite.graph.pictures.states import (
+    FAULTY,
     LEAK,
     MISSING,
     OK,
-    TROUBLE,
     UNEXPECTED,
-    Marks,
+    States,
     Targets,
     find_targets,
-    gravest,
-    make_marks,
+    make_states,
+    worst,
 )
-from multibot_rewrite.graph.pictures.outlines import Outline, make_outlines
+from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree, make_frame_trees
 from multibot_rewrite.graph.rules.comparison import GraphFinding, View, make_view
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.watching import Verdict, judge
 
-# Packages of what every node has: logging, parameters, life cycle; tf has its own pictures.
-EVERYDAY = (
+# Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
+# tf, which has its own picture.
+COMMON_PACKAGES = (
     "rcl_interfaces",
     "lifecycle_msgs",
     "type_description_interfaces",
     "bond",
     "tf2_msgs",
 )
-# Topics and services that an action is made of.
-HIDDEN = "/_action/"
+# In the topics and services that an action is made of.
+ACTION_PART = "/_action/"
 
 
-class Edge(NamedTuple):
-    """A node's end of a name. ``everyday`` tells that every node has its like."""
+class DrawnEdge(NamedTuple):
+    """A node's endpoint of a name. ``common`` endpoints are those that every node has."""
 
     node: str
     kind: str
@@ -45,24 +46,24 @@ class Edge(NamedTuple):
     name: str
     type: str
     state: str
-    everyday: bool
+    common: bool
 
 
-class Node(NamedTuple):
-    """A node; in the group of what is shared it may be a whole robot.
+class DrawnNode(NamedTuple):
+    """A node. With ``is_robot`` it stands for a whole robot, in the group of what is shared.
 
-    ``loose`` tells that it is neither planned nor told of in a finding, as tools are.
+    ``is_tool`` nodes are neither planned nor in a finding.
     """
 
     name: str
     robot: str
     state: str
-    whole: bool = False
-    loose: bool = False
+    is_robot: bool = False
+    is_tool: bool = False
 
 
-class Name(NamedTuple):
-    """A topic, service or action; ``merged`` are the names it stands for, if it stands for several."""
+class DrawnName(NamedTuple):
+    """A topic, service or action; one that stands for several has their names in ``merged``."""
 
     kind: str
     name: str
@@ -76,15 +77,16 @@ class Group(NamedTuple):
     """What belongs to one robot, or to none where ``robot`` is empty."""
 
     robot: str
-    nodes: tuple[Node, ...]
-    names: tuple[Name, ...]
-    edges: tuple[Edge, ...]
+    nodes: tuple[DrawnNode, ...]
+    names: tuple[DrawnName, ...]
+    edges: tuple[DrawnEdge, ...]
 
 
-class Reach(NamedTuple):
-    """What joins two groups: a node of ``source`` has ``names`` of ``target``.
+class Crossing(NamedTuple):
+    """What connects two groups: a node of robot ``source`` uses ``names`` of robot ``target``.
 
-    Without ``source`` it is ``node``, which is no robot's; without ``target`` they are no robot's.
+    Without ``source`` the node is ``node``, of no robot; without ``target`` the names are of no
+    robot.
     """
 
     source: str
@@ -95,20 +97,20 @@ class Reach(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """Everything there is to see; ``targets`` say what the finding at the same index is about."""
+    """All that is drawn; ``targets`` has what the finding at the same index is about."""
 
     verdict: Verdict
     layout: str
     robots: tuple[str, ...]
     groups: tuple[Group, ...]
-    reaches: tuple[Reach, ...]
-    outlines: tuple[Outline, ...]
+    crossings: tuple[Crossing, ...]
+    trees: tuple[FrameTree, ...]
     findings: tuple[GraphFinding, ...]
     targets: tuple[Targets, ...]
     environment: Environment
 
 
-class _Owners(NamedTuple):
+class _RobotOf(NamedTuple):
     """The robot of each node and name; empty for none."""
 
     nodes: Mapping[str, str]
@@ -116,141 +118,150 @@ class _Owners(NamedTuple):
 
 
 def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[GraphFinding]) -> Scene:
-    """What is to be drawn of ``graph`` as ``plan`` and the findings see it."""
+    """What is drawn of ``graph`` with its plan and findings."""
     view = make_view(plan, graph)
     targets = find_targets(view, found)
-    marks = make_marks(found, targets)
-    edges = sorted(_edges(view, marks))
-    owners = _owners(view, marks, edges)
-    nodes = _nodes(view, marks, edges, owners)
+    states = make_states(found, targets)
+    edges = sorted(_edges(view, states))
+    robot_of = _robot_of(view, states, edges)
+    nodes = _nodes(view, states, edges, robot_of)
     return Scene(
         judge(found, graph),
         plan.layout,
         tuple(robot.name for robot in plan.robots),
-        tuple(_groups(plan, edges, nodes, owners)),
-        tuple(_reaches(edges, owners)),
-        make_outlines(view, marks),
+        tuple(_groups(plan, edges, nodes, robot_of)),
+        tuple(_crossings(edges, robot_of)),
+        make_frame_trees(view, states),
         tuple(found),
         targets,
         graph.environment,
     )
 
 
-def _edges(view: View, marks: Marks) -> Iterator[Edge]:
-    """The ends that are there, and those that a finding calls missing."""
-    usual = _everyday_names((*view.graph.endpoints, *view.plan.endpoints))
-    for end, type_ in dict.fromkeys(
+def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
+    """The endpoints in the graph, and those that a finding reports as missing."""
+    common_names = _common_names((*view.graph.endpoints, *view.plan.endpoints))
+    for key, type_ in dict.fromkeys(
         ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.endpoints
     ):
-        node, *_, name = end
-        everyday = name in usual
-        state = marks.ends.get((node, name), OK)
+        node, *_, name = key
+        common = name in common_names
+        state = states.endpoints.get((node, name), OK)
         if state in (OK, MISSING):
-            foreseen = everyday or end in view.planned or node in view.plan.shared_nodes
-            state = OK if foreseen else UNEXPECTED
-        yield Edge(*end, type_, state, everyday)
-    for end, wanted in view.planned.items():
-        node, *_, name = end
-        missed = MISSING in (marks.nodes.get(node), marks.ends.get((node, name)))
-        if missed and end not in view.types:
-            yield Edge(*end, wanted.type, MISSING, name in usual)
+            expected = common or key in view.planned or node in view.plan.shared_nodes
+            state = OK if expected else UNEXPECTED
+        yield DrawnEdge(*key, type_, state, common)
+    for key, planned in view.planned.items():
+        node, *_, name = key
+        missing = MISSING in (states.nodes.get(node), states.endpoints.get((node, name)))
+        if missing and key not in view.types:
+            yield DrawnEdge(*key, planned.type, MISSING, name in common_names)
 
 
-def _everyday_names(ends: Iterable[GraphEndpoint | Wanted]) -> set[str]:
-    """Told by the type that one end at least knows."""
+def _common_names(ends: Iterable[GraphEndpoint | PlannedEndpoint]) -> set[str]:
+    """The names that every node has; one endpoint with a known type is enough."""
     return {
-        end.name for end in ends if HIDDEN in end.name or end.type.partition("/")[0] in EVERYDAY
+        end.name
+        for end in ends
+        if ACTION_PART in end.name or end.type.partition("/")[0] in COMMON_PACKAGES
     }
 
 
-def _owners(view: View, marks: Marks, edges: Iterable[Edge]) -> _Owners:
-    missing = (node for node, state in marks.nodes.items() if state == MISSING)
+def _robot_of(view: View, states: States, edges: Iterable[DrawnEdge]) -> _RobotOf:
+    missing = (node for node, state in states.nodes.items() if state == MISSING)
     nodes = {*view.seen, *missing, *(edge.node for edge in edges)}
     names = {edge.name for edge in edges}
-    of, shared = view.owners.of, {*view.plan.shared_nodes, *view.plan.shared_topics}
-    return _Owners(
-        {node: "" if node in shared else of(node) for node in sorted(nodes)},
-        {name: "" if name in shared else of(name) for name in sorted(names)},
+    robot, shared = view.ownership.robot, {*view.plan.shared_nodes, *view.plan.shared_topics}
+    return _RobotOf(
+        {node: "" if node in shared else robot(node) for node in sorted(nodes)},
+        {name: "" if name in shared else robot(name) for name in sorted(names)},
     )
 
 
-def _nodes(view: View, marks: Marks, edges: Iterable[Edge], owners: _Owners) -> dict[str, Node]:
+def _nodes(
+    view: View, states: States, edges: Iterable[DrawnEdge], robot_of: _RobotOf
+) -> dict[str, DrawnNode]:
     planned = {*view.robot_of, *view.plan.shared_nodes}
-    states: dict[str, set[str]] = defaultdict(set)
+    edge_states: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
-        states[edge.node].add(edge.state)
-    # Planned under another name: each robot's would have this one.
-    strays = set(view.stand_ins.values())
+        edge_states[edge.node].add(edge.state)
+    # Planned nodes under another name, which the same node of each robot would have.
+    misnamed = set(view.probable_matches.values())
     result = {}
-    for node, robot in owners.nodes.items():
-        own = {marks.nodes.get(node, OK), *(states[node] & TROUBLE - {MISSING})}
-        state = LEAK if node in strays and not robot else gravest(own)
+    for node, robot in robot_of.nodes.items():
+        own = {states.nodes.get(node, OK), *(edge_states[node] & FAULTY - {MISSING})}
+        state = LEAK if node in misnamed and not robot else worst(own)
         if node not in view.seen:
             state = MISSING
         elif state == OK and node not in planned:
             state = UNEXPECTED
-        loose = node not in planned and node not in marks.nodes
-        result[node] = Node(node, robot, state, loose=loose)
+        is_tool = node not in planned and node not in states.nodes
+        result[node] = DrawnNode(node, robot, state, is_tool=is_tool)
     return result
 
 
 def _groups(
-    plan: Expectation, edges: Iterable[Edge], nodes: Mapping[str, Node], owners: _Owners
+    plan: Expectation,
+    edges: Iterable[DrawnEdge],
+    nodes: Mapping[str, DrawnNode],
+    robot_of: _RobotOf,
 ) -> Iterator[Group]:
-    """One a robot, then one for what is no robot's; an end that joins two robots is in both."""
-    parts: dict[str, list[Edge]] = {robot.name: [] for robot in plan.robots}
+    """One for each robot, then one for the rest; an endpoint that connects two robots is in both."""
+    parts: dict[str, list[DrawnEdge]] = {robot.name: [] for robot in plan.robots}
     parts[""] = []
     for edge in edges:
-        for robot in {owners.nodes[edge.node], owners.names[edge.name]}:
+        for robot in {robot_of.nodes[edge.node], robot_of.names[edge.name]}:
             parts[robot].append(edge)
-    names = {(name.kind, name.name): name for name in _names(edges, owners)}
+    names = {(name.kind, name.name): name for name in _names(edges, robot_of)}
     for robot, ends in parts.items():
-        shown = tuple(ends) if robot else tuple(_as_robots(ends, nodes))
+        shown = tuple(ends) if robot else tuple(_nodes_as_robots(ends, nodes))
         own = {node.name: node for node in nodes.values() if node.robot == robot}
-        met = {e.node: nodes.get(e.node) or Node(e.node, e.node, OK, True) for e in shown}
-        there = dict.fromkeys((edge.kind, edge.name) for edge in shown)
-        yield Group(robot, tuple((own | met).values()), tuple(names[key] for key in there), shown)
+        users = {e.node: nodes.get(e.node) or DrawnNode(e.node, e.node, OK, True) for e in shown}
+        keys = dict.fromkeys((edge.kind, edge.name) for edge in shown)
+        yield Group(robot, tuple((own | users).values()), tuple(names[key] for key in keys), shown)
 
 
-def _as_robots(edges: Iterable[Edge], nodes: Mapping[str, Node]) -> Iterator[Edge]:
-    """Among what is shared, a robot's nodes are drawn as the robot, but where they are at fault."""
-    states: dict[Edge, set[str]] = defaultdict(set)
+def _nodes_as_robots(
+    edges: Iterable[DrawnEdge], nodes: Mapping[str, DrawnNode]
+) -> Iterator[DrawnEdge]:
+    """Among shared names a robot's nodes are drawn as one robot, unless their endpoint is faulty."""
+    states: dict[DrawnEdge, set[str]] = defaultdict(set)
     for edge in edges:
         robot = nodes[edge.node].robot
-        if not robot or edge.state in TROUBLE - {MISSING}:
+        if not robot or edge.state in FAULTY - {MISSING}:
             yield edge
         else:
             states[edge._replace(node=robot, type="", state=OK)].add(edge.state)
     for edge, found in states.items():
-        yield edge._replace(state=common_state(found))
+        yield edge._replace(state=combined_state(found))
 
 
-def _names(edges: Iterable[Edge], owners: _Owners) -> Iterator[Name]:
-    by_name: dict[tuple[str, str], list[Edge]] = defaultdict(list)
+def _names(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[DrawnName]:
+    by_name: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
     for edge in edges:
         by_name[edge.kind, edge.name].append(edge)
     for (kind, name), ends in by_name.items():
         types = tuple(sorted({end.type for end in ends if end.type}))
-        state = common_state({end.state for end in ends})
-        yield Name(kind, name, owners.names[name], state, types)
+        state = combined_state({end.state for end in ends})
+        yield DrawnName(kind, name, robot_of.names[name], state, types)
 
 
-def common_state(states: Collection[str]) -> str:
-    """Missing or not planned where all ends are; one that is worse makes it all bad."""
+def combined_state(states: Collection[str]) -> str:
+    """Missing or unexpected only if all endpoints are; otherwise the worst of the other states."""
     if len(states) == 1:
         return next(iter(states))
-    return gravest(state for state in states if state not in (MISSING, UNEXPECTED))
+    return worst(state for state in states if state not in (MISSING, UNEXPECTED))
 
 
-def _reaches(edges: Iterable[Edge], owners: _Owners) -> Iterator[Reach]:
+def _crossings(edges: Iterable[DrawnEdge], robot_of: _RobotOf) -> Iterator[Crossing]:
     found: dict[tuple[str, str, str, str], dict[str, None]] = defaultdict(dict)
     for edge in edges:
-        source, target = owners.nodes[edge.node], owners.names[edge.name]
-        bad = edge.state in TROUBLE
-        if edge.state == MISSING or source == target or not (bad or target):
+        source, target = robot_of.nodes[edge.node], robot_of.names[edge.name]
+        faulty = edge.state in FAULTY
+        if edge.state == MISSING or source == target or not (faulty or target):
             continue
-        if bad or not edge.everyday:
+        if faulty or not edge.common:
             node = "" if source else edge.node
             found[source, node, target, edge.state][f"{edge.role} {edge.name}"] = None
     for key, names in sorted(found.items()):
-        yield Reach(*key, tuple(names))
+        yield Crossing(*key, tuple(names))

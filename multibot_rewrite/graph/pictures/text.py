@@ -1,4 +1,4 @@
-"""Text for pictures: names of a graph may hold anything, a picture has little room."""
+"""Text for pictures: names in a graph may have any character, and pictures have little space."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ from unicodedata import east_asian_width
 
 
 def visible(text: str) -> str:
-    """``text`` on one line; what has no shape of its own (controls, marks that turn the direction
-    of writing, halves of surrogate pairs) as an escape."""
+    """``text`` on one line; characters that are not printable are written as escapes."""
     if text.isprintable():
         return text
     return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text)
 
 
 def clipped(text: str, room: int) -> str:
-    """``text`` in ``room`` columns at most, its middle left out: names differ at their ends."""
+    """``text`` in at most ``room`` columns; the middle is cut, because names differ at their ends."""
     if len(text) * 2 <= room or columns(text) <= room:
         return text
     back = _fitting(text[::-1], room // 2)[::-1]
@@ -22,14 +21,14 @@ def clipped(text: str, room: int) -> str:
 
 
 def columns(text: str) -> int:
-    """How many columns of a fixed-width font it takes; East Asian letters take two."""
+    """The width of ``text`` in a fixed-width font; East Asian letters are two columns wide."""
     if text.isascii():
         return len(text)
     return sum(2 if east_asian_width(c) in "WF" else 1 for c in text)
 
 
 def _fitting(text: str, room: int) -> str:
-    """The longest beginning of ``text`` that fits."""
+    """The longest beginning of ``text`` that fits into ``room`` columns."""
     at = 0
     while at < len(text) and room > 0:
         room -= columns(text[at])

@@ -1,1 +1,1 @@
-"""The rules of the check, and the look-ups they share; all pure."""
+"""The rules of ``multibot check``, and the look-ups they share; all pure."""

@@ -1,4 +1,4 @@
-"""A snapshot beside its plan, and what the rules say of it."""
+"""The view that the rules check: a snapshot beside its plan. And the finding of a rule."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from fnmatch import translate
 from functools import lru_cache
 from typing import NamedTuple
 
-from multibot_rewrite.graph.expectation import Expectation, Wanted, WantedRobot
-from multibot_rewrite.graph.rules.likeness import stand_ins
-from multibot_rewrite.graph.rules.owners import Owners, frame_owners, name_owners
-from multibot_rewrite.graph.rules.trees import TfTree, tf_trees
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
+from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
+from multibot_rewrite.graph.rules.similar_names import probable_matches
+from multibot_rewrite.graph.rules.tf_trees import TfTree, tf_trees
 from multibot_rewrite.graph.snapshot import LISTENER, GraphEndpoint, Snapshot
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
@@ -28,15 +28,15 @@ IGNORED = (
     # The world of all robots.
     "gazebo*", "gz_*", "ign_*", "ros_gz_*", "*_bridge",
 )  # fmt: skip
-# An endpoint: node, kind, role, name.
-End = tuple[str, str, str, str]
+# Node, kind, role and name of an endpoint.
+EndpointKey = tuple[str, str, str, str]
 
 
 class GraphFinding(NamedTuple):
-    """Something wrong in the graph: what was expected, what is seen, the likely cause and remedy.
+    """A fault in the graph: what was expected, what is seen, the likely cause and what to do.
 
     ``level`` is ``error``, ``warning`` or ``inconclusive``. ``about`` are the topics, services,
-    actions or frames that it is about, as far as it is not about a node or a robot as a whole.
+    actions or frames concerned; empty for a finding about a whole node or robot.
     """
 
     code: str
@@ -56,11 +56,12 @@ class GraphFinding(NamedTuple):
 class View(NamedTuple):
     """A snapshot beside the plan, with the look-ups that several rules need.
 
-    ``types`` has the type of every endpoint seen, ``planned`` all endpoints of the plan, ``more``
-    by node those seen that are not among them (the parts of an action are seen in the action),
-    ``spoken`` the topics that somebody publishes. ``unplanned`` are nodes that the plan does not
-    have and nobody ignores; ``stand_ins`` those of them that stand where a planned node is missed
-    (missed -> seen). ``places`` tell where in its description a node comes from.
+    ``types`` has the type of every endpoint in the graph, ``planned`` all endpoints of the plan.
+    ``unplanned_endpoints`` are by node those in the graph that are not in the plan, without the
+    hidden topics and services of actions. ``published_topics`` have a publisher in the graph.
+    ``seen`` counts the nodes by name. ``unplanned`` are nodes that are not in the plan and not
+    ignored. ``probable_matches`` maps a missing node to the running node that it probably is.
+    ``places`` has file and line of the plugin that starts a node.
     """
 
     plan: Expectation
@@ -68,78 +69,82 @@ class View(NamedTuple):
     by_node: dict[str, list[GraphEndpoint]]
     by_name: dict[str, list[GraphEndpoint]]
     robot_of: dict[str, str]
-    owners: Owners
-    frame_owners: Owners
-    types: Mapping[End, str]
-    planned: Mapping[End, Wanted]
-    more: Mapping[str, list[GraphEndpoint]]
-    spoken: Set[str]
+    ownership: NameOwnership
+    frame_ownership: NameOwnership
+    types: Mapping[EndpointKey, str]
+    planned: Mapping[EndpointKey, PlannedEndpoint]
+    unplanned_endpoints: Mapping[str, list[GraphEndpoint]]
+    published_topics: Set[str]
     seen: Mapping[str, int]
     unplanned: tuple[str, ...]
-    stand_ins: Mapping[str, str]
+    probable_matches: Mapping[str, str]
     places: Mapping[str, str]
     trees: tuple[TfTree, ...]
-    robots: Mapping[str, WantedRobot]
+    robots: Mapping[str, PlannedRobot]
     frames_of: Mapping[str, frozenset[str]]
 
 
 def make_view(plan: Expectation, graph: Snapshot) -> View:
-    """The look-ups, made once."""
+    """Build the look-ups once for all rules."""
     planned = {(w.node, w.kind, w.role, w.name): w for w in plan.endpoints}
-    ends = _sorted_out(graph.endpoints, planned)
+    index = _index_endpoints(graph.endpoints, planned)
     robot_of = {node: robot.name for robot in plan.robots for node in robot.nodes}
     seen = Counter(node.name for node in graph.nodes)
-    foreseen = {*robot_of, *plan.shared_nodes}
-    strangers = [node for node in seen if node not in foreseen]
-    unplanned = tuple(node for node in strangers if not ignored(node, plan.ignored_nodes))
+    in_plan = {*robot_of, *plan.shared_nodes}
+    others = [node for node in seen if node not in in_plan]
+    unplanned = tuple(node for node in others if not ignored(node, plan.ignored_nodes))
     missing = {node: robot for node, robot in robot_of.items() if node not in seen}
-    owners = name_owners(plan)
+    ownership = name_ownership(plan)
     return View(
         plan=plan,
         graph=graph,
-        by_node=ends.by_node,
-        by_name=ends.by_name,
+        by_node=index.by_node,
+        by_name=index.by_name,
         robot_of=robot_of,
-        owners=owners,
-        frame_owners=frame_owners(plan),
-        types=ends.types,
+        ownership=ownership,
+        frame_ownership=frame_ownership(plan),
+        types=index.types,
         planned=planned,
-        more=ends.more,
-        spoken={n for _, kind, role, n in ends.types if (kind, role) == (TOPIC, PUBLISHES)},
+        unplanned_endpoints=index.unplanned,
+        published_topics={
+            name for _, kind, role, name in index.types if (kind, role) == (TOPIC, PUBLISHES)
+        },
         seen=seen,
         unplanned=unplanned,
-        stand_ins=stand_ins(missing, strangers, unplanned, owners),
+        probable_matches=probable_matches(missing, others, unplanned, ownership),
         places=dict(plan.sources),
-        trees=tf_trees(graph.frames, plan.robots, owners),
+        trees=tf_trees(graph.frames, plan.robots, ownership),
         robots={robot.name: robot for robot in plan.robots},
         frames_of={r.name: frozenset((*r.frames, *r.other_frames)) for r in plan.robots},
     )
 
 
-class _Ends(NamedTuple):
+class _EndpointIndex(NamedTuple):
     by_node: dict[str, list[GraphEndpoint]]
     by_name: dict[str, list[GraphEndpoint]]
-    more: dict[str, list[GraphEndpoint]]
-    types: dict[End, str]
+    unplanned: dict[str, list[GraphEndpoint]]
+    types: dict[EndpointKey, str]
 
 
-def _sorted_out(endpoints: Iterable[GraphEndpoint], planned: Mapping[End, Wanted]) -> _Ends:
-    found = _Ends(defaultdict(list), defaultdict(list), defaultdict(list), {})
-    by_node, by_name, more, types = found
+def _index_endpoints(
+    endpoints: Iterable[GraphEndpoint], planned: Mapping[EndpointKey, PlannedEndpoint]
+) -> _EndpointIndex:
+    index = _EndpointIndex(defaultdict(list), defaultdict(list), defaultdict(list), {})
+    by_node, by_name, unplanned, types = index
     for endpoint in endpoints:
         kind, role, name, type_, _, node, _, _ = endpoint
-        end = (node, kind, role, name)
+        key = (node, kind, role, name)
         by_node[node].append(endpoint)
         by_name[name].append(endpoint)
-        # A node may subscribe a topic more than once.
-        if end not in planned and end not in types and "/_" not in name:
-            more[node].append(endpoint)
-        types[end] = type_
-    return found
+        # A node may subscribe to a topic more than once.
+        if key not in planned and key not in types and "/_" not in name:
+            unplanned[node].append(endpoint)
+        types[key] = type_
+    return index
 
 
 def ignored(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Whether a node is one that no plan names; ``more`` are patterns beside the usual ones."""
+    """Whether a node needs no place in a plan; ``more`` are patterns besides the usual ones."""
     full, last = _patterns(more)
     return bool(last.fullmatch(node.rpartition("/")[2]) or full.fullmatch(node))
 

@@ -1,0 +1,221 @@
+"""Where MoveIt's YAML files hold names: read from ``moveit.yaml``, which explains its own form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any, NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.names.rename_map import KINDS, RenameMap, is_declared
+from multibot_rewrite.companions.yaml_text import is_text, pairs
+
+KEEP = "keep"
+# The kind of name that a value is, or keys with the shape below each.
+Shape = Any
+Shapes = Mapping[str, Shape]
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+_MERGE = "<<"
+
+
+class FileKind(NamedTuple):
+    """A kind of file: keys that identify it, words in its file name, and the shape of its names."""
+
+    name: str
+    marks: tuple[str, ...]
+    files: tuple[str, ...]
+    names: Shapes
+
+
+class MoveitName(NamedTuple):
+    """A name: its scalar, its place in the value, its text and its kind."""
+
+    scalar: yaml.ScalarNode
+    at: int
+    text: str
+    word: str
+
+
+class MoveitNames(NamedTuple):
+    """The names of a file, the scalars of unknown use, and repeated keys."""
+
+    names: list[MoveitName]
+    unclaimed: list[yaml.ScalarNode]
+    twice: list[yaml.ScalarNode]
+
+
+class _Walk(NamedTuple):
+    names: RenameMap
+    found: list[MoveitName]
+    claimed: set[int]
+    seen: set[tuple[int, int]]
+
+
+# The names in a key, and the shape of what is below it.
+_Match = tuple[tuple[tuple[int, str, str], ...], Shape]
+
+
+@cache
+def kinds() -> tuple[FileKind, ...]:
+    """All kinds of files, in the order in which they are tried."""
+    text = (
+        files("multibot_rewrite.companions.moveit")
+        .joinpath("moveit.yaml")
+        .read_text(encoding="utf-8")
+    )
+    data = yaml.load(text, Loader=_LOADER)
+    return tuple(
+        FileKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
+        for name, it in data["kinds"].items()
+    )
+
+
+def find_names(root: yaml.Node | None, rules: Shapes, names: RenameMap) -> MoveitNames:
+    """Every name below ``root``; an aliased value counts once for every shape that reaches it."""
+    walk = _Walk(names, [], set(), set())
+    if root is not None:
+        _below(root, rules, walk)
+    scalars = list(_scalars(root))
+    unclaimed = [it for it in scalars if id(it) not in walk.claimed]
+    return MoveitNames(walk.found, unclaimed, list(_twice(root)))
+
+
+def entries(node: yaml.Node | None) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
+    """Keys and values of a map, merged ones included."""
+    for key, value in pairs(node):
+        if not is_merge(key):
+            yield key, value
+            continue
+        for merged in value.value if isinstance(value, yaml.SequenceNode) else [value]:
+            if merged is not node:
+                yield from pairs(merged)
+
+
+def is_merge(key: yaml.Node) -> bool:
+    """Is this YAML's merge key ``<<``?"""
+    return isinstance(key, yaml.ScalarNode) and key.value == _MERGE and not key.style
+
+
+def _below(node: yaml.Node, rule: Shape, walk: _Walk) -> None:
+    if (id(node), id(rule)) in walk.seen:
+        return
+    walk.seen.add((id(node), id(rule)))
+    if rule == KEEP:
+        walk.claimed.update(id(it) for it in _scalars(node))
+    elif isinstance(node, yaml.SequenceNode):
+        for item in node.value:
+            _below(item, rule, walk)
+    elif isinstance(node, yaml.ScalarNode):
+        _value(node, rule, walk)
+    elif isinstance(rule, Mapping):
+        for key, value in entries(node):
+            _entry(key, value, rule, walk)
+
+
+def _value(node: yaml.ScalarNode, rule: Shape, walk: _Walk) -> None:
+    if isinstance(rule, str) and is_text(node):
+        walk.claimed.add(id(node))
+        walk.found.append(MoveitName(node, 0, str(node.value), rule))
+
+
+def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -> None:
+    match = _resolved(str(key.value), 0, value, rules, walk.names)
+    if match is None:
+        return
+    marks, rule = match
+    walk.claimed.add(id(key))
+    walk.found.extend(MoveitName(key, at, text, word) for at, text, word in marks)
+    _below(value, rule, walk)
+
+
+def _resolved(
+    word: str, at: int, value: yaml.Node, rules: Shapes, names: RenameMap
+) -> _Match | None:
+    """The names in a key: nested maps and keys with dots are the same parameter."""
+    found = _exact(word, at, value, rules, names)
+    if found:
+        return found
+    for dot in (at_ for at_, letter in enumerate(word) if letter == "."):
+        head = _exact(word[:dot], at, None, rules, names) or _open(word[:dot], at, None, rules)
+        below = _rest(head, word[dot + 1 :], at + dot + 1, value, names) if head else None
+        if below:
+            return below
+    return _open(word, at, value, rules)
+
+
+def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RenameMap) -> _Match | None:
+    marks, rule = head
+    if rule == KEEP:
+        known = all(is_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
+        return head if known else None
+    below = _resolved(word, at, value, rule, names) if isinstance(rule, Mapping) else None
+    return ((*marks, *below[0]), below[1]) if below else None
+
+
+def _exact(
+    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: RenameMap
+) -> _Match | None:
+    """A literal key, a declared name, or a name by what is below it."""
+    if word in rules and word[:1] not in ("<", "*"):
+        return (), rules[word]
+    for kind, telling, rule in _wild(rules):
+        if kind in KINDS and is_declared(names, kind, word):
+            return ((at, word, kind),), rule
+        if telling and value is not None and _tells(value, telling):
+            return ((at, word, kind),), rule
+    return None
+
+
+def _open(word: str, at: int, value: yaml.Node | None, rules: Shapes) -> _Match | None:
+    """A key that may be any name."""
+    for kind, telling, rule in _wild(rules):
+        if not telling or (value is None and "declared" not in telling):
+            return ((at, word, kind),), rule
+    return ((), rules["*"]) if "*" in rules else None
+
+
+def _wild(rules: Shapes) -> Iterator[tuple[str, tuple[str, ...], Shape]]:
+    for key, rule in rules.items():
+        if key.startswith("<"):
+            kind, _, telling = key[1:-1].partition(" if ")
+            yield kind, tuple(telling.split()), rule
+
+
+def _tells(value: yaml.Node, telling: Iterable[str]) -> bool:
+    if "map" in telling:
+        return isinstance(value, yaml.MappingNode) or value.tag == "tag:yaml.org,2002:null"
+    words = {str(key.value).partition(".")[0] for key, _ in entries(value)}
+    return not words.isdisjoint(telling)
+
+
+def _scalars(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    """Every scalar once, keys included."""
+    for node in _nodes(root):
+        if isinstance(node, yaml.ScalarNode) and not is_merge(node):
+            yield node
+
+
+def _nodes(root: yaml.Node | None) -> Iterator[yaml.Node]:
+    seen: set[int] = set()
+    waiting = [root] if root is not None else []
+    while waiting:
+        node = waiting.pop()
+        if id(node) in seen:
+            continue
+        seen.add(id(node))
+        yield node
+        if isinstance(node, yaml.MappingNode):
+            waiting += [it for pair in node.value for it in pair]
+        elif isinstance(node, yaml.SequenceNode):
+            waiting += node.value
+
+
+def _twice(root: yaml.Node | None) -> Iterator[yaml.ScalarNode]:
+    for node in _nodes(root):
+        seen: set[str] = set()
+        for key, _ in pairs(node):
+            if key.value in seen and not is_merge(key):
+                yield key
+            seen.add(key.value)

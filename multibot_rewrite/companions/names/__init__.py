@@ -1,0 +1,1 @@
+"""Names of the description and of the ROS graph -> the names that each robot has."""

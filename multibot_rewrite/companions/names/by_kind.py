@@ -1,0 +1,154 @@
+"""What each name becomes for a robot: one function for each kind of name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.names.rename_map import is_declared, spell
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
+from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, affix
+
+Speller = Callable[[Context, str], str]
+_WORD = re.compile(r"[\w./-]+")
+
+
+def is_plain(value: str) -> bool:
+    """Is it a name, without substitutions or placeholders for a launch file?"""
+    return bool(value) and "<" not in value and NOT_PLAIN.isdisjoint(value)
+
+
+def joint(context: Context, value: str) -> str:
+    """A joint, or a joint of another controller: ``controller/joint``."""
+    if is_declared(context.names, "joint", value):
+        return spell(context.names, "joint", value)
+    above, slash, name = value.rpartition("/")
+    if not slash or not is_declared(context.names, "joint", name):
+        return value
+    return f"{_chain(context, above)}/{spell(context.names, 'joint', name)}"
+
+
+def interface(context: Context, value: str) -> str:
+    """``elbow/position``, or another controller's ``controller/elbow/position``."""
+    owner, slash, last = value.rpartition("/")
+    if not slash:
+        return value
+    if "/" in owner or is_component(context, owner):
+        return f"{_chain(context, owner)}/{last}"
+    # Descriptions do not declare all their gpios.
+    return f"{spell(context.names, 'gpio', owner)}/{last}"
+
+
+def is_component(context: Context, value: str) -> bool:
+    """Does the description declare a joint, sensor or gpio of this name?"""
+    return is_declared(context.names, "component", value)
+
+
+def _chain(context: Context, value: str) -> str:
+    """What is before an interface: parts of the robot, and controllers that export interfaces."""
+    parts = (
+        spell(context.names, "component", it)
+        if is_component(context, it)
+        else controller(context, it)
+        for it in value.split("/")
+    )
+    return "/".join(parts)
+
+
+def controller(context: Context, value: str) -> str:
+    """A controller is a node: without namespaces each robot's has a different name."""
+    there = affix(context.topics.naming, "node", value) if is_plain(value) else None
+    return there.spell(value, NAMESPACE_SLOT) if there else value
+
+
+def node(context: Context, value: str) -> str:
+    """A node's name as others use it; a node that serves all robots keeps its name."""
+    place = context.nodes.get(value.strip("/"), "")
+    if place and NAMESPACE_SLOT not in place:
+        return place if context.topics.naming.topics == NAMESPACE else value
+    above, slash, name = value.rpartition("/")
+    if slash and not above and context.topics.naming.topics == NAMESPACE and is_plain(value):
+        return f"/{NAMESPACE_SLOT}{value}"
+    return above + slash + controller(context, name)
+
+
+def namespace(context: Context, value: str) -> str:
+    """An absolute namespace; a relative one is below the robot's already."""
+    naming = context.topics.naming
+    if not value.startswith("/") or naming.topics != NAMESPACE:
+        return value
+    there = affix(naming, "namespace", value)
+    return there.spell(value, NAMESPACE_SLOT) if there else value
+
+
+def stem(context: Context, value: str) -> str:
+    """The beginning of frame names: only a prefix can be added."""
+    return spell(context.names, "frame", value) if _prefixes(context) else value
+
+
+def link_prefix(context: Context, value: str) -> str:
+    """What the node adds before links; it may be empty."""
+    return _prefix(context, "link", value)
+
+
+def joint_prefix(context: Context, value: str) -> str:
+    """What the node adds before joints; it may be empty."""
+    return _prefix(context, "joint", value)
+
+
+def words(context: Context, value: str) -> str:
+    """Text with names of the description in it: ``joints(shoulder,elbow)``."""
+    return _WORD.sub(lambda found: _word(context, found[0]), value)
+
+
+def _word(context: Context, value: str) -> str:
+    kinds = (kind for kind in ("joint", "link") if is_declared(context.names, kind, value))
+    kind = next(kinds, "")
+    return spell(context.names, kind, value) if kind else value
+
+
+def _prefixes(context: Context) -> bool:
+    return context.names.naming.affix == PREFIX
+
+
+def _prefix(context: Context, kind: str, value: str) -> str:
+    separator = context.names.naming.separators.get(kind)
+    if separator is None or not _prefixes(context) or (value and not is_plain(value)):
+        return value
+    return f"{TAG_SLOT}{separator}{value}"
+
+
+def _declared(word: str) -> Speller:
+    return lambda context, value: spell(context.names, word, value)
+
+
+# Topics and services depend on their node as well, see ``node_topics``.
+SPELLERS: Mapping[str, Speller] = {
+    "joint": joint,
+    "interface": interface,
+    "controller": controller,
+    "node": node,
+    "namespace": namespace,
+    "stem": stem,
+    "link_prefix": link_prefix,
+    "joint_prefix": joint_prefix,
+    "words": words,
+    **{word: _declared(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
+}
+
+
+def expressible(context: Context, kind: str) -> bool:
+    """Can a prefix parameter of this kind express the fleet's naming?"""
+    of = {"stem": "frame", "link_prefix": "link", "joint_prefix": "joint"}.get(kind)
+    return of is None or of not in context.names.naming.separators or _prefixes(context)
+
+
+def is_shared_frame(context: Context, value: str) -> bool:
+    """One frame for all robots, such as map."""
+    return value.strip("/") in context.names.naming.shared_frames
+
+
+def frames_differ(context: Context) -> bool:
+    """Do the robots have different frame names?"""
+    return not FRAME_KINDS.isdisjoint(context.names.naming.separators)

@@ -1,0 +1,132 @@
+"""Topics in parameters: what each becomes for a robot, checked by resolving it as the node does.
+
+A name read from a parameter is remapped like any other. So the new value must resolve, with the
+robot's remap rules, to the robot's version of the name that the old value resolves to without rules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.names.by_kind import is_plain
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.template import NAMESPACE_SLOT
+from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.remap.records import Endpoint, NodeFacts
+from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.table import node_table, parsed, placed, target_of
+from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound
+
+Facts = Mapping[str, NodeFacts]
+# Where a relative name is resolved: in the node's namespace, in the one above it (the node joins the
+# two itself), or outside of the robot's namespace, so that it has to be made absolute.
+FROM_NODE, FROM_PARENT, IN_FULL = "node", "parent", "full"
+
+
+class TopicText(NamedTuple):
+    """The new text for a topic. ``wrong_target`` is what it resolves to if that is wrong, else empty;
+    ``made_absolute`` is true if a relative name had to be made absolute."""
+
+    text: str
+    wrong_target: str = ""
+    made_absolute: bool = False
+
+
+@lru_cache
+def built_in_facts() -> Facts:
+    """Node -> facts, as in the stacks; nodes with their own remap rules first."""
+    library = built_in()
+    facts = [node for stack in library.stacks.values() for node in stack.nodes]
+    facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
+    found: dict[str, NodeFacts] = {}
+    for node in (*facts, *library.nodes.values()):
+        found.setdefault(node.name, node)
+    return found
+
+
+def facts_by_name(facts: Iterable[NodeFacts]) -> Facts:
+    """The facts of the robots' nodes, or the built-in ones if none are given."""
+    return {it.name: it for it in facts} or built_in_facts()
+
+
+def spell_topic(
+    context: Context, node: str, kind: str, value: str, reach: str, facts: Facts
+) -> TopicText:
+    """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
+    if not is_plain(value) or value.startswith("~") or check_topic_name(value):
+        return TopicText(value)
+    text = _spelled(context, kind, value, reach == IN_FULL)
+    made_absolute = reach == IN_FULL and not value.startswith("/")
+    ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
+    if not ruled:
+        return TopicText(text, made_absolute=made_absolute)
+    return _ruled_text(context, kind, (text, value), reach, ruled)._replace(
+        made_absolute=made_absolute
+    )
+
+
+def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
+    """The name for a robot; ``absolute`` if it is not resolved in the robot's namespace."""
+    naming = context.topics.naming
+    lead = "" if value.startswith("/") else "/"
+    if value.strip("/") in naming.shared_topics:
+        return lead + value if absolute or naming.topics == NAMESPACE else value
+    full = lead + value if absolute else value
+    return _below_node(context, full) or spell(context.topics, kind, full)
+
+
+def _below_node(context: Context, value: str) -> str:
+    """A name below another node's, such as its private services, follows the node's name."""
+    head, slash, rest = value.strip("/").partition("/")
+    place = context.nodes.get(head, "")
+    if not slash or not place or context.topics.naming.topics == NAMESPACE:
+        return ""
+    lead = "/" if value.startswith("/") else ""
+    return f"{lead}{place.strip('/')}/{rest}"
+
+
+def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFacts | None:
+    """The node with only those endpoints whose rules could match the name."""
+    if node is None or node.shared:
+        return None
+    bare = value.strip("/")
+    found = [it for it in node.endpoints if it.name.strip("/") == bare and _ruled(it, context)]
+    return node._replace(endpoints=tuple(found)) if found else None
+
+
+def _ruled(endpoint: Endpoint, context: Context) -> bool:
+    if endpoint.fixed:
+        return False
+    naming = context.topics.naming
+    return bool(
+        endpoint.remapped or target_of(endpoint.name, endpoint.kind, NAMESPACE_SLOT, naming)
+    )
+
+
+def _ruled_text(
+    context: Context, kind: str, texts: tuple[str, str], reach: str, node: NodeFacts
+) -> TopicText:
+    """The new name if it resolves correctly, else the old one if a rule moves that."""
+    naming = context.topics.naming
+    table = node_table(NAMESPACE_SLOT, node, naming, frozenset(context.nodes))
+    bound = bind(table.name, table.namespace, parsed(table.rules))
+    wanted = _wanted(context, kind, texts[1], node)
+    root = placed(NAMESPACE_SLOT, "node", naming)[0] if reach == FROM_PARENT else table.namespace
+    resolved = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
+    good = [text for text, full in zip(texts, resolved, strict=True) if full == wanted]
+    if not good:
+        return TopicText(texts[0], resolved[0])
+    # A rule also moves names that the node derives: <costmap>_updates, <image>/compressed.
+    ruled = naming.topics != NAMESPACE and reach == FROM_NODE
+    return TopicText(good[-1] if ruled else good[0])
+
+
+def _wanted(context: Context, kind: str, value: str, node: NodeFacts) -> str:
+    """The robot's name for the topic that the value means for a single robot with the stack's rules."""
+    meant = expand(value, "/", "")
+    remapped = {expand(it.name, "/", ""): it.remapped for it in node.endpoints}.get(meant, "")
+    full = _spelled(context, kind, expand(remapped or meant, "/", ""), True)
+    return full if full.startswith("/") else f"/{full}"

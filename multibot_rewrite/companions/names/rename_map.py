@@ -1,0 +1,49 @@
+"""The rename map of one robot, for names in other files than its description."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from multibot_rewrite.naming import NOT_PLAIN, Naming, affix
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.spelling import resolve
+
+# Kinds of names in a description that a kind of value may refer to, tried in order.
+KINDS = {
+    "frame": ("link", "frame"),
+    "link": ("link",),
+    "joint": ("joint",),
+    "sensor": ("sensor",),
+    "gpio": ("gpio",),
+    "hardware": ("hardware",),
+    "group": ("group",),
+    "topic": ("topic",),
+    "service": ("service",),
+    # The left part of ``elbow/position``: a joint, a sensor or a gpio.
+    "component": ("joint", "sensor", "gpio"),
+}
+
+
+class RenameMap(NamedTuple):
+    """The names that a description declares (not rewritten), the naming, and the robot."""
+
+    declared: Declared
+    naming: Naming
+    robot: str
+
+
+def spell(names: RenameMap, word: str, value: str, namespaced: bool = True) -> str:
+    """The robot's version of ``value``, a name of the kind ``word``; other values stay.
+
+    ``namespaced`` is true if a relative topic is resolved in the robot's namespace.
+    """
+    if not value or not NOT_PLAIN.isdisjoint(value) or "<" in value:
+        return value
+    kind = resolve(value, KINDS[word], "uses", names.declared)
+    there = affix(names.naming, kind, value, namespaced) if kind else None
+    return there.spell(value, names.robot) if there else value
+
+
+def is_declared(names: RenameMap, word: str, value: str) -> bool:
+    """Does the description declare this link, joint, sensor, gpio or hardware?"""
+    return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

@@ -1,0 +1,53 @@
+"""Topics in files for one robot -> the absolute topic that each robot has instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.naming import NAMESPACE, NOT_PLAIN
+from multibot_rewrite.remap.records import ACTION, TOPIC, NodeFacts, Table
+from multibot_rewrite.remap.table import target_of
+from multibot_rewrite.rosnames import check_topic_name, expand
+
+NOTHING: Mapping[str, str] = {}
+
+
+def is_topic(value: str) -> bool:
+    """Is it a topic name: not empty, not private, without placeholders?"""
+    if not value or value.startswith("~") or not NOT_PLAIN.isdisjoint(value):
+        return False
+    return "//" not in value and check_topic_name(value) is None
+
+
+def robot_topic(names: RenameMap, value: str, known: Mapping[str, str] = NOTHING) -> str:
+    """The robot's absolute topic; ``value`` itself if it is shared or not a topic name.
+
+    ``known`` is ``fleet_topics`` of the robot, for topics that do not follow the general rule.
+    """
+    if not is_topic(value):
+        return value
+    full = f"/{value.lstrip('/')}"
+    if full in known:
+        return value if known[full] == full else known[full]
+    target = target_of(full, TOPIC, names.robot, names.naming)
+    if not target:
+        return value
+    return f"/{names.robot}/{target}" if names.naming.topics == NAMESPACE else target
+
+
+def fleet_topics(table: Table, facts: Iterable[NodeFacts], robot: str) -> dict[str, str]:
+    """Topics of a single robot's nodes -> the same topics of ``robot`` in a fleet's table."""
+    ours = {node.name for node in facts if not node.shared}
+    stack = {
+        f"{node.namespace.rstrip('/')}/{node.name}": node.node
+        for node in table.nodes
+        if node.robot == robot and node.node in ours
+    }
+    found: dict[str, str] = {}
+    for name in table.names:
+        if name.robot == robot and name.node in stack and name.endpoint.kind in (TOPIC, ACTION):
+            above, _, node = stack[name.node].rpartition("/")
+            asked = name.endpoint.remapped or name.endpoint.name
+            found.setdefault(expand(asked, above, node), name.name)
+    return found

@@ -1,0 +1,285 @@
+"""Known nodes and their parameters: which of them hold names, of what kind, and their defaults.
+
+Read from ``params.yaml`` and files of the same shape.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+from importlib.resources import files
+from typing import NamedTuple
+
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.yaml_with_lines import (
+    YamlItem,
+    flag_of,
+    read_yaml_with_lines,
+    table,
+    table_of,
+    unknown,
+    word,
+    word_of,
+    words_of,
+    wrong,
+)
+
+RELEASES = ("humble", "iron", "jazzy", "kilted", "lyrical", "rolling")
+NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "interface")
+GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
+OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
+KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, "off", "exclusive", "keep")
+# Placeholders for a segment of a path; an id holds no name of a robot.
+SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
+NODE_KEYS = ("package", "aliases", "types", "known_by", "absolute", "note", "params")
+PARAM_KEYS = ("kind", "default", "list", "distros", "absolute", "note")
+# Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
+SAFE_KINDS = ("link", "joint")
+_INDEX = "<index>"
+
+
+class Param(NamedTuple):
+    """A parameter by its dotted path: what its value is, and its default.
+
+    ``distros`` are the only releases that have it, ``absolute`` those in which a relative topic in
+    it is not resolved in the robot's namespace; both may be empty.
+    """
+
+    path: str
+    kind: str
+    default: str = ""
+    is_list: bool = False
+    distros: str = ""
+    absolute: str = ""
+    note: str = ""
+
+
+class Branch(NamedTuple):
+    """Paths by their next segment: ``exact``, ``numbered`` (a stem with digits), ``wild`` (what the
+    segment is, if any word is allowed); ``params`` are those whose path ends here."""
+
+    exact: dict[str, Branch]
+    numbered: dict[str, Branch]
+    wild: dict[str, Branch]
+    params: list[Param]
+
+
+class KnownNode(NamedTuple):
+    """A node's parameters; ``types`` are controller types, ``known_by`` parameters that identify the
+    node if its section has another name, ``defaults`` parameters that hold one name by default."""
+
+    name: str
+    package: str
+    params: Mapping[str, Param]
+    aliases: tuple[str, ...]
+    types: tuple[str, ...]
+    known_by: tuple[str, ...]
+    note: str
+    tree: Branch
+    defaults: tuple[Param, ...]
+
+
+class KnownNodes(NamedTuple):
+    """All known nodes; ``names`` and ``types`` lead to them. ``anywhere`` holds what is the same in
+    every node that has it, ``guesses`` last words of other paths (``guessing`` as one expression),
+    ``sent`` frames that nodes send.
+    """
+
+    nodes: Mapping[str, KnownNode]
+    names: Mapping[str, str]
+    types: Mapping[str, str]
+    anywhere: Branch
+    guesses: Mapping[str, tuple[str, ...]]
+    guessing: re.Pattern[str]
+    sent: frozenset[str]
+
+
+@lru_cache
+def built_in_nodes() -> KnownNodes:
+    """The nodes that this package knows."""
+    text = (
+        files("multibot_rewrite.companions.params")
+        .joinpath("params.yaml")
+        .read_text(encoding="utf-8")
+    )
+    return _known({}, {}, frozenset(), text, "params.yaml")
+
+
+def load_known_nodes(path: str = "") -> KnownNodes:
+    """The built-in nodes, and those that a file of the same shape adds or changes.
+
+    Raises UsageError, with file and line, for whatever is wrong in it.
+    """
+    if not path:
+        return built_in_nodes()
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            text = file.read()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError:
+        raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
+    base = built_in_nodes()
+    return _known(base.nodes, base.guesses, base.sent, text, path)
+
+
+def in_release(words: str, distro: str) -> bool:
+    """Is this release in ``jazzy``, ``<=jazzy`` or ``kilted+``? An unknown release is the newest."""
+    if not words:
+        return False
+    last = len(RELEASES) - 1
+    at = RELEASES.index(distro) if distro in RELEASES else last
+    bound = RELEASES.index(words.strip("<=+"))
+    if words.startswith("<="):
+        return at <= bound
+    return at >= bound if words.endswith("+") else at == bound
+
+
+def guess(known: KnownNodes, path: str) -> str:
+    """The kind that the last word of a path suggests; empty for none."""
+    found = known.guessing.fullmatch(path, path.rfind(".") + 1)
+    return (found.lastgroup or "") if found else ""
+
+
+def _guessing(guesses: Mapping[str, tuple[str, ...]]) -> re.Pattern[str]:
+    """One expression for all guesses, with a group for each kind."""
+    every = {
+        kind: "|".join(re.escape(it).replace(r"\*", ".*") for it in words)
+        for kind, words in guesses.items()
+    }
+    return re.compile("|".join(f"(?P<{kind}>{words})" for kind, words in every.items()))
+
+
+def _known(
+    nodes: Mapping[str, KnownNode],
+    guesses: Mapping[str, tuple[str, ...]],
+    sent: frozenset[str],
+    text: str,
+    file: str,
+) -> KnownNodes:
+    top = table(read_yaml_with_lines(text, file), "the file", ("sent", "guesses", "nodes"))
+    given = table_of(top, "guesses")
+    for key, item in given.items():
+        _one_of(item, "kind", key, KINDS)
+    guesses = {**guesses, **{key: words_of(given, key) for key in given}}
+    nodes = dict(nodes)
+    for name, item in table_of(top, "nodes").items():
+        nodes[name] = _node(name, item, nodes.get(name))
+    names = {alias: it.name for it in nodes.values() for alias in (*it.aliases, it.name)}
+    types = {type_: it.name for it in nodes.values() for type_ in it.types}
+    names |= {name: name for name in nodes}
+    sent |= frozenset(words_of(top, "sent"))
+    guessing = _guessing(guesses)
+    return KnownNodes(
+        nodes, names, types, _tree(_anywhere(nodes, guessing)), guesses, guessing, sent
+    )
+
+
+def _node(name: str, item: YamlItem, old: KnownNode | None) -> KnownNode:
+    """A node as a file describes it; of a known node, what the file adds."""
+    keys = table(item, f"node {name!r}", NODE_KEYS)
+    absolute = _releases(keys, "absolute")
+    params = dict(old.params) if old else {}
+    for path, entry in table_of(keys, "params").items():
+        params[path] = _param(path, entry, absolute)
+    return KnownNode(
+        name,
+        word_of(keys, "package", old.package if old else ""),
+        params,
+        (*(old.aliases if old else ()), *words_of(keys, "aliases")),
+        (*(old.types if old else ()), *words_of(keys, "types")),
+        words_of(keys, "known_by") or (old.known_by if old else ()),
+        word_of(keys, "note", old.note if old else ""),
+        _tree(params.values()),
+        tuple(it for it in params.values() if _has_default(it)),
+    )
+
+
+def _has_default(param: Param) -> bool:
+    """Does the parameter have a default, and a path without placeholders?"""
+    return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
+
+
+def _param(path: str, item: YamlItem, absolute: str) -> Param:
+    _check_path(path, item)
+    if isinstance(item.value, str):
+        kind = _one_of(item, "kind", item.value, KINDS)
+        return Param(path, kind, absolute=absolute if kind == "topic" else "")
+    keys = table(item, f"parameter {path!r}", PARAM_KEYS)
+    if "kind" not in keys:
+        wrong(item, f"parameter {path!r} has no kind; add kind: with one of {', '.join(KINDS)}")
+    kind = _one_of(keys["kind"], "kind", word(keys["kind"], "kind"), KINDS)
+    return Param(
+        path,
+        kind,
+        word_of(keys, "default"),
+        flag_of(keys, "list"),
+        _releases(keys, "distros"),
+        _releases(keys, "absolute") or (absolute if kind == "topic" else ""),
+        word_of(keys, "note"),
+    )
+
+
+def _check_path(path: str, item: YamlItem) -> None:
+    for segment in path.split("."):
+        if not segment:
+            wrong(
+                item,
+                f"parameter {path!r} has an empty segment; separate names by single dots",
+            )
+        if segment.startswith("<"):
+            _one_of(item, "segment", segment[1:-1], SEGMENTS)
+
+
+def _one_of(item: YamlItem, what: str, value: str, allowed: tuple[str, ...]) -> str:
+    if value not in allowed:
+        wrong(item, unknown(what, value, allowed))
+    return value
+
+
+def _releases(keys: Mapping[str, YamlItem], key: str) -> str:
+    words = word_of(keys, key)
+    if words:
+        _one_of(keys[key], "release", words.removeprefix("<=").removesuffix("+"), RELEASES)
+    return words
+
+
+def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:
+    """Parameters that likely mean the same in an unknown node: several nodes have them with one
+    meaning, or their name suggests it."""
+    found: dict[str, list[Param]] = {}
+    for node in nodes.values():
+        for param in node.params.values():
+            if "*" not in param.path and "<" not in param.path.replace(_INDEX, ""):
+                found.setdefault(param.path, []).append(param)
+    for path, params in found.items():
+        kind = params[0].kind
+        sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
+        guessed = guessing.fullmatch(path.rpartition(".")[2])
+        if (
+            kind != "exclusive"
+            and len({it.kind for it in params}) == 1
+            and (sure or (guessed and guessed.lastgroup == kind))
+        ):
+            yield params[0]._replace(default="", absolute="")
+
+
+def _tree(params: Iterable[Param]) -> Branch:
+    root = Branch({}, {}, {}, [])
+    for param in params:
+        branch = root
+        for segment in param.path.split("."):
+            branch = _below(branch, segment)
+        branch.params.append(param)
+    return root
+
+
+def _below(branch: Branch, segment: str) -> Branch:
+    if segment.endswith(_INDEX):
+        where, key = branch.numbered, segment.removesuffix(_INDEX)
+    elif segment == "*" or segment.startswith("<"):
+        where, key = branch.wild, segment.strip("<>")
+    else:
+        where, key = branch.exact, segment
+    return where.setdefault(key, Branch({}, {}, {}, []))

@@ -1,0 +1,175 @@
+"""Every parameter of a section -> the names in its key and value, and the kind of each."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.params.known_nodes import Branch, KnownNodes, Param, guess
+from multibot_rewrite.companions.params.sections import ParamSection
+from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
+from multibot_rewrite.model import InputError
+
+STRING = "tag:yaml.org,2002:str"
+NULL = "tag:yaml.org,2002:null"
+# Booleans for rcl, but not for PyYAML.
+_BOOLEANS = frozenset("yYnN")
+_NUMBER = re.compile(r"[-+.\d]")
+_STEM = re.compile(r"(.*?)\d+")
+# Segments of a path that hold no name of the robot.
+_IDS = frozenset({"id", "*"})
+# An empty prefix is replaced as well.
+_TAKE_EMPTY = ("link_prefix", "joint_prefix")
+_NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
+
+
+class NameSite(NamedTuple):
+    """A name: its scalar, the key of its parameter, its kind and what is known of the parameter.
+
+    ``param`` is None if the kind is a guess. ``at`` is the segment of a key, -1 for a value.
+    ``layer`` is the mapping that the parameter is in.
+    """
+
+    scalar: yaml.ScalarNode
+    key: yaml.ScalarNode
+    kind: str
+    param: Param | None
+    value: str
+    at: int
+    layer: yaml.MappingNode
+
+
+class SectionNames(NamedTuple):
+    """What a section holds: names, known parameters by path, scalars of unknown parameters, keys
+    without a value, keys that are twice in one mapping, and keys of unknown parameters.
+    """
+
+    sites: list[NameSite]
+    known: set[str]
+    unclaimed: list[yaml.ScalarNode]
+    empty: list[yaml.ScalarNode]
+    twice: list[yaml.ScalarNode]
+    keys: list[yaml.ScalarNode]
+
+
+# The branch that the path so far leads to, and the names in its keys: key, segment and kind.
+_Mark = tuple[yaml.ScalarNode, int, str]
+_State = tuple[Branch, tuple[_Mark, ...]]
+
+
+def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> SectionNames:
+    """Look at every parameter of a section; InputError for keys that are not scalars."""
+    names = SectionNames([], set(), [], [], [], [])
+    tree = section.node.tree if section.node else known.anywhere
+    _walk(document, section.body, [(tree, ())], known, names)
+    return names
+
+
+def _walk(
+    document: YamlText,
+    body: yaml.MappingNode,
+    states: list[_State],
+    known: KnownNodes,
+    names: SectionNames,
+) -> None:
+    seen = set()
+    for key, value in body.value:
+        if not isinstance(key, yaml.ScalarNode):
+            place = f"{document.file}:{line_of(key)}"
+            raise InputError(f"{place}: a key is a mapping or a list; use a name as key")
+        if key.value in seen:
+            names.twice.append(key)
+        seen.add(key.value)
+        below = _below(states, key.value, key) if states else states
+        if not below:
+            names.keys.append(key)
+        if isinstance(value, yaml.MappingNode):
+            _walk(document, value, below, known, names)
+        # Most parameters are numbers that hold no name.
+        elif below or value.tag not in _NO_NAMES:
+            _claim(key, value, below, body, known, names)
+
+
+def _below(states: list[_State], word: str, key: yaml.ScalarNode, at: int = 0) -> list[_State]:
+    if "." in word:
+        for place, part in enumerate(word.split(".")):
+            states = _below(states, part, key, place)
+        return states
+    found: list[_State] = []
+    for branch, marks in states:
+        child = branch.exact.get(word)
+        if child:
+            found.append((child, marks))
+        if branch.numbered and (stem := _STEM.fullmatch(word)) and stem[1] in branch.numbered:
+            found.append((branch.numbered[stem[1]], marks))
+        for kind, child in branch.wild.items():
+            found.append((child, marks if kind in _IDS else (*marks, (key, at, kind))))
+    return found
+
+
+def _claim(
+    key: yaml.ScalarNode,
+    value: yaml.Node,
+    states: list[_State],
+    layer: yaml.MappingNode,
+    known: KnownNodes,
+    names: SectionNames,
+) -> None:
+    """What one parameter holds: known, guessed from its name, or unclaimed."""
+    if value.tag == NULL and not value.value:
+        names.empty.append(key)
+    param = None
+    for branch, marks in states:
+        if branch.params:
+            param = branch.params[0]
+            names.known.add(param.path)
+            for mark, at, kind in marks:
+                word = mark.value.split(".")[at]
+                names.sites.append(NameSite(mark, mark, kind, param, word, at, layer))
+            break
+    if param is None or param.kind != "keep":
+        _values(key, items(value), param, layer, known, names)
+
+
+def _values(
+    key: yaml.ScalarNode,
+    scalars: list[yaml.Node],
+    param: Param | None,
+    layer: yaml.MappingNode,
+    known: KnownNodes,
+    names: SectionNames,
+) -> None:
+    kind = param.kind if param else ""
+    for scalar in scalars:
+        if not isinstance(scalar, yaml.ScalarNode):
+            continue
+        # These kinds may hold booleans and numbers.
+        text = str(scalar.value) if kind in ("off", "exclusive") else name_in(scalar)
+        if not text and not (scalar.style and kind in _TAKE_EMPTY):
+            continue
+        kind = kind or guess(known, key.value)
+        if kind:
+            names.sites.append(NameSite(scalar, key, kind, param, text, -1, layer))
+        else:
+            names.unclaimed.append(scalar)
+
+
+def name_in(scalar: yaml.ScalarNode) -> str:
+    """The text of a scalar if rcl reads it as a string; otherwise empty."""
+    text = str(scalar.value)
+    if scalar.tag != STRING or (text in _BOOLEANS and not scalar.style):
+        return ""
+    if scalar.style:
+        return text
+    return "" if _NUMBER.match(text) and _is_number(text) else text
+
+
+def _is_number(text: str) -> bool:
+    # 1e-9 is a string for PyYAML and a number for rcl.
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

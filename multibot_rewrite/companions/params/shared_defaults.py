@@ -1,0 +1,188 @@
+"""Parameters that a file does not set, with a default that all robots would share: lines to insert."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
+from multibot_rewrite.companions.params.known_nodes import KnownNode, Param, in_release
+from multibot_rewrite.companions.params.name_sites import SectionNames
+from multibot_rewrite.companions.params.sections import (
+    ParamSection,
+    RawSection,
+    flattened,
+    pattern_of,
+)
+from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.template import NAMESPACE_SLOT
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, finding_at, pairs, quoted
+from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.naming import NAMESPACE
+
+DEFAULT = "# multibot: the default is every robot's"
+OFF = "# multibot: the default puts the namespace before frames"
+_FRAMES = ("frame", "link", "stem", "joint_prefix")
+
+
+class DefaultLine(NamedTuple):
+    """A parameter to insert: its comment, path and value as YAML."""
+
+    comment: str
+    path: str
+    value: str
+
+
+def default_lines(
+    job: ParamsJob,
+    pages: Sequence[tuple[ParamSection, SectionNames]],
+    beside: Sequence[RawSection],
+) -> Iterator[Splice | Finding]:
+    """Lines for the first section of each known node, without those that ``beside`` sets."""
+    everywhere = _set_anywhere(pages, beside)
+    done: set[str] = set()
+    for section, _ in pages:
+        if section.node is None or section.shared or section.inner or section.full in done:
+            continue
+        done.add(section.full)
+        same = [names.known for other, names in pages if other.full == section.full]
+        here = set().union(*same) | _set_for(section, everywhere)
+        lines = list(missing_defaults(job.context, section.node, here))
+        if lines:
+            yield _insert(job.document, section.body, lines)
+        yield from _inexpressible(job, section, section.node, here)
+
+
+def _inexpressible(
+    job: ParamsJob, section: ParamSection, node: KnownNode, here: set[str]
+) -> Iterator[Finding]:
+    for param in node.defaults:
+        if param.path not in here and not expressible(job.context, param.kind):
+            message = f"{param.path} can only add a prefix, but the fleet uses a postfix"
+            key = section.keys[-1]
+            yield finding_at(job.document, key, "MF117", WARNING, message, "set affix: prefix")
+
+
+def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
+    """The parameters of a node whose default must differ from robot to robot."""
+    for param in node.defaults:
+        if param.path in here or not _is_in_release(param, context):
+            continue
+        if param.kind == "off":
+            yield DefaultLine(OFF, param.path, "false")
+        elif param.kind in _FRAMES and expressible(context, param.kind):
+            text = SPELLERS[param.kind](context, param.default)
+            if text != param.default:
+                yield DefaultLine(DEFAULT, param.path, quoted(text))
+
+
+def _is_in_release(param: Param, context: Context) -> bool:
+    return not param.distros or in_release(param.distros, context.distro)
+
+
+def _set_anywhere(
+    pages: Sequence[tuple[ParamSection, SectionNames]], beside: Sequence[RawSection]
+) -> list[tuple[str, set[str]]]:
+    """What is set for which nodes, if patterns or other files set more than the section itself."""
+    if not beside and not any(it.wild for it, _ in pages):
+        return []
+    bodies = [(it.full, it.body) for it, _ in pages]
+    bodies += [(f"/{it.path}", it.body) for it in beside]
+    return [(full, {name for name, _ in flattened(body)}) for full, body in bodies]
+
+
+def _set_for(section: ParamSection, everywhere: Iterable[tuple[str, set[str]]]) -> set[str]:
+    """What is set by any section that is, or may be, for the same node."""
+    found: set[str] = set()
+    for full, names in everywhere:
+        if (
+            f"/{section.path}" == full
+            or _matches(full, section.full)
+            or _matches(section.full, full)
+        ):
+            found |= names
+    return found
+
+
+def _matches(pattern: str, full: str) -> bool:
+    return "*" in pattern and re.fullmatch(pattern_of(pattern), full) is not None
+
+
+def _insert(
+    document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
+) -> Splice | Finding:
+    """The lines before the first parameter, with its indentation."""
+    if not body.value:
+        text = ", ".join(f"{line.path}: {line.value}" for line in lines)
+        at = body.start_mark.index + 1
+        return Splice(at, at, text)
+    at = body.value[0][0].start_mark.index
+    before = document.text[document.text.rfind("\n", 0, at) + 1 : at]
+    if body.flow_style:
+        text = "".join(f"{line.path}: {line.value}, " for line in lines)
+        return Splice(at, at, text)
+    if before.strip():
+        names = ", ".join(line.path for line in lines)
+        message = f"{names}: all robots would share the default, and no line can be inserted here"
+        hint = "write each parameter on its own line"
+        return finding_at(document, body, "MF124", WARNING, message, hint)
+    end = ("\r\n" if "\r\n" in document.text else "\n") + before
+    return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
+
+
+def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
+    for comment in dict.fromkeys(line.comment for line in lines):
+        yield comment
+        yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
+
+
+def sources_without_topic(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
+    """Observation sources of a costmap layer without a topic: their id is the topic."""
+    top = "observation_sources"
+    param = section.node.params.get("<id>.<id>.topic") if section.node else None
+    namespaced = job.context.topics.naming.topics == NAMESPACE
+    if param is None or (namespaced and not in_release(param.absolute, job.context.distro)):
+        return
+    names = dict(flattened(section.body))
+    values = {id(key): value for key, value in _scalars(section.body)}
+    for name, key in names.items():
+        layer, _, last = name.rpartition(".")
+        if last != top or not layer:
+            continue
+        for source in values.get(id(key), "").split():
+            if f"{layer}.{source}.topic" not in names:
+                message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
+                hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
+                yield finding_at(job.document, key, "MF127", WARNING, message, hint)
+
+
+def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
+    for key, value in pairs(node):
+        if isinstance(value, yaml.ScalarNode):
+            yield key, str(value.value)
+        else:
+            yield from _scalars(value)
+
+
+def without_section(
+    document: YamlText, sections: Iterable[str], context: Context, nodes: Mapping[str, KnownNode]
+) -> Iterator[Finding]:
+    """Nodes of the stack without a section, whose defaults all robots would share.
+
+    ``nodes`` are the known ones by the stack's name, ``sections`` the full names that have one.
+    """
+    patterns = [re.compile(pattern_of(full)) for full in sections]
+    for name, node in nodes.items():
+        place = context.nodes[name]
+        if NAMESPACE_SLOT not in place or any(it.fullmatch(place) for it in patterns):
+            continue
+        lines = list(missing_defaults(context, node, set()))
+        if lines:
+            words = ", ".join(it.path for it in lines)
+            message = f"{name} has no section, so all robots would share its defaults for {words}"
+            hint = "add a section for it (use_sim_time is enough); the lines are inserted there"
+            yield Finding("MF125", WARNING, message, hint, document.file, 1, 1)

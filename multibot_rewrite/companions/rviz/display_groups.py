@@ -1,0 +1,289 @@
+"""One RViz config for all robots: shared displays once, and a group of displays for each robot."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.companions.rviz.colours import Colour
+from multibot_rewrite.companions.rviz.read_config import (
+    ABSOLUTE,
+    DOCK,
+    GROUP,
+    PROCESS,
+    SHARED,
+    RvizConfig,
+    RvizItem,
+    rviz_data,
+    value,
+)
+from multibot_rewrite.companions.rviz.values import (
+    FRAME,
+    RvizRobot,
+    changed_values,
+    is_name,
+    item_splices,
+    robot_value,
+)
+from multibot_rewrite.companions.yaml_blocks import (
+    Block,
+    blocks,
+    cut_out,
+    end_of,
+    is_block,
+    moved,
+    newline,
+)
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, pairs, quoted, replaced
+
+Robots = Sequence[RvizRobot]
+Wanted = Callable[[RvizItem], bool]
+
+
+class RvizJob(NamedTuple):
+    """A config to rewrite, the robots of one window and their colours (None: unchanged), and the
+    displays that each robot needs for itself, by their place in the text."""
+
+    config: RvizConfig
+    robots: Robots
+    colours: tuple[Colour | None, ...]
+    own: frozenset[int]
+
+
+def make_rviz_job(
+    config: RvizConfig, robots: Robots, colours: tuple[Colour | None, ...]
+) -> RvizJob:
+    """Find the displays that each robot needs for itself: those that change for some robot."""
+    own = {
+        one.block.start
+        for one in leaves(config.displays)
+        if one.flag != SHARED and any(next(changed_values(one, robot), None) for robot in robots)
+    }
+    return RvizJob(config, robots, colours, frozenset(own))
+
+
+def leaves(shown: Iterable[RvizItem]) -> Iterator[RvizItem]:
+    """Displays that are not groups, and empty groups."""
+    for one in shown:
+        if one.children:
+            yield from leaves(one.children)
+        else:
+            yield one
+
+
+def for_one_process(one: RvizItem) -> bool:
+    """Does it serve only the robot that the rviz2 process is set up for?"""
+    return one.flag in (PROCESS, ABSOLUTE)
+
+
+def robot_groups(job: RvizJob) -> Iterator[Splice]:
+    """The splices that put each robot's displays into a group, after the shared ones."""
+    document, shown = job.config.document, job.config.displays
+    if not shown:
+        return
+
+    def shared(one: RvizItem) -> bool:
+        return one.block.start not in job.own and not for_one_process(one)
+
+    for one in shown:
+        yield from _kept(one, shared, lambda leaf: entries(document, leaf, job.robots))
+    rows = [remark(document, one) for one in leaves(shown) if for_one_process(one)]
+    rows += [_group(job, at) for at in range(len(job.robots))]
+    yield inserted(document, shown[-1].block.end, "".join(rows))
+
+
+def _kept(
+    one: RvizItem, wanted: Wanted, made: Callable[[RvizItem], Iterable[Splice]]
+) -> Iterator[Splice]:
+    """The splices that keep the wanted parts of a display and change them."""
+    if not any(map(wanted, leaves([one]))):
+        yield Splice(one.block.start, one.block.end, "")
+    elif one.children:
+        for child in one.children:
+            yield from _kept(child, wanted, made)
+    else:
+        yield from made(one)
+
+
+def _group(job: RvizJob, at: int) -> str:
+    """The group of one robot: copies of the displays with its names; empty if it has none."""
+    document, robot = job.config.document, job.robots[at]
+
+    def own(one: RvizItem) -> bool:
+        return one.block.start in job.own and not for_one_process(one)
+
+    def made(one: RvizItem) -> Iterator[Splice]:
+        yield from item_splices(one, robot, job.colours[at])
+        yield from _renamed(one, robot)
+
+    copies = [
+        cut_out(document, one.block.start, one.block.end, _kept(one, own, made))
+        for one in job.config.displays
+        if any(map(own, leaves([one])))
+    ]
+    if not copies:
+        return ""
+    end, lead = newline(document), " " * job.config.displays[0].block.column
+    head = f"{lead}- Class: {GROUP}{end}{lead}  Displays:{end}"
+    body = "".join(moved(copy, 4) for copy in copies)
+    return f"{head}{body}{lead}  Enabled: true{end}{lead}  Name: {quoted(robot.name)}{end}"
+
+
+def _renamed(one: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
+    """Each window needs its own title; a list of other displays no longer holds."""
+    name = value(one.node, "Name")
+    if one.flag == DOCK and isinstance(name, yaml.ScalarNode):
+        yield replaced(name, titled(one, robot))
+    beside = value(one.node, "Visibility")
+    if beside is not None and beside.value:
+        yield Splice(beside.start_mark.index, end_of(beside), "{}")
+
+
+def titled(one: RvizItem, robot: RvizRobot) -> str:
+    """The name of a robot's window."""
+    return f"{robot.name} {one.name}"
+
+
+def entry_blocks(
+    document: YamlText, node: yaml.Node | None
+) -> Iterator[tuple[tuple[yaml.ScalarNode, yaml.Node], Block]]:
+    """The entries of a block map with their lines."""
+    found = pairs(node)
+    if node is None or not is_block(node) or len(found) != len(node.value):
+        return
+    yield from zip(found, blocks(document, node), strict=True)
+
+
+def entries(document: YamlText, one: RvizItem, robots: Robots) -> Iterator[Splice]:
+    """A shared display lists the frames of all robots; its tree comes from tf anyway."""
+    for place_map, deep in (("Frames", False), ("Tree", True)):
+        node = value(one.node, place_map)
+        if one.flag != SHARED or not any(_moves(one, place_map, robot) for robot in robots):
+            continue
+        if deep and node is not None:
+            yield Splice(node.start_mark.index, end_of(node), "{}")
+            continue
+        for (key, _), block in entry_blocks(document, node):
+            yield Splice(block.start, block.end, _for_all(document, one, key, block, robots))
+
+
+def _moves(one: RvizItem, key: str, robot: RvizRobot) -> bool:
+    return any(place.path.startswith(key) for place, _ in changed_values(one, robot))
+
+
+def _for_all(
+    document: YamlText, one: RvizItem, key: yaml.ScalarNode, block: Block, robots: Robots
+) -> str:
+    place = next((it for it in one.places if it.node is key and is_name(it)), None)
+    if place is None or place.word != FRAME:
+        return cut_out(document, block.start, block.end)
+    made = dict.fromkeys(replaced(key, robot_value(place, robot)) for robot in robots)
+    return "".join(cut_out(document, block.start, block.end, [one]) for one in made)
+
+
+def tools(job: RvizJob) -> Iterator[Splice]:
+    """A tool for each robot where it publishes; a tool that serves one process is left out."""
+    document = job.config.document
+    for tool in job.config.tools:
+        start, end, _ = tool.block
+        if for_one_process(tool):
+            yield Splice(start, end, remark(document, tool))
+            continue
+        made = dict.fromkeys(tuple(tool_edits(document, tool, it)) for it in job.robots)
+        if tuple(made) != ((),):
+            yield Splice(start, end, "".join(cut_out(document, start, end, one) for one in made))
+
+
+def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator[Splice]:
+    """The splices that make a tool publish for the robot, even if the file leaves the topic out."""
+    yield from item_splices(tool, robot, None)
+    default = rviz_data()["tools"].get(tool.cls, "")
+    if value(tool.node, "Topic") is not None or not default:
+        return
+    topic = robot_topic(robot.topics, default, robot.known)
+    if topic == default:
+        return
+    if not is_block(tool.node):
+        at = tool.node.end_mark.index - 1
+        yield Splice(at, at, f", Topic: {quoted(topic)}")
+    else:
+        lead = " " * tool.node.start_mark.column
+        at = end_of(tool.node)
+        yield Splice(at, at, f"{newline(document)}{lead}Topic: {quoted(topic)}")
+
+
+def panels(job: RvizJob) -> Iterator[Splice]:
+    """Panels, without those for one process and without references to moved displays."""
+    document = job.config.document
+    for panel in job.config.panels:
+        if for_one_process(panel):
+            yield Splice(panel.block.start, panel.block.end, remark(document, panel))
+            continue
+        tree = value(panel.node, "Property Tree Widget")
+        yield from _collapsed(document, value(tree, "Expanded"), _gone(job))
+        source = value(panel.node, "SyncSource")
+        for one in _docks(job):
+            if isinstance(source, yaml.ScalarNode) and one.name == source.value != "":
+                yield replaced(source, titled(one, job.robots[0]))
+                break
+
+
+def _docks(job: RvizJob) -> list[RvizItem]:
+    """The displays with a window that each robot has for itself."""
+    own = (one for one in leaves(job.config.displays) if one.block.start in job.own)
+    return [one for one in own if one.flag == DOCK]
+
+
+def _gone(job: RvizJob) -> re.Pattern[str]:
+    """How paths to displays start that are in groups now: a name and its number."""
+    shown = job.config.displays
+    kept = {one.name for one in shown if any(it.block.start not in job.own for it in leaves([one]))}
+    names = sorted({one.name for one in shown} - kept)
+    return re.compile(rf"/(?:{'|'.join(map(re.escape, names))})\d+(?:/|$)" if names else r"(?!)")
+
+
+def _collapsed(
+    document: YamlText, expanded: yaml.Node | None, gone: re.Pattern[str]
+) -> Iterator[Splice]:
+    """Remove tree paths that start at a display that is in a group now."""
+    if not isinstance(expanded, yaml.SequenceNode) or not is_block(expanded):
+        return
+    found = list(zip(expanded.value, blocks(document, expanded), strict=True))
+    left = [block for item, block in found if gone.match(str(item.value))]
+    if found and len(left) == len(found):
+        yield Splice(expanded.start_mark.index, end_of(expanded), "[]")
+        return
+    yield from (Splice(block.start, block.end, "") for block in left)
+
+
+def windows(job: RvizJob) -> Iterator[Splice]:
+    """The places of windows, for the copies too; Qt's hex state cannot be edited and is removed."""
+    document = job.config.document
+    docks = _docks(job)
+    titles = {one.name: one for one in docks}
+    if not docks and not any(map(for_one_process, job.config.panels)):
+        return
+    for (key, _), block in entry_blocks(document, value(document.root, "Window Geometry")):
+        if key.value == "QMainWindow State":
+            yield Splice(block.start, block.end, "")
+        elif key.value in titles:
+            names = [replaced(key, titled(titles[key.value], robot)) for robot in job.robots]
+            copies = [cut_out(document, block.start, block.end, [name]) for name in names]
+            yield Splice(block.start, block.end, "".join(copies))
+
+
+def remark(document: YamlText, one: RvizItem) -> str:
+    """The comment in place of what is left out."""
+    title = f" {one.name!r}" if one.name else ""
+    why = "it serves the robot of its rviz2 process"
+    return f"{' ' * one.block.column}# left out: {one.cls}{title}: {why}{newline(document)}"
+
+
+def inserted(document: YamlText, at: int, text: str) -> Splice:
+    """Lines inserted at the start of a line, or after a last line without a line end."""
+    unended = at == len(document.text) and not document.text.endswith("\n")
+    return Splice(at, at, (newline(document) if unended and text else "") + text)

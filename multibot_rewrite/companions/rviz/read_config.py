@@ -1,0 +1,158 @@
+"""An RViz config as records: displays, tools and panels, and where each holds a name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any, NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
+from multibot_rewrite.model import InputError
+
+MANAGER = "Visualization Manager"
+GROUP = "rviz_common/Group"
+DOCK, SHARED, PROCESS, ABSOLUTE = "dock", "shared", "process", "absolute"
+# Classes of ROS 1, which pluginlib of ROS 2 does not find.
+ROS1 = "rviz/"
+_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+class ValuePlace(NamedTuple):
+    """A scalar (a value or a key) of the kind ``word``, such as a topic or a frame."""
+
+    node: yaml.ScalarNode
+    word: str
+    path: str
+
+
+class RvizItem(NamedTuple):
+    """A display, tool or panel: its lines, class, name, values of interest, and the displays below.
+
+    ``flag`` and ``known`` are what ``rviz.yaml`` has about its class.
+    """
+
+    block: Block
+    node: yaml.Node
+    cls: str
+    name: str
+    flag: str
+    known: bool
+    places: tuple[ValuePlace, ...]
+    children: tuple[RvizItem, ...] = ()
+
+
+class RvizConfig(NamedTuple):
+    """An RViz 2 config; ``manager`` is its map ``Visualization Manager``."""
+
+    document: YamlText
+    manager: yaml.Node
+    displays: tuple[RvizItem, ...]
+    tools: tuple[RvizItem, ...]
+    panels: tuple[RvizItem, ...]
+
+
+@lru_cache(maxsize=1)
+def rviz_data() -> Mapping[str, Any]:
+    """The data of ``rviz.yaml``."""
+    text = files("multibot_rewrite.companions.rviz").joinpath("rviz.yaml").read_text()
+    data: Mapping[str, Any] = yaml.load(text, Loader=_LOADER)
+    return data
+
+
+def read_config(document: YamlText) -> RvizConfig:
+    """The config in a YAML text; InputError if it is not a config of RViz 2."""
+    manager = value(document.root, MANAGER)
+    if not isinstance(manager, yaml.MappingNode):
+        raise InputError(
+            f"{document.file}: not an RViz config: it has no {MANAGER!r}; save it with rviz2"
+        )
+    _refuse(document)
+    displays = value(manager, "Displays")
+    return RvizConfig(
+        document,
+        manager,
+        tuple(_shown(document, displays, "displays")),
+        tuple(_shown(document, value(manager, "Tools"), "tools")),
+        tuple(_shown(document, value(document.root, "Panels"), "panels")),
+    )
+
+
+def _refuse(document: YamlText) -> None:
+    for node in _maps(document.root):
+        cls = text_of(node, "Class")
+        if cls.startswith(ROS1):
+            place = f"{document.file}:{line_of(node)}"
+            raise InputError(
+                f"{place}: this is a ROS 1 config ({cls}), which rviz2 cannot load; create it in rviz2"
+            )
+    refuse_anchors(document)
+
+
+def _maps(node: yaml.Node | None) -> Iterator[yaml.Node]:
+    if isinstance(node, yaml.MappingNode):
+        yield node
+    for item in node.value if isinstance(node, yaml.CollectionNode) else ():
+        yield from _maps(item[1] if isinstance(item, tuple) else item)
+
+
+def _shown(document: YamlText, node: yaml.Node | None, what: str) -> Iterator[RvizItem]:
+    if not isinstance(node, yaml.SequenceNode) or not node.value:
+        return
+    if not is_block(node):
+        place = f"{document.file}:{line_of(node)}"
+        raise InputError(
+            f"{place}: {what} are in brackets, which cannot be copied; save the file with rviz2"
+        )
+    data = rviz_data()
+    for block, item in zip(blocks(document, node), node.value, strict=True):
+        cls = text_of(item, "Class")
+        below = _shown(document, value(item, "Displays"), what) if cls == GROUP else ()
+        names = data["displays"].get(cls, data["any"])
+        places = () if what == "panels" or cls == GROUP else tuple(_places(item, names))
+        known = what != "displays" or cls == GROUP or cls in data["displays"]
+        flag = data["flags"].get(cls, "")
+        yield RvizItem(block, item, cls, text_of(item, "Name"), flag, known, places, tuple(below))
+
+
+def _places(item: yaml.Node, names: Mapping[str, str]) -> Iterator[ValuePlace]:
+    for path, word in names.items():
+        for node in _found(item, path.split(".")):
+            yield ValuePlace(node, word, path)
+
+
+def _found(node: yaml.Node | None, path: Sequence[str]) -> Iterator[yaml.ScalarNode]:
+    """The scalars at a path; ``*`` gives keys."""
+    if not path:
+        node = value(node, "Value") if isinstance(node, yaml.MappingNode) else node
+        if isinstance(node, yaml.ScalarNode):
+            yield node
+    elif path[0] in ("*", "**"):
+        for key, below in pairs(node):
+            if key.value not in rviz_data()["fixed_keys"]:
+                yield key
+            if path[0] == "**":
+                yield from _found(below, path)
+    else:
+        yield from _found(value(node, path[0]), path[1:])
+
+
+def value(node: yaml.Node | None, key: str) -> yaml.Node | None:
+    """The value of a key of a map, the last one if the key is repeated; None if it is missing."""
+    return next((there for name, there in reversed(pairs(node)) if name.value == key), None)
+
+
+def text_of(node: yaml.Node | None, key: str) -> str:
+    """The value of a key as text; empty if it is missing or not a scalar."""
+    there = value(node, key)
+    return str(there.value) if isinstance(there, yaml.ScalarNode) else ""
+
+
+def every(shown: Sequence[RvizItem]) -> Iterator[RvizItem]:
+    """Displays and those in groups."""
+    for one in shown:
+        yield one
+        yield from every(one.children)

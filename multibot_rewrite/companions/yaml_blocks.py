@@ -1,0 +1,103 @@
+"""Whole lines of a YAML text: the entries of lists and maps, to be copied, moved or left out."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.yaml_text import Splice, YamlText
+
+
+class Block(NamedTuple):
+    """The characters ``start:end`` of a text, whole lines; ``column`` is where its entry starts."""
+
+    start: int
+    end: int
+    column: int
+
+
+def is_block(node: yaml.Node | None) -> bool:
+    """Is it a list or map in block style, without brackets or braces?"""
+    return isinstance(node, yaml.CollectionNode) and not node.flow_style
+
+
+def newline(document: YamlText) -> str:
+    """How the lines of a text end."""
+    return "\r\n" if "\r\n" in document.text else "\n"
+
+
+def blocks(document: YamlText, node: yaml.Node) -> list[Block]:
+    """The lines of each entry of a block list or map, comments above an entry included.
+
+    They lie side by side; comments after the last entry do not belong to it.
+    """
+    found: list[Block] = []
+    at = line_start(document, node.start_mark.index)
+    for entry in node.value if is_block(node) else ():
+        last = entry[1] if isinstance(entry, tuple) else entry
+        end = line_end(document, end_of(last))
+        found.append(Block(at, end, node.start_mark.column))
+        at = end
+    return found
+
+
+def end_of(node: yaml.Node) -> int:
+    """Where a node ends: PyYAML's own end mark of a block is at the start of what follows."""
+    while is_block(node) and node.value:
+        last = node.value[-1]
+        node = last[1] if isinstance(last, tuple) else last
+    end = node.end_mark.index
+    # A block scalar ends where the next line starts.
+    styled = isinstance(node, yaml.ScalarNode) and node.style in ("|", ">")
+    return max(node.start_mark.index, end - 1) if styled else end
+
+
+def line_start(document: YamlText, at: int) -> int:
+    """Where the line of a character starts."""
+    return document.text.rfind("\n", 0, at) + 1
+
+
+def line_end(document: YamlText, at: int) -> int:
+    """Where the next line starts."""
+    end = document.text.find("\n", at)
+    return len(document.text) if end < 0 else end + 1
+
+
+def cut_out(document: YamlText, start: int, end: int, splices: Iterable[Splice] = ()) -> str:
+    """The text between two positions with the splices made; it ends with a line end."""
+    parts, at = [], start
+    for first, last, new in sorted(set(splices)):
+        assert at <= first <= last <= end, "a splice outside of its block, or two that overlap"
+        parts += [document.text[at:first], new]
+        at = last
+    text = "".join([*parts, document.text[at:end]])
+    return text if not text or text.endswith("\n") else text + newline(document)
+
+
+def lines_of(text: str) -> list[str]:
+    """The lines of a text with their ends; only line feeds end one."""
+    return [line for line in re.split(r"(?<=\n)", text) if line]
+
+
+def moved(text: str, by: int) -> str:
+    """Lines indented by ``by`` more columns; fewer if it is negative."""
+    return "".join(_moved(line, by) for line in lines_of(text))
+
+
+def _moved(line: str, by: int) -> str:
+    if not line.strip():
+        return line
+    if by >= 0:
+        return " " * by + line
+    return line[min(-by, len(line) - len(line.lstrip(" "))) :]
+
+
+def as_item(text: str, column: int, target: int) -> str:
+    """The lines of a map at ``column`` as an item of a list with its dashes at ``target``."""
+    lines = lines_of(moved(text, target + 2 - column))
+    at = next(at for at, line in enumerate(lines) if line.strip() and line.lstrip()[0] != "#")
+    lines[at] = f"{' ' * target}- {lines[at][target + 2 :]}"
+    return "".join(lines)

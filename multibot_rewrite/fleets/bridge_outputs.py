@@ -1,0 +1,81 @@
+"""The ros_gz_bridge files of a fleet: one for each robot, and one for what all robots share."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
+from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.remap.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
+
+BRIDGE = "bridge.yaml"
+
+
+class GroupBridges(NamedTuple):
+    """A group of robots with its bridge files by path, each rewritten once."""
+
+    group: RobotGroup
+    files: dict[str, BridgeFile]
+
+
+def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
+    """Every bridge file of a fleet.
+
+    Raises InputError for a bridge file that cannot be read or rewritten.
+    """
+    topics, unbridged = bridged_topics(plan.fleet.inventories, plan.fleet.naming)
+    topics = as_spawned(topics, plan.robots)
+    groups = [_read(group) for group in group_robots(plan)]
+    for group, files in groups:
+        for file in files.values():
+            yield from file.own.findings
+        for robot in group.robots:
+            yield from _for_robot(robot, files, topics)
+    yield from _for_all(groups, topics)
+    yield from (_unbridged(plan, it) for it in unbridged)
+
+
+def _read(group: RobotGroup) -> GroupBridges:
+    paths = group.companions.get("bridge", ())
+    return GroupBridges(group, {it: rewrite_bridge(yaml_of(it), group.context) for it in paths})
+
+
+def _for_robot(
+    robot: RewrittenRobot, files: dict[str, BridgeFile], topics: Iterable[BridgedTopic]
+) -> FilesAndFindings:
+    spec = robot.spec
+    texts = [
+        (path, fill_bridge(file.own.template, spec.namespace, spec.tag, spec.model))
+        for path, file in files.items()
+    ]
+    text, findings = merge_bridges(texts, [it for it in topics if it.robot == spec.namespace])
+    yield from findings
+    if text:
+        yield OutputFile(path_for(robot, BRIDGE), text.encode(), tuple(files))
+
+
+def _for_all(groups: Iterable[GroupBridges], topics: Sequence[BridgedTopic]) -> FilesAndFindings:
+    """The bridge of what all robots share, where there is anything to bridge."""
+    shared = dict.fromkeys(
+        (path, file.shared) for it in groups for path, file in it.files.items() if file.shared
+    )
+    if not shared and not any(it.robot for it in topics):
+        return
+    text, findings = merge_bridges(shared, [it for it in topics if not it.robot])
+    yield from findings
+    yield OutputFile(BRIDGE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
+
+
+def _unbridged(plan: FleetPlan, topic: UnbridgedTopic) -> Finding:
+    message = (
+        f"{topic.what} of {topic.robot} has no topic of its own: its gz topic depends on the world"
+    )
+    hint = "give it a topic in the description, so that a bridge can name it"
+    spec = next(it.spec for it in plan.robots if it.spec.namespace == topic.robot)
+    return Finding("MF509", WARNING, message, hint, spec.description, topic.line, 1)

@@ -1,0 +1,79 @@
+"""Parameter files, MoveIt files, behavior trees and Lua files of a fleet: one for each robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from multibot_rewrite.companions.behavior_tree import rewrite_behavior_tree
+from multibot_rewrite.companions.context import Companion
+from multibot_rewrite.companions.lua import rewrite_lua
+from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
+from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.sources.read import read_file
+
+
+def companion_files(plan: FleetPlan) -> FilesAndFindings:
+    """Every companion file that is one text with slots for the robot.
+
+    Raises InputError for a file that cannot be read or rewritten.
+    """
+    for kind, rewrite in _KINDS.items():
+        for group in group_robots(plan):
+            for path in group.companions.get(kind, ()):
+                template, findings = rewrite(plan, group, path)
+                yield from (_with_names_of(group.robots[0], it) for it in findings)
+                for robot in group.robots:
+                    text = fill_template(template, robot.spec.namespace, robot.spec.tag)
+                    yield OutputFile(path_for(robot, path), text.encode(), (path,))
+
+
+def _with_names_of(robot: RewrittenRobot, finding: Finding) -> Finding:
+    """A finding about a file for any robot, with the names of this robot in its slots."""
+    message, hint = finding.message, finding.hint
+    for slot, name in {NAMESPACE_SLOT: robot.spec.namespace, TAG_SLOT: robot.spec.tag}.items():
+        message, hint = message.replace(slot, name), hint.replace(slot, name)
+    return finding._replace(message=message, hint=hint)
+
+
+def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
+    """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
+    read = {it: yaml_of(it) for it in group.companions["params"]}
+    others = [document for it, document in read.items() if it != path]
+    known = load_known_nodes(plan.file.parameters)
+    robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
+    made = rewrite_params(read[path], group.context, known, others, group.facts, sorted(robots))
+    if path != next(iter(read)):
+        return made
+    more = nodes_without_section(list(read.values()), group.context, known)
+    return made._replace(findings=(*made.findings, *more))
+
+
+def _moveit(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
+    return rewrite_moveit(yaml_of(path), group.context, group.facts)
+
+
+def _behavior_tree(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
+    return rewrite_behavior_tree(read_file(path), path, group.context)
+
+
+def _lua(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
+    try:
+        text = read_file(path).decode()
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: it is not UTF-8; save it as UTF-8") from None
+    return rewrite_lua(text, path, group.context)
+
+
+_KINDS: dict[str, Callable[[FleetPlan, RobotGroup, str], Companion]] = {
+    "params": _params,
+    "moveit": _moveit,
+    "behavior_trees": _behavior_tree,
+    "lua": _lua,
+}

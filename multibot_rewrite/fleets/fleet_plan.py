@@ -1,0 +1,56 @@
+"""A fleet file -> its rewritten robots and their remap table; all output follows from these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.bulk import uncollected
+from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
+from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.fleets.rewritten_robots import (
+    Jobs,
+    RewrittenRobot,
+    Sources,
+    read_jobs,
+    rewrite_robots,
+)
+from multibot_rewrite.naming import Naming, make_naming
+
+
+class FleetPlan(NamedTuple):
+    """A fleet file, its rewritten robots, and the fleet of all of them; ``jobs`` are the
+    descriptions as they were read."""
+
+    file: FleetFile
+    robots: tuple[RewrittenRobot, ...]
+    fleet: Fleet
+    jobs: Mapping[Sources, Jobs]
+
+
+def plan_fleet(
+    file: FleetFile, also: Sequence[str] = (), jobs: Mapping[Sources, Jobs] | None = None
+) -> FleetPlan:
+    """Rewrite every robot's description and make the table of the whole fleet.
+
+    ``also`` are more nodes that every robot runs; ``jobs`` are the descriptions if they have been
+    read already. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    """
+    with uncollected():
+        naming = make_naming(**file.policy)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary)
+        robots = rewrite_robots(file.robots, read)
+        return FleetPlan(file, tuple(robots), _fleet(file, robots, naming, also), read)
+
+
+def _fleet(
+    file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming, also: Sequence[str]
+) -> Fleet:
+    stacks: dict[tuple[str, ...], list[RewrittenRobot]] = {}
+    for robot in robots:
+        stacks.setdefault(robot.spec.stacks, []).append(robot)
+    fleets = [
+        assemble([it.member for it in group], facts_of((*names, *also), file.nodes or None), naming)
+        for names, group in stacks.items()
+    ]
+    return merge(fleets)

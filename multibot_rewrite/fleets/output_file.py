@@ -1,0 +1,33 @@
+"""A file that a build writes, and what each step of a build yields: files and findings."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import NamedTuple, TypeAlias
+
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.model import Finding
+from multibot_rewrite.sources.read import read_file
+
+
+class OutputFile(NamedTuple):
+    """A file to be written: its path below the output folder, its bytes, the files it is made from."""
+
+    path: str
+    data: bytes
+    sources: tuple[str, ...] = ()
+
+
+FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
+
+
+def path_for(robot: RewrittenRobot, source: str) -> str:
+    """Where the robot's version of a source file goes: ``robot1/params.yaml``."""
+    return f"{robot.spec.name}/{os.path.basename(source)}"
+
+
+def yaml_of(path: str) -> YamlText:
+    """Read a YAML file; raises InputError as ``read_yaml``."""
+    return read_yaml(read_file(path), path)

@@ -1,0 +1,83 @@
+"""Files that a build writes -> the values in them, and the source line of each line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import yaml
+from lxml import etree
+
+from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml
+from multibot_rewrite.model import InputError
+from multibot_rewrite.sources.read import read_file
+
+# Text for people and for shells.
+_LINES = (".md", ".py", ".sh")
+
+
+class OutputText(NamedTuple):
+    """A file of the output: its path below the folder, its text, what it was made from."""
+
+    path: str
+    text: str
+    sources: tuple[str, ...]
+
+
+class OutputValue(NamedTuple):
+    """One value of a file; ``key`` is its key or attribute; a key is its own key."""
+
+    text: str
+    key: str
+    is_key: bool
+    line: int
+
+
+def values_in(file: OutputText) -> Iterator[OutputValue]:
+    """Every scalar of YAML, every attribute and text of XML, else every line."""
+    if file.path.endswith(_LINES):
+        yield from (
+            OutputValue(it, "", False, at) for at, it in enumerate(file.text.splitlines(), 1)
+        )
+    elif file.text.lstrip("\ufeff \t\r\n").startswith("<"):
+        yield from _of_xml(file)
+    else:
+        root = read_yaml(file.text.encode(), file.path).root
+        yield from _of_yaml(root, "") if root else ()
+
+
+def _of_xml(file: OutputText) -> Iterator[OutputValue]:
+    parser = etree.XMLParser(resolve_entities=False, huge_tree=True)
+    for element in etree.fromstring(file.text.encode(), parser).iter(etree.Element):
+        line = int(str(element.sourceline or 1))
+        for key, text in element.attrib.items():
+            yield OutputValue(str(text), str(key), False, line)
+        if element.text and element.text.strip():
+            yield OutputValue(element.text.strip(), str(element.tag), False, line)
+
+
+def _of_yaml(node: yaml.Node, key: str) -> Iterator[OutputValue]:
+    if isinstance(node, yaml.ScalarNode):
+        yield OutputValue(node.value, key, False, line_of(node))
+    elif isinstance(node, yaml.SequenceNode):
+        for item in node.value:
+            yield from _of_yaml(item, key)
+    for name, value in pairs(node):
+        yield OutputValue(name.value, name.value, True, line_of(name))
+        yield from _of_yaml(value, name.value)
+
+
+def line_in_source(file: OutputText, line: int) -> tuple[str, int]:
+    """The source of a file, and its line that a line of the file was made from."""
+    from difflib import SequenceMatcher
+
+    source = file.sources[0]
+    try:
+        old = read_file(source).decode("utf-8", "replace").splitlines()
+    except InputError:
+        return source, 1
+    new = file.text.splitlines()
+    for _, start, end, first, last in SequenceMatcher(None, old, new, False).get_opcodes():
+        if first < line <= last:
+            return source, max(1, min(start + line - first, end))
+    return source, 1

@@ -1,0 +1,124 @@
+"""A rewritten parameter file -> the parameters of one node, with the types that rcl gives them.
+
+Sources: rcl_yaml_param_parser ``parse.c`` (``get_value``); rclcpp and rclpy for which sections match.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+
+import yaml
+
+from multibot_rewrite.companions.params.sections import pattern_of, raw_sections
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
+from multibot_rewrite.model import InputError
+
+Scalar = bool | int | float | str
+Value = Scalar | list[Scalar]
+# rcl compares these words, in these capitalisations only.
+_TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
+_FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
+_DOTTED = re.compile(r"[+-]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+# strtoll with base 0, and strtod: what they take whole.
+_INTEGER = re.compile(r"([+-]?)(?:(0[xX][0-9a-fA-F]+)|(0[0-7]*)|([1-9][0-9]*))")
+_FLOAT = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_HEX_FLOAT = re.compile(
+    r"[+-]?0[xX](?:[0-9a-fA-F]+\.?[0-9a-fA-F]*|\.[0-9a-fA-F]+)(?:[pP][+-]?[0-9]+)?"
+)
+_NO_NUMBER = re.compile(r"([+-]?(?:inf|infinity|nan))(?:\([A-Za-z0-9_]*\))?", re.IGNORECASE)
+_STRING = "tag:yaml.org,2002:str"
+_SMALLEST = 2.2250738585072014e-308
+
+
+def node_parameters(document: YamlText, full: str) -> dict[str, Value]:
+    """The parameters of the node with this full name, by their dotted names.
+
+    Wildcard sections count as in rcl: in the order of their first appearance, a later one wins.
+    Raises InputError for a value that rcl rejects.
+    """
+    sections: dict[str, dict[str, Value]] = {}
+    for found in raw_sections(document):
+        if re.fullmatch(pattern_of(found.path), full):
+            sections.setdefault(found.path, {}).update(_flat(document, found.body, ""))
+    return {name: value for section in sections.values() for name, value in section.items()}
+
+
+def check_values(document: YamlText) -> None:
+    """Read every value of a parameter file; InputError for one that rcl rejects."""
+    for found in raw_sections(document):
+        for _ in _flat(document, found.body, ""):
+            pass
+
+
+def exact_nodes(document: YamlText) -> list[str]:
+    """Full names of the nodes that have a section of their own."""
+    paths = dict.fromkeys(found.path for found in raw_sections(document))
+    return [f"/{path}" for path in paths if "*" not in path]
+
+
+def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Value]]:
+    for key, node in pairs(body):
+        name = f"{above}{key.value}"
+        if isinstance(node, yaml.MappingNode):
+            yield from _flat(document, node, f"{name}.")
+        else:
+            yield name, _value(document, node)
+
+
+def _value(document: YamlText, node: yaml.Node) -> Value:
+    if isinstance(node, yaml.ScalarNode):
+        return _scalar(document, node)
+    assert isinstance(node, yaml.SequenceNode)
+    place = f"{document.file}:{line_of(node)}"
+    if not all(isinstance(item, yaml.ScalarNode) for item in node.value):
+        raise InputError(f"{place}: a list holds a list or a map; rcl takes single values only")
+    items = [_scalar(document, item) for item in node.value]
+    if len({type(item) for item in items}) > 1:
+        raise InputError(
+            f"{place}: the list mixes types, which rcl rejects; write all as floats, or quote all"
+        )
+    return items
+
+
+def _scalar(document: YamlText, node: yaml.ScalarNode) -> Scalar:
+    tagged = document.text.startswith("!", node.start_mark.index) and node.tag == _STRING
+    if tagged or node.style in ("'", '"'):
+        return str(node.value)
+    if not node.value:
+        raise InputError(
+            f'{document.file}:{line_of(node)}: the value is missing; write "" for an empty string'
+        )
+    return typed(node.value)
+
+
+def typed(text: str) -> Scalar:
+    """The value that rcl reads from an unquoted scalar."""
+    if text in _TRUE or text in _FALSE:
+        return text in _TRUE
+    whole = _INTEGER.fullmatch(text)
+    if whole:
+        _, hexadecimal, octal, _ = whole.groups()
+        number = int(text, 16 if hexadecimal else 8 if octal else 10)
+        if -(2**63) <= number < 2**63:
+            return number
+    return _float(text)
+
+
+def _float(text: str) -> float | str:
+    if _DOTTED.fullmatch(text):
+        return float(text.replace(".", "", 1))
+    named = _NO_NUMBER.fullmatch(text)
+    if named and (text[-1] != ")" or "n(" in text.lower()):
+        return float(named[1])
+    if _HEX_FLOAT.fullmatch(text):
+        number = float.fromhex(text)
+    elif _FLOAT.fullmatch(text):
+        number = float(text)
+    else:
+        return text
+    # strtod reports what does not fit into a double; rcl then takes the text.
+    lost = math.isinf(number) or 0 < abs(number) < _SMALLEST
+    lost = lost or (number == 0 and any(it in "123456789" for it in text.lower().partition("e")[0]))
+    return text if lost else number

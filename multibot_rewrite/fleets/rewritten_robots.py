@@ -1,0 +1,124 @@
+"""The robots of a fleet file with their rewritten descriptions; one parse for each source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite import pipeline
+from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.fleets.fleet import Member, member
+from multibot_rewrite.fleets.fleet_file import RobotSpec
+from multibot_rewrite.job import Job, read_job
+from multibot_rewrite.library import Rewrite, rewrite_job
+from multibot_rewrite.model import Finding
+from multibot_rewrite.naming import Naming
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.steps.collect import NOTHING
+
+# Kinds that are ROS names and get the namespace; the others get the tag.
+GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
+# All that decides a robot's texts besides its names: description, SRDF, xacro arguments.
+Sources = tuple[str, str, tuple[tuple[str, str], ...]]
+
+
+class Jobs(NamedTuple):
+    """The description and SRDF to rewrite for robots of the same sources."""
+
+    description: Job
+    srdf: Job | None
+
+
+class RewrittenRobot(NamedTuple):
+    """A robot with its rewritten description and SRDF (empty if it has none).
+
+    ``names`` is the rename map of frames and joints, ``topics`` that of ROS names; ``semantics`` is
+    what its SRDF declares, not rewritten. ``findings`` are warnings about the source.
+    """
+
+    spec: RobotSpec
+    description: bytes
+    srdf: bytes
+    names: RenameMap
+    topics: RenameMap
+    semantics: Declared
+    member: Member
+    findings: tuple[Finding, ...]
+
+
+def read_jobs(
+    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str]
+) -> dict[Sources, Jobs]:
+    """Read every description and SRDF once; raises as ``read_job``."""
+    found: dict[Sources, Jobs] = {}
+    for it in robots:
+        if _sources(it) not in found:
+            more = it.arguments, vocabulary
+            description = read_job(it.description, naming, None, *more)
+            srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
+            found[_sources(it)] = Jobs(description, srdf)
+    return found
+
+
+def _sources(robot: RobotSpec) -> Sources:
+    return robot.description, robot.srdf, tuple(robot.arguments.items())
+
+
+def rewrite_robots(
+    robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]
+) -> list[RewrittenRobot]:
+    """Rewrite every robot's description and SRDF, in the order of the robots.
+
+    Raises as ``rewrite_all``.
+    """
+    groups: dict[Sources, list[RobotSpec]] = {}
+    for robot in robots:
+        groups.setdefault(_sources(robot), []).append(robot)
+    made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
+    found = {it.spec.name: it for it in made}
+    return [found[robot.name] for robot in robots]
+
+
+def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
+    naming = jobs.description.naming
+    robots = [robot.namespace for robot in group]
+    texts = rewrite_job(jobs.description, robots)
+    semantics: Iterable[Rewrite | None] = [None] * len(group)
+    if jobs.srdf:
+        semantics = rewrite_job(jobs.srdf, robots)
+    for robot, text, semantic in zip(group, texts, semantics, strict=True):
+        data = _final(text, robot, naming)
+        declared = text.template.inventory.declared
+        yield RewrittenRobot(
+            robot,
+            data,
+            _final(semantic, robot, naming) if semantic else b"",
+            RenameMap(declared, naming, robot.tag),
+            RenameMap(declared, naming, robot.namespace),
+            semantic.template.inventory.declared if semantic else NOTHING,
+            member(text, data, robot.tag),
+            (*text.findings, *(semantic.findings if semantic else ())),
+        )
+
+
+def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:
+    """The description of a robot; if its namespace and tag differ, two rewrites, each proved."""
+    if robot.tag == robot.namespace:
+        return text.data
+    template = text.template
+    source, file = template.inventory.document.source, template.inventory.document.file
+    data = _half(source, file, robot.namespace, _kinds(naming, graph=True), template)
+    return _half(data, file, robot.tag, _kinds(naming, graph=False), template)
+
+
+def _kinds(naming: Naming, graph: bool) -> Naming:
+    kept = {kind: it for kind, it in naming.separators.items() if (kind in GRAPH_KINDS) == graph}
+    return naming._replace(separators=kept)
+
+
+def _half(
+    source: bytes, file: str, robot: str, naming: Naming, template: pipeline.Template
+) -> bytes:
+    # The second rewrite finds names that the first one has rewritten for the other word.
+    prepared = pipeline.prepare(source, file, naming, template.tree, template.outside)
+    return next(pipeline.render(prepared, [robot], again=True))

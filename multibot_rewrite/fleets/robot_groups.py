@@ -1,0 +1,42 @@
+"""Robots that share everything but their names: what they have in common is read and planned once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.moveit.rewrite import with_srdf
+from multibot_rewrite.fleets.fleet import facts_of
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.remap.records import NodeFacts
+
+
+class RobotGroup(NamedTuple):
+    """Robots of one description, with the same nodes and companion files."""
+
+    robots: tuple[RewrittenRobot, ...]
+    facts: tuple[NodeFacts, ...]
+    context: Context
+
+    @property
+    def companions(self) -> dict[str, tuple[str, ...]]:
+        """The companion files that all robots of the group have, by kind."""
+        return dict(self.robots[0].spec.companions)
+
+
+def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
+    """The groups of a fleet, in the order of their first robots."""
+    groups: dict[object, list[RewrittenRobot]] = {}
+    for robot in plan.robots:
+        spec = robot.spec
+        files = tuple(spec.companions.items())
+        key = spec.description, spec.srdf, tuple(spec.arguments.items()), spec.stacks, files
+        groups.setdefault(key, []).append(robot)
+    for robots in groups.values():
+        facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None)
+        declared, naming = robots[0].names.declared, plan.fleet.naming
+        context = make_context(declared, naming, facts, plan.file.distro)
+        context = with_srdf(context, robots[0].semantics)
+        yield RobotGroup(tuple(robots), facts, context)

@@ -1,0 +1,76 @@
+"""The RViz configs of a fleet: what each window shows, and the command that opens it."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.companions.names.robot_topics import fleet_topics
+from multibot_rewrite.companions.rviz.rewrite import (
+    RvizRobot,
+    RvizText,
+    rewrite_rviz,
+    start_command,
+)
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, yaml_of
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.start_poses import world_of
+from multibot_rewrite.model import Finding
+
+
+class RvizOutput(NamedTuple):
+    """The results of one RViz config, whose path is ``source``."""
+
+    source: str
+    windows: tuple[RvizText, ...]
+    findings: tuple[Finding, ...]
+
+
+def rviz_outputs(plan: FleetPlan, each: Iterable[FleetPlan]) -> Iterator[RvizOutput]:
+    """The windows by the config they are made from; ``each`` is every robot as a fleet of its own.
+
+    Raises InputError for a config that cannot be read or rewritten.
+    """
+    robots_of: dict[str, list[RewrittenRobot]] = {}
+    for robot in plan.robots:
+        for path in robot.spec.companions.get("rviz", ()):
+            robots_of.setdefault(path, []).append(robot)
+    own = {it.robots[0].spec.name: it for it in each}
+    world = world_of(plan.file, plan.fleet.naming)
+    for path, robots in robots_of.items():
+        shown = [_as_rviz_robot(own[robot.spec.name]) for robot in robots]
+        yield RvizOutput(path, *rewrite_rviz(yaml_of(path), shown, world=world))
+
+
+def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
+    """The one robot of a plan as RViz shows it."""
+    (robot,) = plan.robots
+    spec = robot.spec
+    names = robot.names._replace(robot=spec.tag)
+    topics = robot.topics._replace(robot=spec.namespace)
+    known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
+    return RvizRobot(spec.name, names, topics, spec.colour, known)
+
+
+def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
+    """The files of the windows, and what was found."""
+    for source, windows, findings in configs:
+        yield from findings
+        yield from (OutputFile(_path(it, source), it.text.encode(), (source,)) for it in windows)
+
+
+def rviz_commands(configs: Iterable[RvizOutput]) -> list[str]:
+    """The line that opens each window."""
+    return [
+        shlex.join(start_command(window, _path(window, it.source)))
+        for it in configs
+        for window in it.windows
+    ]
+
+
+def _path(window: RvizText, source: str) -> str:
+    name = os.path.basename(source)
+    return f"{window.robot}/{name}" if window.robot else name

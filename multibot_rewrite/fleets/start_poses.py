@@ -1,0 +1,179 @@
+"""The start poses of a fleet: a static transform for each robot, or an initial pose for amcl.
+
+Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_initial_pose``).
+"""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.companions.rviz.rewrite import world_frame
+from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.naming import Naming
+from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
+from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.steps.collect import Inventory
+
+NODE = "start_pose"
+AMCL = "amcl"
+ORIGIN = Pose()
+# Elements of gz-sim's drive and odometry systems that hold the odometry frame.
+ODOMETRY = ("frame_id", "odom_frame")
+
+
+class StaticTransform(NamedTuple):
+    """What a robot's ``static_transform_publisher`` publishes, and how it is named and started."""
+
+    robot: str
+    parent: str
+    child: str
+    pose: Pose
+    namespace: str
+    node: str
+    remaps: tuple[tuple[str, str], ...]
+
+
+class InitialPose(NamedTuple):
+    """The start pose as parameters of the localisation ``node`` (its name in the stack)."""
+
+    robot: str
+    node: str
+    values: Mapping[str, object]
+
+
+class StartPoses(NamedTuple):
+    """The start poses of a fleet's robots, and findings about robots without one."""
+
+    transforms: tuple[StaticTransform, ...]
+    initial: tuple[InitialPose, ...]
+    findings: tuple[Finding, ...]
+
+
+def start_poses(plan: FleetPlan) -> StartPoses:
+    """A transform from the world for each robot with a pose that no other node localises."""
+    found: list[object] = []
+    for robot in plan.robots:
+        if robot.spec.pose is not None:
+            found += _place(plan, robot, robot.spec.pose)
+    return StartPoses(
+        tuple(it for it in found if isinstance(it, StaticTransform)),
+        tuple(it for it in found if isinstance(it, InitialPose)),
+        tuple(it for it in found if isinstance(it, Finding)),
+    )
+
+
+def world_of(file: FleetFile, naming: Naming) -> str:
+    """The shared frame that poses are in."""
+    return file.world or world_frame(naming)
+
+
+def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[object]:
+    naming, name = plan.fleet.naming, robot.spec.namespace
+    world = world_of(plan.file, naming)
+    if not world:
+        hint = "set world: or shared_frames:"
+        yield _finding(robot, "MF704", "it has a pose, but no frame is shared by all robots", hint)
+        return
+    sent = _sent(plan, robot)
+    locators = [node for node, edges in sent.items() if any(_locates(it, naming) for it in edges)]
+    if AMCL in locators:
+        yield InitialPose(name, AMCL, initial_pose(pose))
+        return
+    if locators:
+        nodes = " and ".join(locators)
+        what = f"its pose is not published, because {nodes} already publishes where it is"
+        yield _finding(robot, "MF701", what, "a second parent would make the frame jump")
+        return
+    roots = _roots(sent, naming)
+    if len(roots) != 1:
+        frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
+        hint = "connect them" if roots else "its description has the world as parent already"
+        what = f"its pose is not published, because it has {frames} instead of one"
+        yield _finding(robot, "MF702", what, hint)
+        return
+    local = AMCL in sent
+    if local:
+        yield InitialPose(name, AMCL, initial_pose(pose))
+    yield static_transform(name, world, roots[0], ORIGIN if local else pose, naming)
+
+
+def static_transform(
+    robot: str, parent: str, child: str, pose: Pose, naming: Naming
+) -> StaticTransform:
+    """The transform of a robot, published by a node with the robot's own name."""
+    namespace, node = placed(robot, NODE, naming)
+    target = target_of("/tf_static", TOPIC, robot, naming)
+    remaps = (("/tf_static", target),) if target else ()
+    return StaticTransform(robot, parent, child, pose, namespace, node, remaps)
+
+
+def command(it: StaticTransform) -> str:
+    """The command that publishes a transform."""
+    return shlex.join(["ros2", "run", "tf2_ros", "static_transform_publisher", *arguments(it)])
+
+
+def arguments(it: StaticTransform) -> list[str]:
+    """What follows ``static_transform_publisher``; values may be negative, names come last."""
+    words = [word for key, value in it.pose._asdict().items() for word in (f"--{key}", str(value))]
+    words += ["--frame-id", it.parent, "--child-frame-id", it.child]
+    rules = [f"__ns:={it.namespace}"] if it.namespace != "/" else []
+    rules += [f"__node:={it.node}", *(f"{source}:={target}" for source, target in it.remaps)]
+    return [*words, "--ros-args", *(text for rule in rules for text in ("-r", rule))]
+
+
+def initial_pose(pose: Pose) -> dict[str, object]:
+    """The parameters for amcl's start pose; they count only with ``set_initial_pose``."""
+    values = {f"initial_pose.{key}": getattr(pose, key) for key in ("x", "y", "z", "yaw")}
+    return {"set_initial_pose": True, **values}
+
+
+def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
+    """The transforms of each node of a robot; the description's tree has an empty name."""
+    name, inventory = robot.spec.namespace, robot.member.inventory
+    sent = {node: [*edges] for (own, node), edges in plan.fleet.edges.items() if own == name}
+    tree = list(description_edges(inventory))
+    bare = set(inventory.declared["link"]) - {edge.child for edge in tree}
+    odometry = list(_gz_odometry(inventory, robot.spec.model))
+    base = next(iter(sorted(bare)), "")
+    return {
+        **sent,
+        "": [*tree, *(Edge(it, base, False) for it in odometry if base)]
+        or [Edge(link, link, True) for link in bare],
+    }
+
+
+def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
+    """The odometry frames of gz-sim's systems, which a bridge brings to tf."""
+    for host in inventory.hosts:
+        name = host.node.rewriter.names[0] if host.node.rewriter else ""
+        topics = bridge_data()["plugins"].get(name, ())
+        if any(row[2] == TF_TYPE for row in topics):
+            given = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)
+            yield next(filter(None, given), f"{model}/odom")
+            return
+
+
+def _locates(edge: Edge, naming: Naming) -> bool:
+    """Does it place a robot's frame in a shared frame?"""
+    shared = naming.shared_frames
+    return not edge.static and edge.parent in shared and edge.child not in shared
+
+
+def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
+    """The robot's own frames without a parent."""
+    edges = [edge for own in sent.values() for edge in own]
+    children = {edge.child for edge in edges if edge.parent != edge.child}
+    parents = dict.fromkeys(edge.parent for edge in edges)
+    return [it for it in parents if it not in children and it not in naming.shared_frames]
+
+
+def _finding(robot: RewrittenRobot, code: str, what: str, hint: str) -> Finding:
+    spec = robot.spec
+    return Finding(code, WARNING, f"robot {spec.name!r}: {what}", hint, spec.file, spec.line, 1)

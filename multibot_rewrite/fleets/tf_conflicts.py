@@ -1,0 +1,150 @@
+"""Frames that two nodes publish: listeners see them jump between two places.
+
+What nodes publish is read from the written parameter files, else from their defaults.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+from multibot_rewrite.companions.params.sections import PARAMETERS, raw_sections
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
+from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_values import OutputText, line_in_source
+from multibot_rewrite.fleets.rcl_parameters import node_parameters
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.graph.expectation import tf_topic
+from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
+from multibot_rewrite.remap.records import NodeFacts
+
+DESCRIPTION = "the description"
+# Parameters that stop a node from publishing transforms.
+SWITCHES = ("publish_tf", "tf_broadcast", "enable_odom_tf", "publish_odom_tf", "broadcast_tf")
+# robot_localization: world_frame is one of the other two.
+WORLD, MAP, ODOM = "world_frame", "map_frame", "odom_frame"
+
+
+class SentTransform(NamedTuple):
+    """A transform, and the node that publishes it: its name in the stack and its full name."""
+
+    edge: Edge
+    by: str
+    full: str
+
+
+Parsed = Sequence[tuple[OutputText, YamlText]]
+
+
+def tf_conflicts(plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText]) -> Iterator[Finding]:
+    """Frames that two nodes of a robot publish, or two robots on one topic."""
+    for group in group_robots(plan):
+        robot = group.robots[0]
+        parsed = list(_parsed(it for it in files if it.path.startswith(f"{robot.spec.name}/")))
+        yield from _of_two_nodes(robot, list(_sent(fleet, group, parsed)), parsed)
+    yield from _of_two_robots(plan, fleet)
+
+
+def _parsed(files: Iterable[OutputText]) -> Iterator[tuple[OutputText, YamlText]]:
+    for file in files:
+        if PARAMETERS in file.text:
+            yield file, read_yaml(file.text.encode(), file.path)
+
+
+def _of_two_nodes(
+    robot: RewrittenRobot, sent: Sequence[SentTransform], files: Parsed
+) -> Iterator[Finding]:
+    first: dict[str, SentTransform] = {}
+    reported: set[str] = set()
+    for it in sent:
+        child = it.edge.child
+        other = first.setdefault(child, it)
+        if other.by == it.by or child in reported:
+            continue
+        reported.add(child)
+        apart = other.edge.parent != it.edge.parent
+        below = f" below {other.edge.parent} and {it.edge.parent}" if apart else ""
+        both = f"{other.by} and {it.by}"
+        message = f"frame {child} of {robot.spec.name} is published{below} by both {both}"
+        hint = "only one node may publish a frame: remove one, or switch its transform off"
+        yield Finding("MF607", WARNING, message, hint, *_place(robot, it, files), 1)
+
+
+def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[str, int]:
+    """The node's section in a source, else the robot in the fleet file."""
+    for file, document in files:
+        for found in raw_sections(document):
+            if file.sources and f"/{found.path}" == sent.full:
+                return line_in_source(file, line_of(found.keys[0]))
+    return robot.spec.file, robot.spec.line
+
+
+def _sent(fleet: Fleet, group: RobotGroup, files: Parsed) -> Iterator[SentTransform]:
+    robot = group.robots[0]
+    name = robot.spec.namespace
+    tree = list(description_edges(robot.member.inventory))
+    yield from (SentTransform(edge, DESCRIPTION, "") for edge in tree)
+    facts = {it.name: it for it in group.facts if it.sends}
+    full = {
+        it.node: f"{it.namespace.rstrip('/')}/{it.name}"
+        for it in fleet.table.nodes
+        if it.robot == name
+    }
+    for (owner, node), edges in fleet.edges.items():
+        if owner == name:
+            known = facts.get(node)
+            sent = _as_given(known, _given(files, full[node]), edges) if known else edges
+            yield from (
+                SentTransform(it, node, full.get(node, "")) for it in sent if it not in tree
+            )
+
+
+def _as_given(node: NodeFacts, given: Mapping[str, Any], edges: Iterable[Edge]) -> list[Edge]:
+    """What a node publishes with these parameters."""
+    if any(given.get(it) is False for it in SWITCHES):
+        return []
+    defaults = list(edges)
+    pairs = node.sends
+    if WORLD in given and given[WORLD] == given.get(MAP):
+        pairs = ((MAP, ODOM),)
+    if len(pairs) != len(defaults):
+        return defaults
+    return [
+        Edge(str(given.get(above, it.parent)), str(given.get(below, it.child)), it.static)
+        for (above, below), it in zip(pairs, defaults, strict=True)
+    ]
+
+
+def _given(files: Parsed, full: str) -> dict[str, Any]:
+    """The parameters of a node."""
+    found: dict[str, Any] = {}
+    for _, document in files:
+        # Another step reports values that rcl rejects.
+        with suppress(InputError):
+            found.update(node_parameters(document, full))
+    return found
+
+
+def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
+    """Shared frames that more than one robot publishes on one topic."""
+    naming = fleet.naming
+    first: dict[tuple[str, str], str] = {}
+    reported: set[str] = set()
+    specs = {it.spec.namespace: it.spec for it in plan.robots}
+    # If a description starts with the world, the drive looks as if it moved the world.
+    links = {link for it in plan.robots for link in it.member.inventory.declared["link"]}
+    for (robot, node), edges in fleet.edges.items():
+        for edge in edges:
+            other = first.setdefault((tf_topic(robot, naming), edge.child), robot)
+            if other == robot or edge.child in reported or edge.child in links:
+                continue
+            reported.add(edge.child)
+            robots = f"{other} and {robot} ({node})"
+            message = f"frame {edge.child} is published by two robots on one topic: {robots}"
+            hint = "remove it from shared_frames, or choose a layout with a tf topic per robot"
+            spec = specs[robot]
+            yield Finding("MF607", ERROR, message, hint, spec.file, spec.line, 1)

@@ -1,0 +1,190 @@
+"""Checks of one value in a written file: another robot's name, a doubled prefix, a wrong tf topic."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import pairwise
+from typing import NamedTuple
+
+from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.fleets.output_values import OutputValue
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.graph.expectation import USUAL_FRAMES
+from multibot_rewrite.model import ERROR, WARNING
+from multibot_rewrite.naming import TF_TOPICS, Naming
+
+TF = tuple(f"/{it}" for it in TF_TOPICS)
+# Parameters and properties that make nodes put a prefix before frames.
+PREFIXES = frozenset({"frame_prefix", "tf_prefix", "TF Prefix"})
+ENABLES = "tf_frame_prefix_enable"
+TOKEN = re.compile(r"[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
+# Keys that name one frame.
+_FRAME_KEY = re.compile(r"(?:^|_)(?:frame|frame_id|link)$")
+_BETWEEN = "/_-."
+# Values that are not names, such as URLs, substitutions and paths.
+_NOT_A_NAME = re.compile(
+    r"://|\$\(|\$\{|\.(?:yaml|rviz|urdf|xml|stl|dae|obj|world|sdf|pgm|png|so)\b"
+)
+
+
+class RobotNames(NamedTuple):
+    """The names of one robot: ``words`` stand for the robot itself; ``right`` are its correct names,
+    without a leading slash; ``bare`` maps names of its sources to what they may become."""
+
+    robot: RewrittenRobot
+    words: tuple[str, ...]
+    right: frozenset[str]
+    bare: Mapping[str, frozenset[str]]
+
+
+class ValueInFile(NamedTuple):
+    """A value of a robot's file, the robot's names, and the words of the other robots."""
+
+    own: RobotNames
+    others: Mapping[str, str]
+    naming: Naming
+    value: OutputValue
+
+
+class Draft(NamedTuple):
+    """A finding without its place."""
+
+    code: str
+    level: str
+    message: str
+    hint: str
+
+
+Check = Callable[[ValueInFile], Iterator[Draft]]
+
+
+def check_value(place: ValueInFile) -> Iterator[Draft]:
+    """Everything that is wrong with one value."""
+    if _NOT_A_NAME.search(place.value.text):
+        return
+    for check in _CHECKS:
+        yield from check(place)
+
+
+def twice(token: str, words: Iterable[str]) -> str:
+    """The word of a robot that a name holds twice in a row; empty for none."""
+    for word in words:
+        if f"{word}/{word}" in token or f"{word}_{word}" in token:
+            repeated = re.compile(f"(?<![A-Za-z0-9])({re.escape(word)})[/_]\\1(?![A-Za-z0-9])")
+            if repeated.search(token):
+                return word
+    return ""
+
+
+def _tokens(place: ValueInFile) -> Iterator[str]:
+    """Words of a value that may be names and are not correct names of the robot."""
+    for token in TOKEN.findall(place.value.text):
+        if token.strip("/") not in place.own.right:
+            yield token
+
+
+def _of_another_robot(place: ValueInFile) -> Iterator[Draft]:
+    name = place.own.robot.spec.name
+    for token in _tokens(place):
+        robot = _other_robot(token.strip("/"), place)
+        if robot:
+            message = f"{token} belongs to robot {robot}, but this is a file of robot {name}"
+            hint = "remove the robot name from the source; the build adds it for each robot"
+            yield Draft("MF602", ERROR, message, hint)
+
+
+def _other_robot(token: str, place: ValueInFile) -> str:
+    """Another robot whose word a name begins or ends with; empty for none."""
+    words = token.split("/")
+    ends = ["/".join(words[:at]) for at in range(1, len(words))]
+    ends += ["/".join(words[at:]) for at in range(1, len(words))]
+    ends += [word for before, word in pairwise(words) if before == "model"]
+    for separator in ("_", "/"):
+        head, found, name = token.partition(separator)
+        ends += [head] if found and name in place.own.bare else []
+        name, found, tail = token.rpartition(separator)
+        ends += [tail] if found and name in place.own.bare else []
+    return next((place.others[it] for it in ends if it in place.others), "")
+
+
+def _doubled(place: ValueInFile) -> Iterator[Draft]:
+    for token in _tokens(place):
+        word = twice(token, place.own.words)
+        if word and not any(word in it.split("/") for it in place.own.bare):
+            hint = "remove it from the source; the build adds it once"
+            yield Draft("MF603", ERROR, f"{token} holds {word} twice", hint)
+
+
+def _prefix_at_run_time(place: ValueInFile) -> Iterator[Draft]:
+    """A parameter that makes a node add the prefix a second time."""
+    key, text = place.value.key, place.value.text.strip()
+    if not place.naming.layout.frames or place.value.is_key:
+        return
+    prefix = key in PREFIXES and text not in ("", "~", "null", "/")
+    if prefix or (key == ENABLES and text.lower() == "true"):
+        message = f"{key}: {text} adds a prefix to frames that already have the robot's name"
+        yield Draft("MF603", ERROR, message, 'write ""' if key in PREFIXES else "write false")
+
+
+def _wrong_separator(place: ValueInFile) -> Iterator[Draft]:
+    word, bare = place.own.robot.spec.tag, place.own.bare
+    for token in (it for it in _tokens(place) if not it.startswith("/")):
+        for rest in _without(token, word):
+            name = rest.strip(_BETWEEN)
+            right = bare.get(name, frozenset())
+            if right and not _is_a_new_frame(place, token, name):
+                message = f"{token} should be {' or '.join(sorted(right))}"
+                hint = "remove the robot name from the source; the build adds it"
+                yield Draft("MF604", WARNING, message, hint)
+                break
+
+
+def _without(token: str, word: str) -> Iterator[str]:
+    if token.startswith(word):
+        yield token[len(word) :].lstrip(_BETWEEN)
+    if token.endswith(word):
+        yield token[: -len(word)].rstrip(_BETWEEN)
+
+
+def _is_a_new_frame(place: ValueInFile, token: str, name: str) -> bool:
+    """Is it named as the robot's frames are, but not declared? Another node may publish it."""
+    names = place.own.robot.names
+    if name in USUAL_FRAMES or any(name in names.declared.get(it, ()) for it in ("link", "frame")):
+        return False
+    return spell(names._replace(robot=place.own.robot.spec.tag), "frame", name) == token
+
+
+def _bare_frame(place: ValueInFile) -> Iterator[Draft]:
+    text, key = place.value.text, place.value.key
+    if place.value.is_key or not _FRAME_KEY.search(key.rpartition(".")[2]):
+        return
+    if text in place.own.bare and text not in place.own.right:
+        right = " or ".join(sorted(place.own.bare[text]))
+        message = f"{key} is {text}, without the robot's name that other frames have"
+        yield Draft("MF605", WARNING, message, f"if it is a frame of the robot, write {right}")
+
+
+def _tf_topic(place: ValueInFile) -> Iterator[Draft]:
+    value, naming = place.value, place.naming
+    if value.is_key or value.key.startswith("gz_"):
+        return
+    namespace = place.own.robot.spec.namespace
+    own = {f"/{namespace}{it}" for it in TF} | {f"{it}/{namespace}" for it in TF}
+    if naming.layout.tf_per_robot and value.text in TF:
+        message = f"{value.text} is shared by all robots, but in this layout each robot has its own"
+        hint = f"write {value.text[1:]}, or choose layout frames-per-robot"
+        yield Draft("MF606", WARNING, message, hint)
+    if not naming.layout.tf_per_robot and value.text in own:
+        message = f"{value.text} is for one robot, but in this layout all robots share /tf"
+        yield Draft("MF606", WARNING, message, "write /tf, or choose layout both")
+
+
+_CHECKS: tuple[Check, ...] = (
+    _of_another_robot,
+    _doubled,
+    _prefix_at_run_time,
+    _wrong_separator,
+    _bare_frame,
+    _tf_topic,
+)

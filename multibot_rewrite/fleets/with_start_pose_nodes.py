@@ -1,0 +1,58 @@
+"""The fleet with the nodes that publish start poses: they are planned like any other node."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.start_poses import NODE, start_poses
+from multibot_rewrite.graph.transforms import Edge
+from multibot_rewrite.remap.bridged_topics import TF_TYPE
+from multibot_rewrite.remap.records import (
+    PUBLISHES,
+    TOPIC,
+    Endpoint,
+    NodeFacts,
+    NodeTable,
+    ResolvedName,
+    Table,
+)
+from multibot_rewrite.remap.table import joined, names_of, node_table
+
+STATIC = "/tf_static"
+POSE_NODE = NodeFacts(NODE, "tf2_ros", (Endpoint(TOPIC, PUBLISHES, STATIC, TF_TYPE),))
+
+
+def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
+    """The planned fleet with a static transform publisher for each robot that needs one."""
+    fleet = plan.fleet
+    held = [it for one in split_per_robot(plan) for it in start_poses(one).transforms]
+    if not held:
+        return fleet
+    tables = [node_table(it.robot, POSE_NODE, fleet.naming) for it in held]
+    names = tuple(names_of([(POSE_NODE, table) for table in tables]))
+    edges = {(it.robot, NODE): [Edge(it.parent, it.child, True)] for it in held}
+    more = Table(fleet.table.layout, tuple(tables), names, ())
+    return fleet._replace(
+        table=joined(fleet.table, more, fleet.naming), edges={**fleet.edges, **edges}
+    )
+
+
+def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
+    """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
+    fleet = plan.fleet
+    nodes: dict[str, list[NodeTable]] = defaultdict(list)
+    names: dict[str, list[ResolvedName]] = defaultdict(list)
+    for node in fleet.table.nodes:
+        nodes[node.robot].append(node)
+    for name in fleet.table.names:
+        names[name.robot].append(name)
+    edges: dict[str, dict[tuple[str, str], Sequence[Edge]]] = defaultdict(dict)
+    for key, sent in fleet.edges.items():
+        edges[key[0]][key] = sent
+    for robot in plan.robots:
+        own = robot.spec.namespace
+        table = fleet.table._replace(nodes=tuple(nodes[own]), names=tuple(names[own]), problems=())
+        yield plan._replace(robots=(robot,), fleet=fleet._replace(table=table, edges=edges[own]))

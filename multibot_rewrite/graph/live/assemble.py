@@ -1,0 +1,165 @@
+"""The pure part of a snapshot: when the graph is settled, what to query, how answers are joined."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.graph.snapshot import (
+    EXPECTED,
+    QUIET,
+    TIMEOUT,
+    GraphEndpoint,
+    GraphFrame,
+    GraphNode,
+)
+from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+
+# Participants announce themselves every 3 s: a shorter quiet time proves nothing.
+QUIET_SECONDS = 3.5
+# A poll that is later than this was delayed by the machine.
+DELAY_SECONDS = 0.5
+# The endpoints of one participant arrive together; a busy machine may pause in between.
+BURST_SECONDS = 0.5
+# The second replaces the first in a rehearsal on a machine without tf2_msgs.
+TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
+# Almost every node publishes one of these, so few queries show which nodes share a process.
+COMMON_TOPICS = ("/parameter_events", "/rosout")
+
+
+class ReceivedTransform(NamedTuple):
+    """A transform received on ``topic``; ``latched`` if the subscription is transient local."""
+
+    topic: str
+    latched: bool
+    parent: str
+    child: str
+
+
+class LastChange(NamedTuple):
+    """When the graph last changed, all of it and its expected nodes; in seconds."""
+
+    all: float
+    expected: float
+
+
+class ObservationClock(NamedTuple):
+    """Seconds of observation, and when the last poll was.
+
+    While this process or the machine is paused, the graph is not quiet: what arrived meanwhile has
+    not been read yet. So ``observed`` counts no more than a short delay for each poll.
+    """
+
+    observed: float = 0.0
+    last: float = 0.0
+
+    def after(self, now: float, waited: float) -> ObservationClock:
+        """The clock at a poll that was planned for ``waited`` seconds after the last one."""
+        passed = min(now - self.last, waited + DELAY_SECONDS)
+        return ObservationClock(self.observed + passed, now)
+
+
+def why_settled(
+    now: float,
+    changed: LastChange,
+    seen: Collection[str],
+    expected: Collection[str],
+    timeout: float,
+) -> str:
+    """Why the observation can end, or an empty string; times are seconds since its start.
+
+    ``seen`` are the nodes with endpoints.
+    """
+    complete = expected and set(expected) <= set(seen)
+    if complete and now - changed.expected >= BURST_SECONDS:
+        return EXPECTED
+    if now - changed.all >= QUIET_SECONDS:
+        return QUIET
+    return TIMEOUT if now >= timeout else ""
+
+
+def topics_to_query(
+    names: Sequence[str],
+    endpoints: Iterable[GraphEndpoint],
+    topics: Mapping[str, Sequence[str]],
+    requested: Collection[str],
+) -> list[str]:
+    """The topics to query for endpoints with QoS and process, which is slow.
+
+    ``topics`` are all topics of the graph with their types. Two nodes with one name hide each
+    other's topics, so then all topics are queried.
+    """
+    if len(set(names)) < len(names):
+        return sorted(topics)
+    sides = defaultdict(set)
+    for end in endpoints:
+        if end.kind == TOPIC:
+            sides[end.name].add(end.role)
+    wanted = {*COMMON_TOPICS, *requested}
+    return sorted(
+        topic
+        for topic, types in topics.items()
+        if len(sides[topic]) != 1 or topic in wanted or not set(TF_TYPES).isdisjoint(types)
+    )
+
+
+def merged(
+    by_node: Iterable[GraphEndpoint], by_topic: Mapping[str, Iterable[GraphEndpoint]]
+) -> list[GraphEndpoint]:
+    """The endpoints by node; those of topics that were queried are replaced by the better answer."""
+    kept = [end for end in by_node if end.kind != TOPIC or end.name not in by_topic]
+    return kept + [end for ends in by_topic.values() for end in ends]
+
+
+def processes_by_node(endpoints: Iterable[GraphEndpoint]) -> dict[str, list[str]]:
+    """The processes seen for each node name."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for end in endpoints:
+        if end.process:
+            found[end.node].add(end.process)
+    return {node: sorted(own) for node, own in found.items()}
+
+
+def nodes_with_process(
+    names: Sequence[str], processes: Mapping[str, Sequence[str]]
+) -> list[GraphNode]:
+    """One record for each node; nodes with one name are spread over its processes."""
+    result = []
+    for name, times in sorted(Counter(names).items()):
+        own = processes.get(name) or [""]
+        result += [GraphNode(name, own[at % len(own)]) for at in range(times)]
+    return result
+
+
+def endpoints_with_process(
+    endpoints: Iterable[GraphEndpoint], processes: Mapping[str, Sequence[str]]
+) -> list[GraphEndpoint]:
+    """Sorted, each with the process of its node where the node has only one."""
+    return sorted(
+        (_with_process(end, processes.get(end.node, ())) for end in endpoints), key=_order
+    )
+
+
+def _with_process(end: GraphEndpoint, processes: Sequence[str]) -> GraphEndpoint:
+    return end._replace(process=processes[0]) if not end.process and len(processes) == 1 else end
+
+
+def _order(end: GraphEndpoint) -> tuple[str, ...]:
+    return (end.kind, end.name, end.role, end.node, end.process, end.type, repr(end.qos))
+
+
+def frames(
+    received: Iterable[ReceivedTransform], endpoints: Iterable[GraphEndpoint]
+) -> Iterator[GraphFrame]:
+    """The transforms received, each once a topic; static if it came from a latched subscription."""
+    publishers = defaultdict(set)
+    for end in endpoints:
+        if end.kind == TOPIC and end.role == PUBLISHES:
+            publishers[end.name].add(end.node)
+    latched: dict[tuple[str, str, str], bool] = {}
+    for topic, is_latched, parent, child in received:
+        edge = (topic, parent, child)
+        latched[edge] = is_latched or latched.get(edge, False)
+    for (topic, parent, child), static in sorted(latched.items()):
+        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers[topic])))

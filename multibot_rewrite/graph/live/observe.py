@@ -1,0 +1,259 @@
+"""Observing the live graph: ``python -m multibot_rewrite.graph.live.observe``, a child process.
+
+It sends one snapshot when the graph is settled or, when watching, one after each change.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
+from functools import partial
+from typing import Any, NamedTuple
+
+from multibot_rewrite.graph import environment
+from multibot_rewrite.graph.live import assemble, queries, ros
+from multibot_rewrite.graph.live.request import ENDED, Request, from_text
+from multibot_rewrite.graph.live.tf_subscriptions import Callback, TfSubscriptions
+from multibot_rewrite.graph.live.worker import Send, run_worker
+from multibot_rewrite.graph.snapshot import (
+    CHANGING,
+    QUIET,
+    UNKNOWN_NODE,
+    Environment,
+    GraphEndpoint,
+    Snapshot,
+    to_json,
+)
+from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
+
+# The shortest pause between two polls. A pause is also so many times as long as a poll took: a
+# large fleet is polled less often, even less where the graph is not watched.
+POLL_SECONDS, PAUSE_FACTOR, LONG_PAUSE_FACTOR = 0.1, 10, 30
+# The longest pause; a poll may only have been slow because the machine was busy.
+LONGEST_PAUSE_SECONDS = 1.0
+# After so long without a change there will probably be none.
+IDLE_SECONDS = 1.0
+# tf has 10 Hz or more; a shared topic of 100 robots took 1.3 s to be received completely.
+TF_SECONDS = (1.5, 3.0)
+# When watching, a snapshot comes so long after the last change, because changes come in groups,
+SETTLE_SECONDS = 0.15
+# but it waits no longer than this while the graph goes on changing.
+LONGEST_SETTLE_SECONDS = 1.0
+
+
+class GraphSession(NamedTuple):
+    """A node that observes the graph; ``stop`` is set when the observation has to end."""
+
+    ros: ros.Session
+    node: Any
+    request: Request
+    stop: threading.Event
+    started: float
+
+    def now(self) -> float:
+        """Seconds since the observation began."""
+        return time.monotonic() - self.started
+
+
+def main(order: str, stop: threading.Event, send: Send) -> int:
+    """Observe as ``order`` says; returns the exit code."""
+    request = from_text(order)
+    with _open_session(request, stop) as session:
+        if request.watch:
+            for snapshot in watch(session):
+                send(to_json(snapshot))
+            return 0
+        snapshot = take_snapshot(session)
+    if stop.is_set():
+        return ENDED
+    send(to_json(snapshot))
+    return 0
+
+
+@contextmanager
+def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSession]:
+    with ros.opened() as opened:
+        node = ros.add_node(opened, f"_multibot_snapshot_{os.getpid()}")
+        yield GraphSession(opened, node, request, stop, time.monotonic())
+
+
+def take_snapshot(session: GraphSession) -> Snapshot:
+    """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
+    cache: queries.TopicCache = {}
+    why = _wait_until_settled(session, cache)
+    seconds = session.now()
+    names, endpoints = _complete_view(session, cache)
+    tf = TfSubscriptions(partial(_subscribe, session))
+    tf.update(endpoints, session.request.substitutes)
+    while not session.stop.is_set() and tf.keep_waiting(*TF_SECONDS):
+        ros.spin(session.ros, POLL_SECONDS)
+    return _snapshot(session, names, endpoints, tf, (why, seconds))
+
+
+def watch(session: GraphSession) -> Iterator[Snapshot]:
+    """A snapshot after each change, and one when nothing has changed for a while."""
+    tf = TfSubscriptions(partial(_subscribe, session))
+    cache: queries.TopicCache = {}
+    before: object = None
+    sent: object = None
+    changed = sent_at = 0.0
+    pause, clock = POLL_SECONDS, assemble.ObservationClock()
+    while not session.stop.is_set():
+        ros.spin(session.ros, pause)
+        began = time.thread_time()
+        state = (*_overview(session), tf.transforms())
+        clock = clock.after(session.now(), pause)
+        now = clock.observed
+        pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
+        if state != before:
+            before, changed = state, now
+        quiet = now - changed >= assemble.QUIET_SECONDS
+        due = now - changed >= SETTLE_SECONDS or now - sent_at >= LONGEST_SETTLE_SECONDS
+        if due and sent != (state, quiet):
+            sent, sent_at = (state, quiet), now
+            if quiet:
+                cache.clear()
+            names, endpoints = _view(session, cache)
+            tf.update(endpoints, session.request.substitutes)
+            why = QUIET if quiet else CHANGING
+            yield _snapshot(session, names, endpoints, tf, (why, session.now()))
+
+
+def _overview(session: GraphSession) -> tuple[list[str], list[GraphEndpoint]]:
+    """The nodes and their endpoints: enough to see whether anything changed."""
+    names = queries.node_names(session.node)
+    found = queries.endpoints_by_node(
+        session.node, names, queries.NODE_QUERIES, ros.node_gone_error()
+    )
+    return names, sorted(found)
+
+
+def _wait_until_settled(session: GraphSession, cache: queries.TopicCache) -> str:
+    """Wait until the graph is settled; returns why it is, empty if the observation was stopped.
+
+    The slow queries are made while there is only waiting to do; the cache grows.
+    """
+    request = session.request
+    times = _ChangeTimes()
+    queried: object = None
+    pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
+    while not session.stop.wait(pause):
+        began = time.thread_time()
+        view = _overview(session)
+        clock = clock.after(session.now(), pause + spent)
+        now = clock.observed
+        pause = _pause_after(time.thread_time() - began, LONG_PAUSE_FACTOR)
+        changed = times.update(now, view, request.expected)
+        seen = {end.node for end in view[1]}
+        why = assemble.why_settled(now, changed, seen, request.expected, request.timeout)
+        if why:
+            return why
+        began = session.now()
+        if queried != view and now - changed.all >= IDLE_SECONDS:
+            queried = view
+            _view(session, cache)
+        spent = session.now() - began
+    return ""
+
+
+class _ChangeTimes:
+    """When the graph last changed, all of it and its expected nodes."""
+
+    def __init__(self) -> None:
+        self._before: tuple[object, object] = (None, None)
+        self._changed = assemble.LastChange(0.0, 0.0)
+
+    def update(
+        self, now: float, view: tuple[list[str], list[GraphEndpoint]], expected: Collection[str]
+    ) -> assemble.LastChange:
+        """The times after a poll at ``now``."""
+        parts = (view, [end for end in view[1] if end.node in expected])
+        times = zip(self._changed, self._before, parts, strict=True)
+        self._changed = assemble.LastChange(
+            *(old if was == is_ else now for old, was, is_ in times)
+        )
+        self._before = parts
+        return self._changed
+
+
+def _pause_after(took: float, factor: int) -> float:
+    """How long to wait after a poll that took so many seconds."""
+    return min(max(POLL_SECONDS, factor * took), LONGEST_PAUSE_SECONDS)
+
+
+def _complete_view(
+    session: GraphSession, cache: queries.TopicCache
+) -> tuple[list[str], list[GraphEndpoint]]:
+    """Names and endpoints; repeated for a while if nodes have no endpoints or no name yet."""
+    limit = min(session.request.timeout, session.now() + assemble.QUIET_SECONDS)
+    while True:
+        names, endpoints = _view(session, cache)
+        owners = {end.node for end in endpoints}
+        complete = owners.issuperset(names) and f"/{UNKNOWN_NODE}" not in owners
+        if complete or session.now() >= limit or session.stop.wait(POLL_SECONDS):
+            return names, endpoints
+
+
+def _view(
+    session: GraphSession, cache: queries.TopicCache
+) -> tuple[list[str], list[GraphEndpoint]]:
+    """Names and endpoints, with QoS and process for the topics that are worth a query."""
+    node = session.node
+    names = queries.node_names(node)
+    all_queries = (*queries.NODE_QUERIES, *_ACTION_QUERIES)
+    found = list(queries.endpoints_by_node(node, names, all_queries, ros.node_gone_error()))
+    return names, queries.with_topic_details(node, names, found, session.request.topics, cache)
+
+
+_ACTION_QUERIES: tuple[queries.NodeQuery, ...] = (
+    (ACTION, SERVES, ros.action_servers),
+    (ACTION, CALLS, ros.action_clients),
+)
+
+
+def _subscribe(
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callback
+) -> Callable[[], None] | str:
+    """Subscribe to a tf topic: what ends the subscription, or why its type is not usable."""
+    class_, reason = ros.message_class(type_)
+    return ros.subscribe(session.node, class_, topic, latched, callback) if class_ else reason
+
+
+def _snapshot(
+    session: GraphSession,
+    names: list[str],
+    endpoints: list[GraphEndpoint],
+    tf: TfSubscriptions,
+    settled: tuple[str, float],
+) -> Snapshot:
+    processes = assemble.processes_by_node(endpoints)
+    nodes = assemble.nodes_with_process(names, processes)
+    placed = tuple(assemble.endpoints_with_process(endpoints, processes))
+    asked = environment.settings(os.environ)
+    why, seconds = settled
+    caveats = [
+        *environment.setting_caveats(os.environ),
+        *environment.view_caveats(nodes, placed, asked, why, session.request.expected),
+        *tf.caveats(),
+    ]
+    around = Environment(
+        session.ros.context.get_domain_id(),
+        asked.range,
+        asked.static_peers,
+        ros.middleware(),
+        asked.discovery_server,
+        asked.super_client,
+        environment.participants(placed),
+        why,
+        round(seconds, 2),
+        tuple(caveats),
+    )
+    return Snapshot(tuple(nodes), placed, tuple(assemble.frames(tf.transforms(), placed)), around)
+
+
+if __name__ == "__main__":
+    sys.exit(run_worker(main))

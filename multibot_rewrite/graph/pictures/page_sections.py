@@ -1,0 +1,108 @@
+"""The sections of the page, short ids for everything on it, and the link of each finding."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Hashable, Iterable, Mapping
+from typing import NamedTuple, TypeVar
+
+from multibot_rewrite.graph.pictures.scene import Group, Scene
+from multibot_rewrite.graph.pictures.simplify import has_faults, without_common
+from multibot_rewrite.graph.pictures.states import Targets
+from multibot_rewrite.graph.pictures.svg import Ids
+from multibot_rewrite.graph.pictures.text import counted
+from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding
+from multibot_rewrite.model import ERROR, WARNING
+
+LEVELS = (ERROR, WARNING, INCONCLUSIVE)
+# In a larger fleet only faulty robots are unfolded, and no more than MOST_OPEN.
+SMALL_FLEET, MOST_OPEN = 3, 10
+SHARED = "shared"
+_Key = TypeVar("_Key", bound=Hashable)
+
+
+class PageSection(NamedTuple):
+    """The section of a group; ``shown`` is the group without what every node has.
+
+    ``levels`` counts its findings by level; a ``faulty`` section has findings or faulty names.
+    """
+
+    group: Group
+    shown: Group
+    id: str
+    levels: Mapping[str, int]
+    faulty: bool
+    open: bool
+
+
+def make_ids(scene: Scene) -> Ids:
+    """A short id for everything that is drawn."""
+    nodes = sorted({node.name for group in scene.groups for node in group.nodes})
+    names = sorted({name.name for group in scene.groups for name in group.names})
+    frames = dict.fromkeys((one.topic, row.frame) for one in scene.trees for row in one.rows)
+    ids = Ids(_numbered("n", nodes), _numbered("t", names), _numbered("f", frames), frozenset())
+    wanted = {id_ for about in scene.targets for id_ in ids_of(about, ids)}
+    return ids._replace(anchors=frozenset(wanted))
+
+
+def _numbered(letter: str, things: Iterable[_Key]) -> dict[_Key, str]:
+    return {thing: f"{letter}{at}" for at, thing in enumerate(things)}
+
+
+def ids_of(about: Targets, ids: Ids) -> list[str]:
+    """The ids of what a finding is about, as far as it is drawn."""
+    found = (
+        *(ids.names.get(name, "") for name in about.names),
+        *(ids.nodes.get(node, "") for node in about.nodes),
+        *(ids.frames.get(frame, "") for frame in about.frames),
+    )
+    return [id_ for id_ in found if id_]
+
+
+def make_sections(scene: Scene) -> list[PageSection]:
+    """One for each robot, then one for what belongs to no robot."""
+    counts = Counter((finding.robot, finding.level) for finding in scene.findings)
+    sections, left = [], MOST_OPEN
+    for at, group in enumerate(scene.groups):
+        id_ = f"g{at}" if group.robot else SHARED
+        levels = {level: counts[group.robot, level] for level in LEVELS}
+        faulty = bool(sum(levels.values())) or has_faults(group)
+        opened = len(scene.robots) <= SMALL_FLEET or (faulty and left > 0)
+        left -= opened
+        shown = without_common(group)
+        sections.append(PageSection(group, shown, id_, levels, faulty, opened))
+    return sections
+
+
+def ids_in(section: PageSection, ids: Ids) -> set[str]:
+    """What can be linked to in a section."""
+    nodes = {ids.nodes[node.name] for node in section.shown.nodes}
+    return nodes | {ids.names[name.name] for name in section.shown.names if not name.merged}
+
+
+def link_to(
+    finding: GraphFinding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
+) -> str:
+    """Where a finding is shown: in its robot's section, or in another one.
+
+    ``targets`` are the ids of what it is about. ``sections`` has by robot the id of its section
+    and the ids in it.
+    """
+    own = sections.get(finding.robot) or sections[""]
+    for target in targets:
+        if target.startswith("f"):
+            return f"#tf-{target}"
+        for section, inside in (own, *sections.values()):
+            if target in inside:
+                return f"#{section}-{target}"
+    return f"#{own[0]}"
+
+
+def summarize(levels: Mapping[str, int]) -> str:
+    """``2 errors, 1 warning``; empty without findings."""
+    words = (
+        f"{levels[level]} {level}" if level == INCONCLUSIVE else counted(levels[level], level)
+        for level in LEVELS
+        if levels[level]
+    )
+    return ", ".join(words)

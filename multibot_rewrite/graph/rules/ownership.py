@@ -1,0 +1,157 @@
+"""Which robot a node, topic or frame belongs to, by the plan and by how its name is written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.graph.expectation import Expectation
+
+# What may separate a robot's name from the rest of a segment.
+SEPARATORS = "_-."
+NO_TAGS: Mapping[str, str] = {}
+
+
+class NameOwnership(NamedTuple):
+    """How the names of one sort, graph names or frames, show their robot.
+
+    ``exact`` are planned names that belong to one robot, ``nodes`` the planned nodes, whose names
+    begin their private names. A robot's tag is its name in these names: ``robots`` maps tags to
+    robots, ``tags`` robots to tags where the tag is not the robot's name. ``ambiguous_words`` are
+    tags that occur as an ordinary word as well (a robot ``scan``). ``robot_is_last`` says that the
+    tag is at the end of a name.
+    """
+
+    exact: Mapping[str, str]
+    nodes: Mapping[str, str]
+    robots: Mapping[str, str]
+    ambiguous_words: frozenset[str]
+    robot_is_last: bool
+    tags: Mapping[str, str] = NO_TAGS
+
+    def robot(self, name: str) -> str:
+        """The robot that a name belongs to, or an empty string."""
+        known = self.exact.get(name)
+        if known is not None:
+            return known
+        above = name.rpartition("/")[0]
+        while above:
+            if above in self.nodes:
+                return self.nodes[above]
+            above = above.rpartition("/")[0]
+        return self._robot_by_tag(name)
+
+    def _robot_by_tag(self, name: str) -> str:
+        segments = name.strip("/").split("/")
+        if len(segments) > 1:
+            place = segments[-1 if self.robot_is_last else 0]
+            found = place if place in self.robots else self._longest(segments)
+            if found:
+                return self.robots[found]
+        found = self._longest(end for segment in segments for end in _ends(segment))
+        return self.robots.get(found, "")
+
+    def _longest(self, parts: Iterable[str]) -> str:
+        """The longest tag among the parts: ``arm_left`` rather than ``arm``."""
+        found = (part for part in parts if part in self.robots and part not in self.ambiguous_words)
+        return max(found, key=len, default="")
+
+    def tag(self, robot: str) -> str:
+        """The robot's name as these names have it."""
+        return self.tags.get(robot, robot)
+
+    def without_robot(self, name: str, robot: str) -> str:
+        """The name without the robot's: ``/robot1/scan`` and ``/scan/robot1`` are ``/scan``."""
+        tag = self.tag(robot)
+        if not tag or tag not in name:
+            return name
+        slash = "/" if name.startswith("/") else ""
+        segments = name.strip("/").split("/")
+        places = [at for at, segment in enumerate(segments) if segment == tag]
+        if places and len(segments) > 1:
+            del segments[places[-1 if self.robot_is_last else 0]]
+        else:
+            segments = [_without_tag(segment, tag) for segment in segments]
+        return slash + "/".join(segments)
+
+
+def _ends(segment: str) -> Iterator[str]:
+    """What is before and after each separator of a segment."""
+    for at, letter in enumerate(segment):
+        if letter in SEPARATORS:
+            yield segment[:at]
+            yield segment[at + 1 :]
+
+
+def _without_tag(segment: str, tag: str) -> str:
+    after, before = segment.removeprefix(tag), segment.removesuffix(tag)
+    if after != segment and after.startswith(tuple(SEPARATORS)):
+        return after.lstrip(SEPARATORS)
+    if before != segment and before.endswith(tuple(SEPARATORS)):
+        return before.rstrip(SEPARATORS)
+    return segment
+
+
+def without_tag_once(name: str, tag: str) -> Iterator[str]:
+    """The name with the tag removed from its beginning or its end, for every separator that fits."""
+    for separator in ("/", *SEPARATORS, ""):
+        if name.startswith(tag + separator):
+            yield name[len(tag + separator) :]
+        if name.endswith(separator + tag):
+            yield name[: -len(separator + tag)]
+
+
+def name_ownership(plan: Expectation) -> NameOwnership:
+    """The ownership of graph names: nodes, topics, services, actions."""
+    nodes = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    planned = ((w.name, nodes[w.node]) for w in plan.endpoints if w.node in nodes)
+    robots = {robot.name: robot.name for robot in plan.robots}
+    last = _is_last(
+        (name, robot.name) for robot in plan.robots for name in (*robot.nodes, robot.tf)
+    )
+    draft = NameOwnership(
+        _of_one_robot((*nodes.items(), *planned)), nodes, robots, frozenset(), last
+    )
+    return draft._replace(ambiguous_words=frozenset(robots.keys() & _plain_words(plan, draft)))
+
+
+def _plain_words(plan: Expectation, draft: NameOwnership) -> set[str]:
+    """The words of nodes and names without their robot's name, as far as they may be a robot."""
+    nodes = draft.nodes
+    likely = draft.robots.keys() & _words({w.code_name for w in plan.endpoints})
+    in_code = {(w.code_name, nodes.get(w.node, "")) for w in plan.endpoints if likely}
+    return _words({draft.without_robot(name, robot) for name, robot in (*in_code, *nodes.items())})
+
+
+def frame_ownership(plan: Expectation) -> NameOwnership:
+    """The ownership of tf frames."""
+    declared = [(frame, robot.name) for robot in plan.robots for frame in robot.frames]
+    others = ((frame, robot.name) for robot in plan.robots for frame in robot.other_frames)
+    tags = {robot.name: robot.frame_tag for robot in plan.robots if robot.frame_tag}
+    robots = {tags.get(robot.name, robot.name): robot.name for robot in plan.robots}
+    last = _is_last((frame, tags.get(robot, robot)) for frame, robot in declared)
+    exact = _of_one_robot((*declared, *others))
+    draft = NameOwnership(exact, {}, robots, frozenset(), last, tags)
+    # All robots have the same description: the first robot's frames are enough.
+    plain = (draft.without_robot(*pair) for pair in declared if pair[1] == declared[0][1])
+    return draft._replace(ambiguous_words=frozenset(robots.keys() & _words(plain)))
+
+
+def _of_one_robot(pairs: Iterable[tuple[str, str]]) -> dict[str, str]:
+    """The names that belong to one robot only."""
+    found: dict[str, str] = {}
+    for name, robot in pairs:
+        if found.setdefault(name, robot) != robot:
+            found[name] = ""
+    return {name: robot for name, robot in found.items() if robot}
+
+
+def _is_last(names: Iterable[tuple[str, str]]) -> bool:
+    """Whether the tag is more often at the end of a name than at its beginning."""
+    stripped = ((name.strip("/"), tag) for name, tag in names)
+    return sum(name.endswith(tag) - name.startswith(tag) for name, tag in stripped) > 0
+
+
+def _words(names: Iterable[str]) -> set[str]:
+    segments = {segment for name in names for segment in name.strip("/").split("/")}
+    return segments.union(end for segment in segments for end in _ends(segment))

@@ -1,0 +1,34 @@
+"""The words of ``$(multibot WORD NAME)``: one function for each value of a robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+
+from multibot_rewrite.fleets.fleet_file import Pose
+from multibot_rewrite.fleets.scripts import LoadedRobot
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.yaml_with_lines import unknown
+
+
+def _pose(robot: LoadedRobot, axis: str) -> str:
+    values = (robot.pose or Pose())._asdict()
+    if axis not in values:
+        raise UsageError(f"$(multibot pose {axis}): {unknown('axis', axis, values)}")
+    return str(values[axis])
+
+
+WORDS: Mapping[str, Callable[[LoadedRobot, str], str]] = MappingProxyType(
+    {
+        "name": lambda robot, _: robot.name,
+        "namespace": lambda robot, _: robot.namespace,
+        "model": lambda robot, _: robot.model,
+        "pose": _pose,
+        "description": lambda robot, _: robot.description,
+        "srdf": lambda robot, _: robot.srdf,
+        "frame": LoadedRobot.frame,
+        "joint": LoadedRobot.joint,
+        "topic": LoadedRobot.topic,
+        "node": lambda robot, name: robot.table.full_name(name),
+    }
+)

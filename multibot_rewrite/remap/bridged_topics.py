@@ -1,0 +1,158 @@
+"""The topics that ros_gz_bridge must bridge for each robot, read from rewritten descriptions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
+from importlib.resources import files
+from typing import Any, NamedTuple, cast
+
+from lxml import etree
+
+from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
+from multibot_rewrite.steps.collect import Inventory
+
+DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
+TF_TYPE = "tf2_msgs/msg/TFMessage"
+
+
+class BridgedTopic(NamedTuple):
+    """One topic of the bridge; ``robot`` is empty if it is bridged once for all robots."""
+
+    robot: str
+    ros: str
+    gz: str
+    ros_type: str
+    gz_type: str
+    direction: str
+
+
+class UnbridgedTopic(NamedTuple):
+    """A topic that cannot be bridged: its gz name depends on the world or the spawner."""
+
+    robot: str
+    line: int
+    what: str
+
+
+@lru_cache(maxsize=1)
+def bridge_data() -> Mapping[str, Any]:
+    """The data of ``bridge.yaml``."""
+    import yaml
+
+    text = files("multibot_rewrite.remap").joinpath("bridge.yaml").read_text()
+    data: Mapping[str, Any] = yaml.safe_load(text)
+    return data
+
+
+def bridged_topics(
+    inventories: Mapping[str, Inventory], naming: Naming
+) -> tuple[list[BridgedTopic], list[UnbridgedTopic]]:
+    """The bridged topics of a fleet, and those that cannot be bridged.
+
+    ``inventories`` are those of the rewritten descriptions.
+    """
+    bridged = [
+        BridgedTopic("", name, name, ros_type, gz_type, DIRECTIONS[way])
+        for name, ros_type, gz_type, way in bridge_data()["shared"]
+    ]
+    left: list[UnbridgedTopic] = []
+    for robot, inventory in inventories.items():
+        for item in _robot_topics(inventory, robot, naming):
+            (bridged if isinstance(item, BridgedTopic) else left).append(item)  # type: ignore[arg-type]
+    return list(dict.fromkeys(bridged)), left
+
+
+def _robot_topics(
+    inventory: Inventory, robot: str, naming: Naming
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    for sensor in inventory.document.root.iter("sensor"):
+        yield from _sensor(sensor, robot, naming)
+    # With bare frames the spawner must give the model the robot's name, or two models collide.
+    model = inventory.document.root.get("name", "") if naming.layout.frames else robot
+    for host in inventory.hosts:
+        name = host.node.rewriter.names[0] if host.node.rewriter else ""
+        yield from _plugin(
+            host.element, bridge_data()["plugins"].get(name, ()), robot, model, naming
+        )
+
+
+def _sensor(
+    sensor: etree._Element, robot: str, naming: Naming
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    kind = sensor.get("type", "")
+    topics = bridge_data()["sensors"].get(kind, ())
+    if not topics or sensor.find("plugin[@filename]") is not None:
+        return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
+    base = sensor.findtext("topic", "").strip()
+    if not base:
+        yield UnbridgedTopic(robot, _line(sensor), f"sensor {sensor.get('name')}")
+        return
+    for ending, ros_type, gz_type, way in topics:
+        name = f"{base}{ending}"
+        yield BridgedTopic(robot, _ros_name(name), name, ros_type, gz_type, DIRECTIONS[way])
+    yield from _camera_info(sensor, robot, base)
+
+
+def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[BridgedTopic]:
+    if "camera" in sensor.get("type", ""):
+        beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
+        name = sensor.findtext("camera/camera_info_topic", "").strip() or beside
+        if sensor.get("type") == "rgbd_camera":  # its code uses no other name
+            name = f"{base}/camera_info"
+        types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
+        yield BridgedTopic(robot, _ros_name(name), name, *types, DIRECTIONS["in"])
+
+
+def _plugin(
+    plugin: etree._Element, topics: Iterable[Sequence[str]], robot: str, model: str, naming: Naming
+) -> Iterator[BridgedTopic | UnbridgedTopic]:
+    for element, default, ros_type, gz_type, way in topics:
+        given = plugin.findtext(element, "").strip()
+        name = given or default.format(model=model)
+        if not name:
+            what = f"<{element}> of {plugin.get('filename')}"
+            yield UnbridgedTopic(robot, _line(plugin), what)
+            continue
+        ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
+        if not given and ros_type != TF_TYPE:
+            ros = _robot_name(default.rpartition("/")[2], robot, naming)
+        # A shared /tf is bridged once, or each transform would arrive once for every robot.
+        whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
+        yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
+
+
+def _line(element: etree._Element) -> int:
+    return cast("int", element.sourceline)
+
+
+def _ros_name(name: str) -> str:
+    """A gz topic has no namespace: the name in the description is the full name."""
+    return f"/{name.lstrip('/')}"
+
+
+def _tf_name(robot: str, naming: Naming) -> str:
+    tf = TF_TOPICS[0]
+    return _robot_name(tf, robot, naming) if naming.layout.tf_per_robot else f"/{tf}"
+
+
+def _robot_name(name: str, robot: str, naming: Naming) -> str:
+    """A name as the robot's own topic."""
+    if naming.topics == NAMESPACE:
+        return f"/{robot}/{name}"
+    there = affix(naming, "topic", f"/{name}")
+    return there.spell(f"/{name}", robot) if there else f"/{name}"
+
+
+def as_yaml(bridged: Iterable[BridgedTopic]) -> str:
+    """The configuration file of ``ros_gz_bridge parameter_bridge``."""
+    rows = []
+    for item in bridged:
+        rows += [
+            f'- ros_topic_name: "{item.ros}"\n',
+            f'  gz_topic_name: "{_ros_name(item.gz)}"\n',
+            f'  ros_type_name: "{item.ros_type}"\n',
+            f'  gz_type_name: "{item.gz_type}"\n',
+            f"  direction: {item.direction}\n",
+        ]
+    return "".join(rows)

@@ -1,0 +1,145 @@
+"""The ROS nodes in a rewritten description: its plugins, with their remap rules."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+
+from lxml import etree
+
+from multibot_rewrite.model import Claim, Site
+from multibot_rewrite.naming import TOPIC_KINDS
+from multibot_rewrite.remap.records import (
+    PUBLISHES,
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    NodeRule,
+    NodeTable,
+)
+from multibot_rewrite.rewriters.switches import switched_off, switches
+from multibot_rewrite.rewriters.vocabulary import Rewriter
+from multibot_rewrite.rosnames import parse_remap
+from multibot_rewrite.steps.collect import Host, Inventory
+from multibot_rewrite.steps.document import locate
+
+ROS_NODE = "ros/remapping"
+
+
+def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
+    """Each ROS 2 plugin of ``robot``'s rewritten description: its endpoints, its names and rules."""
+    for host, rewriter in _ros_nodes(inventory):
+        name = _node_name(host.element, rewriter)
+        rules = tuple(_rules(host, robot, name))
+        # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
+        private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
+        frames = tuple(_frames(inventory, host))
+        off = _odometry_is_off(host, rewriter)
+        facts = NodeFacts(
+            name,
+            rewriter.names[0],
+            (*_endpoints(inventory, host), *private),
+            frames=frames,
+            sends=tuple(_sends(rewriter, frames, inventory.declared["link"], off)),
+        )
+        namespace = "/" + _ros_text(host.element, "namespace").strip("/")
+        yield facts, NodeTable(robot, name, namespace, name, rules)
+
+
+def plugin_places(inventory: Inventory) -> list[str]:
+    """The places (``file:line``) of the plugins of ``plugin_nodes``, in its order.
+
+    A rewrite keeps the order of elements, so those of the source are those of its results.
+    """
+    document = inventory.document
+    lines = (locate(document.source, host.start)[0] for host, _ in _ros_nodes(inventory))
+    return [f"{document.file}:{line}" for line in lines]
+
+
+def _ros_nodes(inventory: Inventory) -> Iterator[tuple[Host, Rewriter]]:
+    for host in inventory.hosts:
+        rewriter = host.node.rewriter
+        if rewriter is not None and any(site.path == ROS_NODE for site in rewriter.sites):
+            yield host, rewriter
+
+
+def _node_name(plugin: etree._Element, rewriter: Rewriter) -> str:
+    """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
+    sites = [site for site in rewriter.sites if site.kinds[:1] == ("node",) and site.default]
+    if any(site.path == "@name" for site in rewriter.sites if site.role == "declares"):
+        return plugin.get("name", "").strip()
+    named = (plugin.findtext(site.path, "").strip() or site.default for site in sites)
+    return next(named, "") or rewriter.names[0].replace("-", "_")
+
+
+def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
+    """Names in the plugin's code, and names that its parameters set."""
+    rewriter = host.node.rewriter
+    assert rewriter is not None
+    wired = (
+        (PUBLISHES, TOPIC, rewriter.publishes),
+        (SUBSCRIBES, TOPIC, rewriter.subscribes),
+        (SERVES, SERVICE, rewriter.serves),
+    )
+    off = switched_off(host.element, rewriter)
+    for role, kind, names in wired:
+        yield from (Endpoint(kind, role, name, when=off.get(name, "")) for name in names)
+    for claim in inventory.claims:
+        if _sets_topic(claim) and host.element in claim.element.iterancestors():
+            kind = SERVICE if claim.site.kinds[0] == SERVICE else TOPIC
+            yield Endpoint(kind, "", claim.value, parameter=claim.site.path)
+
+
+def _frames(inventory: Inventory, host: Host) -> Iterator[FrameParameter]:
+    """The frames in its parameters, as in the description, or their defaults."""
+    given = {
+        claim.site.path: claim.value
+        for claim in inventory.claims
+        if _is_frame(claim.site) and host.element in claim.element.iterancestors()
+    }
+    assert host.node.rewriter is not None
+    for site in filter(_is_frame, host.node.rewriter.sites):
+        value = given.get(site.path, site.default)
+        if value:
+            yield FrameParameter(site.path, value)
+
+
+def _is_frame(site: Site) -> bool:
+    return site.form == "whole" and site.kinds[:1] == ("frame",)
+
+
+def _odometry_is_off(host: Host, rewriter: Rewriter) -> bool:
+    """Is odometry off? The first switch of tf is for odometry, others are for wheels."""
+    found = [it for it in switches(host.element, rewriter) if it.topic == "/tf"]
+    return bool(found) and not found[0].on
+
+
+def _sends(
+    rewriter: Rewriter, frames: tuple[FrameParameter, ...], links: Container[str], off: bool
+) -> Iterator[tuple[str, str]]:
+    """The transform of a plugin that publishes tf: from its odometry frame to a link."""
+    own = [frame.parameter for frame in frames if frame.default not in links]
+    base = [frame.parameter for frame in frames if frame.default in links]
+    if "/tf" in rewriter.publishes and own and base and not off:
+        yield own[0], base[0]
+
+
+def _sets_topic(claim: Claim) -> bool:
+    site = claim.site
+    return site.form == "whole" and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
+
+
+def _rules(host: Host, robot: str, node: str) -> Iterator[NodeRule]:
+    for element in (host.element.find("ros"), host.element):
+        for remapping in element.iterchildren("remapping") if element is not None else ():
+            rule = parse_remap((remapping.text or "").strip())
+            if rule is not None:
+                why = f"in the description, line {remapping.sourceline}"
+                yield NodeRule(robot, node, rule.source, rule.target, "", why)
+
+
+def _ros_text(element: etree._Element, tag: str) -> str:
+    return (element.findtext(f"ros/{tag}") or element.findtext(tag) or "").strip()
