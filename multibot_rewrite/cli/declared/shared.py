@@ -19,7 +19,7 @@ _LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
 
 NAMING = Group(
-    "how names become a robot's own (the options a description was rewritten with)",
+    "names of a robot",
     (
         choice("--layout", "NAME", _LAYOUT_NAMES, f"{_LAYOUTS}; default: {DEFAULT_LAYOUT}"),
         choice(
