@@ -28,7 +28,7 @@ from lxml import etree
 from pairs import Job, Row, child, table
 from robots import robot
 
-from multibot_rewrite.bulk import uncollected
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.lint.check import lint_data
 from multibot_rewrite.lint.settings import Settings
 
@@ -101,7 +101,7 @@ PEERS = (
 
 def floor(source: bytes) -> int:
     """Every start tag with its line, and the names that joints refer to: the least a lint can do."""
-    with uncollected():  # as in the lint
+    with gc_paused():  # as in the lint
         return _loose(source)
 
 

@@ -12,6 +12,7 @@ from inspect import Parameter, Signature, signature
 from typing import Any, ParamSpec, TypeVar
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -49,10 +50,7 @@ def _bound(takes: Signature, title: str, args: tuple[Any, ...], kwargs: dict[str
 
 
 def _meant(name: str, known: list[str]) -> str:
-    from difflib import get_close_matches  # only a message needs it
-
-    near = get_close_matches(name, known, 1)
-    return f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}"
+    return did_you_mean_one_of(name, known) or f"it takes {', '.join(known)}"
 
 
 def _reader(parameter: Parameter) -> Reader:

@@ -33,7 +33,21 @@ class Home(NamedTuple):
     modules: tuple[str, ...]
 
 
-HOMES: tuple[Home, ...] = ()
+HOMES: tuple[Home, ...] = (
+    Home(
+        "MF1",
+        "parameter files",
+        (
+            "companions.params.sections",
+            "companions.params.section_checks",
+            "companions.params.robot_names",
+            "companions.params.values",
+            "companions.params.name_checks",
+            "companions.params.unknown_parameters",
+            "companions.params.shared_defaults",
+        ),
+    ),
+)
 
 
 @cache

@@ -10,14 +10,14 @@ import os
 import sys
 from collections.abc import Iterator
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 
 TABLE = "multibot-rewrite"
 KEYS = ("vocabulary",)
 # Parsing costs more than the rest of a start: most projects hold neither spelling of the table.
 MARKS = (b"multibot-rewrite", b"tool.multibot_rewrite")
-_PLACE = regex(r" \(at line (\d+), column (\d+)\)$")
+_PLACE = lazy_compile(r" \(at line (\d+), column (\d+)\)$")
 
 
 def configured_vocabulary(near: str) -> tuple[str, ...]:

@@ -59,7 +59,7 @@ class Prepared:
         self.job = job
 
     @cached_property
-    def template(self) -> pipeline.Template:
+    def template(self) -> pipeline.Prepared:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
         data, file, naming, _, urdf = self.job
         tree = self.job.tree

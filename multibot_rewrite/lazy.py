@@ -1,4 +1,4 @@
-"""Regular expressions that are compiled when first used: a run needs few of those it might need."""
+"""Regular expressions that are compiled when first used: a run needs only few of them."""
 
 from __future__ import annotations
 
@@ -21,6 +21,6 @@ class _Later:
         return getattr(compiled, name)
 
 
-def regex(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
-    """As ``re.compile``, but a mistake in ``text`` is told at the first use."""
+def lazy_compile(text: AnyStr, flags: int = 0) -> re.Pattern[AnyStr]:
+    """As ``re.compile``, but a mistake in ``text`` is raised at the first use."""
     return cast("re.Pattern[AnyStr]", _Later(text, flags))

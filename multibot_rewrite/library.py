@@ -34,7 +34,7 @@ class Rewrite(NamedTuple):
     prepared: Prepared
 
     @property
-    def template(self) -> pipeline.Template:
+    def template(self) -> pipeline.Prepared:
         """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
         a vocabulary file is gone."""
         return self.prepared.template
@@ -155,7 +155,7 @@ def explain(
 
     outside = job.outside
     inventory = collect(read_document(job.data, job.file), job.tree, outside)
-    pipeline.check_outside(inventory, outside)
+    pipeline.check_urdf(inventory, outside)
     return explain_line(inventory, naming, job.tree, robot, line)
 
 

@@ -23,9 +23,9 @@ class Site(NamedTuple):
     ``role`` is ``"declares"``, ``"uses"`` or ``"keep"`` (never renamed; ``note`` says why).
     ``kinds`` are tried in order until one resolves. ``form`` says where inside the value the names
     are (see ``rewriters.forms``). ``default`` is the literal the consumer falls back to.
-    ``namespaced`` is true where a ROS namespace reaches the value. ``plain`` is the kind where the
-    whole value is the name of a link or joint and of nothing else. ``when`` is ``sibling=text``
-    where only that sibling's text makes the value a name.
+    ``namespaced`` is true where a ROS namespace reaches the value. ``whole_value_kind`` is the
+    kind where the whole value is the name of a link or joint and of nothing else. ``when`` is
+    ``sibling=text`` where only that sibling's text makes the value a name.
     """
 
     path: str
@@ -37,7 +37,7 @@ class Site(NamedTuple):
     section: str
     note: str
     line: int
-    plain: str = ""
+    whole_value_kind: str = ""
     when: str = ""
     file: str = ""
 

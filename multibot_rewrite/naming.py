@@ -1,7 +1,7 @@
-"""How a name is spelled for a robot: kinds, layouts, separators, shared names.
+"""What a name becomes for a robot: kinds, layouts, separators, shared names.
 
 A renamed value is always the old value with one insertion, so a name's spelling is an ``Affix``:
-where to insert, and what stands before and after the robot's name there.
+where to insert, and what is put before and after the robot's name.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Iterable, Mapping
 from typing import NamedTuple, TypedDict
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 PREFIX, POSTFIX, NAMESPACE = "prefix", "postfix", "namespace"
 SHARED_FRAMES = ("world", "map")
@@ -42,7 +43,7 @@ ROS_SEPARATORS = {
     "namespace": ("/",),
 }
 FRAME_KINDS = frozenset({"link", "frame"})
-# A stem is a word topics are made of (camera_name); a subtopic stands below a stem or namespace.
+# A stem is a word topics are made of (camera_name); a subtopic is below a stem or namespace.
 TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
@@ -53,7 +54,7 @@ NOT_PLAIN = frozenset("{}$ ")
 
 
 class Layout(NamedTuple):
-    """Where tf lives: are frames spelled per robot, is there a tf topic per robot, a namespace."""
+    """What differs per robot: the frames, the tf topic, the namespace."""
 
     name: str
     short: str
@@ -67,7 +68,7 @@ LAYOUTS = (
     Layout("tf-per-robot", "L1", False, True, True, "tf topic per robot, bare frames"),
     Layout("frames-per-robot", "L2", True, False, True, "one /tf, frames per robot"),
     Layout("both", "L3", True, True, True, "tf topic and frames per robot"),
-    Layout("postfix", "L4", True, True, False, "everything spelled per robot, no namespaces"),
+    Layout("postfix", "L4", True, True, False, "everything renamed per robot, no namespaces"),
 )
 DEFAULT_LAYOUT = "postfix"
 
@@ -80,7 +81,7 @@ class Affix(NamedTuple):
     after: str
 
     def spell(self, text: str, robot: str) -> str:
-        """``text`` as it is spelled for ``robot``."""
+        """``text`` with the name of ``robot`` in it."""
         return f"{text[: self.at]}{self.before}{robot}{self.after}{text[self.at :]}"
 
 
@@ -154,10 +155,8 @@ def find_layout(word: str) -> Layout:
 def _one_of(what: str, word: str, allowed: tuple[str, ...]) -> None:
     if word in allowed:
         return
-    from difflib import get_close_matches  # only an error message needs it
-
-    near = get_close_matches(word, allowed, 1, 0.4)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    near = did_you_mean_one_of(word, allowed)
+    hint = f"; {near}" if near else ""
     raise UsageError(f"{what} {word!r} is not known, use one of {', '.join(allowed)}{hint}")
 
 
@@ -183,9 +182,9 @@ def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str
 
 
 def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Affix | None:
-    """How ``text``, a name of ``kind``, is spelled for any robot; None where it stays as it is.
+    """Where the robot's name goes in ``text``, a name of ``kind``; None where it is not renamed.
 
-    ``namespaced`` tells whether a ROS namespace reaches the value.
+    ``namespaced`` is true where a ROS namespace reaches the value.
     """
     separator = naming.separators.get(kind)
     if separator is None:
@@ -200,6 +199,12 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
     if kind in FRAME_KINDS and text.strip("/") in naming.shared_frames:
         return None
     return _name_affix(naming.affix, separator, text)
+
+
+def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False) -> str:
+    """What ``text``, a name of ``kind``, becomes for ``robot``; unchanged where it is not renamed."""
+    there = affix(naming, kind, text, namespaced)
+    return there.spell(text, robot) if there else text
 
 
 def is_keyword(text: str) -> bool:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-# How much alike two names have to be, from 0 to 1 (difflib's ratio): for a hint, which may be
-# wrong, and for what a finding itself rests on.
-ALIKE, MISTYPED = 0.7, 0.8
+# How much alike two words have to be, from 0 to 1 (difflib's ratio): one of a short list that a
+# person can choose from, a name of a file, and a name where the finding itself rests on it.
+CHOICE, ALIKE, MISTYPED = 0.6, 0.7, 0.8
+# A shorter word begins too many others.
+_BEGINNING = 3
 
 
 def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
@@ -37,5 +39,15 @@ def fold(name: str) -> str:
 
 def did_you_mean(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
     """The hint ``did you mean 'x'?``; "" where no known name is like ``name``."""
-    near = nearest(name, known, alike)
+    return _hint(nearest(name, known, alike))
+
+
+def did_you_mean_one_of(word: str, choices: Iterable[str]) -> str:
+    """The same for a word of a short list: less alike will do, and the beginning of one."""
+    words = list(choices)
+    begun = (it for it in words if len(word) >= _BEGINNING and it.startswith(word))
+    return _hint(next(begun, "") or nearest(word, words, CHOICE))
+
+
+def _hint(near: str) -> str:
     return f"did you mean {near!r}?" if near else ""

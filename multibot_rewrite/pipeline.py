@@ -9,23 +9,24 @@ from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.mentions import find_mentions
 from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
-from multibot_rewrite.naming import Naming, affix, overlap
+from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import respelled_names, stripped_names
+from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 from multibot_rewrite.steps.plan import Plan, make_plan
+from multibot_rewrite.steps.renames import RenameMap, make_renames, respelled_names
 from multibot_rewrite.steps.strip import strip_edits
 from multibot_rewrite.steps.verify import verify
 
-# Kinds whose names are telling enough to be looked for where no site is.
+# Kinds whose names are looked for in values without a site.
 MENTIONED = ("link", "joint")
 
 
-class Template(NamedTuple):
-    """A description ready for any number of robots: one parse, one plan, one cut."""
+class Prepared(NamedTuple):
+    """A description ready for any number of robots: parsed, planned and cut once."""
 
     inventory: Inventory
     plan: Plan
@@ -34,25 +35,25 @@ class Template(NamedTuple):
     findings: list[Finding]
     naming: Naming
     tree: Tree
-    outside: Declared
+    urdf_declarations: Declared
 
 
 def prepare(
-    source: bytes, file: str, naming: Naming, tree: Tree, outside: Declared = NOTHING
-) -> Template:
+    source: bytes, file: str, naming: Naming, tree: Tree, urdf_declarations: Declared = NOTHING
+) -> Prepared:
     """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
 
-    ``outside`` is what the URDF beside an SRDF declares.
+    ``urdf_declarations`` is what the URDF beside an SRDF declares.
     """
-    inventory = collect(read_document(source, file), tree, outside)
-    check_outside(inventory, outside)
+    inventory = collect(read_document(source, file), tree, urdf_declarations)
+    check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
-    findings = [*audit.audit(inventory, naming, tree), *plan.findings]
+    findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
     _stop_on_errors(findings)
     values = slot_values(inventory.document.root)
-    findings += find_mentions(inventory, values, _renamed(inventory, naming), tree)
+    findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
     pieces = cut(source, plan.edits)
-    return Template(inventory, plan, values, pieces, findings, naming, tree, outside)
+    return Prepared(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
 
 
 def declarations(source: bytes, file: str, tree: Tree) -> Declared:
@@ -60,57 +61,64 @@ def declarations(source: bytes, file: str, tree: Tree) -> Declared:
     return collect(read_document(source, file), tree).declared
 
 
-def check_outside(inventory: Inventory, outside: Declared) -> None:
+def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
     """An SRDF names what its URDF declares: neither makes sense without the other."""
     file = inventory.document.file
-    if inventory.format == SRDF and not outside:
+    if inventory.format == SRDF and not urdf_declarations:
         raise InputError(f"{file}: an SRDF is rewritten beside its URDF: add --urdf robot.urdf")
-    if inventory.format != SRDF and outside:
+    if inventory.format != SRDF and urdf_declarations:
         raise InputError(f"{file}: only an SRDF has a URDF beside it: leave out --urdf")
 
 
-def render(template: Template, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
+def render(prepared: Prepared, robots: Sequence[str], again: bool = False) -> Iterator[bytes]:
     """The text for each robot in turn, the first one proved.
 
-    The others differ from it in nothing but the robot's name in the same holes; that no two names
-    meet is checked for all of them before the first is returned.
+    The others differ from it in nothing but the robot's name at the same places; that no two names
+    become one is checked for all of them before the first is returned.
     """
-    inventory, naming = template.inventory, template.naming
-    found = checks.collisions(inventory, naming, robots)
-    found += checks.meeting(inventory, naming, overlap(naming, robots))
-    found += checks.already_rewritten(inventory, naming, robots, again)
+    inventory, plan, values, *_ = prepared
+    renames = plan.renames
+    found = checks.collisions(inventory, renames, robots)
+    found += checks.meeting(inventory, renames, overlap(prepared.naming, robots))
+    found += checks.already_rewritten(inventory, renames, robots, again)
     _stop_on_errors(found)
     for number, robot in enumerate(robots):
-        output = fill(template.pieces, robot)
+        output = fill(prepared.pieces, robot)
         if number == 0:
-            _, plan, values, *_ = template
-            outside = respelled_names(template.outside, naming, robot)
-            verify(inventory, plan, values, output, robot, naming, template.tree, outside)
+            *_, naming, tree, urdf_declarations = prepared
+            declared = respelled_names(urdf_declarations, renames, robot)
+            verify(inventory, plan, values, output, robot, naming, tree, declared)
         yield output
 
 
 def strip(
-    source: bytes, file: str, robot: str, naming: Naming, tree: Tree, outside: Declared = NOTHING
+    source: bytes,
+    file: str,
+    robot: str,
+    naming: Naming,
+    tree: Tree,
+    urdf_declarations: Declared = NOTHING,
 ) -> bytes:
     """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
 
-    ``outside`` is what the rewritten URDF beside a rewritten SRDF declares.
+    ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares.
     """
-    inventory = collect(read_document(source, file), tree, outside)
-    check_outside(inventory, outside)
-    found = checks.not_rewritten(inventory, naming, robot)
-    found += checks.other_urdf(inventory, naming, robot, outside)
+    inventory = collect(read_document(source, file), tree, urdf_declarations)
+    check_urdf(inventory, urdf_declarations)
+    renames = make_renames(inventory, naming)
+    found = checks.not_rewritten(inventory, renames, robot)
+    found += checks.other_urdf(inventory, renames, robot, urdf_declarations)
     _stop_on_errors(found)
     stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
-    again = prepare(stripped, file, naming, tree, stripped_names(outside, naming, robot))
+    again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))
     if fill(again.pieces, robot) != source:
         _stop_on_errors([checks.other_options(inventory, robot)])
     return stripped
 
 
-def _renamed(inventory: Inventory, naming: Naming) -> set[str]:
+def _mentionable(inventory: Inventory, renames: RenameMap) -> set[str]:
     names = ((kind, name) for kind in MENTIONED for name in inventory.declared[kind])
-    return {name for kind, name in names if affix(naming, kind, name)}
+    return {name for kind, name in names if renames.changes(kind, name)}
 
 
 def _stop_on_errors(findings: Sequence[Finding]) -> None:

@@ -1,1 +1,1 @@
-"""What is asked about a description: for its rewrite and for the lint."""
+"""Checks of a description that both the rewrite and the lint run."""

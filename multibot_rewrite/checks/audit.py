@@ -1,4 +1,4 @@
-"""What a person should know about a description before it is rewritten: one function a question."""
+"""All checks of a description before it is rewritten."""
 
 from __future__ import annotations
 
@@ -10,32 +10,33 @@ from multibot_rewrite.checks.references import (
     doubtful,
     duplicates,
     loose_ends,
-    nearest,
     remarks,
 )
-from multibot_rewrite.checks.remarks import Remark, told
+from multibot_rewrite.checks.remarks import Remark, to_findings
 from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
-from multibot_rewrite.rewriters.vocabulary import Rewriter
+from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, finding
+from multibot_rewrite.steps.renames import RenameMap
 
 __all__ = ["audit", "is_unknown", "nearest", "unknown_hardware", "unknown_plugins"]
 
 
-def audit(inventory: Inventory, naming: Naming, tree: Tree) -> list[Finding]:
+def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
     """All findings that do not depend on the robot's name, in source order."""
     document = inventory.document
     found = [
         *leftover_xacro(inventory),
         *worlds(inventory),
-        *told(document, duplicates(inventory), ERROR),
-        *told(document, undeclared(inventory, naming), WARNING),
-        *told(document, ambiguous(inventory), WARNING),
-        *told(document, unknown_plugins(inventory, tree), WARNING),
-        *told(document, unknown_hardware(inventory, tree), WARNING),
-        *hazards(inventory, naming),
+        *to_findings(document, duplicates(inventory), ERROR),
+        *to_findings(document, undeclared(inventory, renames.naming), WARNING),
+        *to_findings(document, ambiguous(inventory), WARNING),
+        *to_findings(document, unknown_plugins(inventory, tree), WARNING),
+        *to_findings(document, unknown_hardware(inventory, tree), WARNING),
+        *hazards(inventory, renames),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 
@@ -44,7 +45,7 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
     """Elements and substitutions that only xacro understands."""
     document = inventory.document
     source = document.source
-    hint = "expand it first: give the file the name ….xacro, or run xacro"
+    hint = "expand it first: name the file ….xacro, or run xacro"
     elements = document.root.iter("*") if uses_xacro(document) else iter(())
     tags = ((str(e.tag), start) for e, start in zip(elements, document.starts, strict=False))
     tag, start = next(((tag, start) for tag, start in tags if "/xacro}" in tag), ("", 0))
@@ -75,7 +76,7 @@ def uses_xacro(document: Document) -> bool:
 
 
 def worlds(inventory: Inventory) -> Iterator[Finding]:
-    """A world holds several models: which of them is the robot, nobody can tell."""
+    """A world holds several models: it is not known which one is the robot."""
     document = inventory.document
     starts = zip(document.root.iter("*"), document.starts, strict=True)
     for element, start in starts if document.root.tag == "sdf" else ():
@@ -86,23 +87,23 @@ def worlds(inventory: Inventory) -> Iterator[Finding]:
 
 
 def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
-    """Uses of a link or joint that nothing declares: they stay as they are."""
+    """Uses of a link or joint that nothing declares: they are not renamed."""
     loose = loose_ends(doubtful(inventory), inventory.declared, naming.shared_frames)
     for it in remarks(loose, inventory.declared):
-        yield it._replace(message=f"{it.message}: it stays as it is")
+        yield it._replace(message=f"{it.message}: it is not renamed")
 
 
-def is_unknown(rewriter: Rewriter) -> bool:
-    """No section knows the plugin: the element's own stands in, or the one for any ROS node."""
-    return rewriter.select == "plugin" or rewriter.names[0] == ANY_WITH_ROS
+def is_unknown(section: VocabularySection) -> bool:
+    """Is the plugin in no section? Then the element's own is used, or the one for any ROS node."""
+    return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
     """Plugins no section knows: what their parameters name can only be guessed."""
     known = {}
     for host in inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is None or not is_unknown(rewriter):
+        section = host.node.section
+        if section is None or not is_unknown(section):
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
         if name not in known:
@@ -113,16 +114,16 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
             host.start,
             None,
             "MB902",
-            f"plugin {name!r} is not in the vocabulary: its own parameters stay as they are",
-            f"the nearest known one is {near!r}" if near else "",
+            f"plugin {name!r} is not in the vocabulary: its own parameters are not renamed",
+            f"did you mean {near!r}?" if near else "",
         )
 
 
 def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
     """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
     for host in inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is None or rewriter.select != "hardware":
+        section = host.node.section
+        if section is None or section.select != "hardware":
             continue
         name = host.element.findtext("hardware/plugin", "").strip()
         if not name or host.element.find("hardware/param") is None:
@@ -133,6 +134,6 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
             host.start,
             None,
             "MB903",
-            f"hardware class {name!r} is not in the vocabulary: its own parameters stay as they are",
-            f"the nearest known one is {near!r}" if near else "",
+            f"hardware class {name!r} is not in the vocabulary: its own parameters are not renamed",
+            f"did you mean {near!r}?" if near else "",
         )

@@ -1,11 +1,12 @@
-"""What several robots of one description will stumble over: one function a hazard."""
+"""What breaks when several robots are made from one description: one function per problem."""
 
 from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import partial
 
-from multibot_rewrite.checks.remarks import Remark, about, told
+from multibot_rewrite.checks.remarks import Remark, about, to_findings
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import (
     FRAME_KINDS,
@@ -14,27 +15,21 @@ from multibot_rewrite.naming import (
     PREFIX,
     TF_TOPICS,
     Naming,
-    affix,
 )
-from multibot_rewrite.rewriters.spelling import spell
-from multibot_rewrite.rewriters.vocabulary import Rewriter
+from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.steps.collect import Host, Inventory
+from multibot_rewrite.steps.renames import RenameMap
 
 
-def hazards(inventory: Inventory, naming: Naming) -> Iterator[Finding]:
-    """All of them, whatever the robots are called."""
-    for hazard in (
-        prefix_only,
-        leading_slashes,
-        moved_tf,
-        bare_lookups,
-        process_wide,
-        hardwired,
-        outside_frames,
-        reordered,
-    ):
-        yield from told(inventory.document, hazard(inventory, naming), WARNING)
+def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Finding]:
+    """All of them; they do not depend on the robots' names."""
+    of_naming = (prefix_only, leading_slashes, moved_tf, bare_lookups, process_wide)
+    of_names = (hardwired, outside_frames, reordered)
+    found = [hazard(inventory, renames.naming) for hazard in of_naming]
+    found += [hazard(inventory, renames) for hazard in of_names]
+    for remarks in found:
+        yield from to_findings(inventory.document, remarks, WARNING)
 
 
 def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
@@ -44,8 +39,8 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     for claim in inventory.claims:
         if claim.site.form == "prefix":
             message = (
-                f"{claim.site.path} {claim.value!r} stands in front of names that code makes, a "
-                "postfix cannot reach them"
+                f"{claim.site.path} {claim.value!r} is put in front of names by the plugin, so a "
+                "postfix cannot be added"
             )
             yield about(claim, "MB422", message, "use --affix prefix")
 
@@ -66,7 +61,7 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     for claim in inventory.claims if not naming.layout.tf_per_robot else ():
         rule = split_remap(claim.value) if claim.site.form == "remap" else None
         if rule and rule.source.strip("/") in TF_TOPICS and rule.target != rule.source:
-            message = f"{claim.value!r} takes this plugin off the one {rule.source} of the layout"
+            message = f"{claim.value!r} moves this plugin away from the shared {rule.source}"
             hint = "drop the rule, or use --layout both"
             yield about(claim, "MB423", message, hint)
 
@@ -74,14 +69,14 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
 def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     """Consumers that find things by bare name in the whole world, where those names stay bare."""
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
-    for rewriter, host in _known_hosts(inventory):
-        kind = rewriter.unique
+    for section, host in _known_hosts(inventory):
+        kind = section.unique
         if kind in declared and kind not in naming.separators:
             message = (
-                f"{rewriter.names[0]} looks {kind}s up by bare name in the whole world: "
-                "it may find another robot's"
+                f"{section.names[0]} looks {kind}s up by bare name in the whole world: "
+                "it may find that of another robot"
             )
-            hint = f"--layout both spells {kind}s per robot"
+            hint = f"use --layout both, which renames {kind}s for each robot"
             yield _host(host, "MB425", message, hint)
 
 
@@ -89,36 +84,33 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
     """Remap rules that hold for every node of the process keep robots apart only by namespaces
     (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
     if naming.topics != NAMESPACE:
-        for rewriter, host in _known_hosts(inventory):
-            if not rewriter.process_wide:
+        for section, host in _known_hosts(inventory):
+            if not section.process_wide:
                 continue
-            message = (
-                f"remap rules of {rewriter.names[0]} hold for the whole process, other robots' too"
-            )
+            plugin = section.names[0]
+            message = f"remap rules of {plugin} apply to the whole process, also to other robots"
             hint = "with several robots in one Gazebo use --topics namespace"
             yield _host(host, "MB426", message, hint)
         return
-    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.rewriter)}
+    inside = {host.element for host in inventory.hosts if _holds_for_all(host.node.section)}
     for claim in inventory.claims if inside else ():
         rule = split_remap(claim.value) if claim.site.form in ("remap", "argument") else None
         if rule is None or inside.isdisjoint(claim.element.iterancestors()):
             continue
         if rule.target.startswith("/"):
-            message = f"{claim.value!r} holds for the whole process, other robots' nodes too"
-            hint = "a relative target ends in each robot's own namespace"
+            message = f"{claim.value!r} applies to the whole process, also to nodes of other robots"
+            hint = "use a relative target, which ends up in each robot's own namespace"
             yield about(claim, "MB426", message, hint)
 
 
-def hardwired(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
     """Plugins whose code looks for a literal name: under another one they find nothing."""
-    for rewriter, host in _known_hosts(inventory):
-        for entry in rewriter.hardwired:
+    for section, host in _known_hosts(inventory):
+        for entry in section.hardwired:
             kind, _, name = entry.partition(":")
-            if name in inventory.declared[kind] and affix(naming, kind, name) is not None:
-                message = (
-                    f"{rewriter.names[0]} looks for a {kind} called {name!r}, which is renamed"
-                )
-                hint = "its code knows no other name: use --layout tf-per-robot"
+            if name in inventory.declared[kind] and renames.changes(kind, name):
+                message = f"{section.names[0]} looks for a {kind} called {name!r}, which is renamed"
+                hint = "the name is fixed in its code: use --layout tf-per-robot"
                 yield _host(host, "MB428", message, hint)
 
 
@@ -126,24 +118,24 @@ def _host(host: Host, code: str, message: str, hint: str) -> Remark:
     return Remark(host.element, host.start, None, code, message, hint)
 
 
-def _holds_for_all(rewriter: Rewriter | None) -> bool:
-    return rewriter is not None and rewriter.process_wide
+def _holds_for_all(section: VocabularySection | None) -> bool:
+    return section is not None and section.process_wide
 
 
-def _known_hosts(inventory: Inventory) -> Iterator[tuple[Rewriter, Host]]:
+def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host]]:
     for host in inventory.hosts:
-        if host.node.rewriter is not None:
-            yield host.node.rewriter, host
+        if host.node.section is not None:
+            yield host.node.section, host
 
 
-def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
     """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
-    for claim in inventory.claims:
+    for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue
-        for kind, there in spell(claim, inventory.declared, naming):
-            if kind == "frame":
-                new = there.spell(claim.value, "ROBOT")
+        for name in spelling:
+            if name.kind == "frame":
+                new = name.affix.spell(claim.value, "ROBOT")
                 message = (
                     f"the robot is fixed to {claim.value!r}, which becomes {new!r} for each ROBOT"
                 )
@@ -151,10 +143,10 @@ def outside_frames(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
                 yield about(claim, "MB427", message, hint)
 
 
-def reordered(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
     """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
     of pinocchio's configuration vector."""
-    if naming.affix != POSTFIX or "joint" not in naming.separators:
+    if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:
         return
     siblings: dict[str, list[str]] = defaultdict(list)
     declared = inventory.declared["joint"]
@@ -164,18 +156,13 @@ def reordered(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             siblings[parent.get("link", "")].append(claim.value)
     for link, names in siblings.items():
         old = sorted(names)
-        # The order may hang on the robot's name: a first and a last one show it.
-        orders = [sorted(names, key=lambda name: _ordered(naming, name, r)) for r in "\0~"]
+        # The order may depend on the robot's name: try one that sorts first and one that sorts last.
+        orders = [sorted(names, key=partial(renames.spelled, robot, "joint")) for robot in "\0~"]
         new = next((order for order in orders if order != old), None)
         if new is not None:
             yield about(
                 inventory.declared["joint"][new[0]],
                 "MB405",
-                f"the joints below link {link!r} change their order: {', '.join(new)}",
-                "urdfdom sorts them by name, a prefix would not: --affix prefix",
+                f"the postfix changes the order of the joints below link {link!r} to {', '.join(new)}",
+                "urdfdom sorts joints by name; use --affix prefix to keep the order",
             )
-
-
-def _ordered(naming: Naming, name: str, robot: str) -> str:
-    there = affix(naming, "joint", name)
-    return there.spell(name, robot) if there else name

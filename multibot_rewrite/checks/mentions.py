@@ -1,4 +1,4 @@
-"""Names of the description that stand where no site claims them: what a rewrite may have missed."""
+"""Names of links and joints in values that no site claims: a rewrite leaves them as they are."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.checks.remarks import Remark
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import WARNING, Finding, Site
-from multibot_rewrite.rewriters.tree import Node, Tree
+from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot
 
-_BETWEEN = regex(r":=|::|[\s,;/]+")
-_NUMBERS = regex(r"[-+0-9.eE\s]*$")
+_BETWEEN = lazy_compile(r":=|::|[\s,;/]+")
+_NUMBERS = lazy_compile(r"[-+0-9.eE\s]*$")
 
 
 class Mention(NamedTuple):
@@ -76,7 +76,7 @@ def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
 
 
 def mentioned(value: str, names: frozenset[str]) -> str:
-    """The name that a value is, or that it holds; empty where there is none."""
+    """The name that a value is or holds; empty if it has none."""
     if value in names:
         return value
     if _NUMBERS.match(value):
@@ -107,7 +107,7 @@ def kept(element: etree._Element, attribute: str, tree: Tree) -> Site | None:
     return node.keeps.get(attribute) if node else None
 
 
-def node_of(element: etree._Element, tree: Tree) -> Node | None:
+def node_of(element: etree._Element, tree: Tree) -> TreeNode | None:
     """The node of the tree that serves an element."""
     parent = element.getparent()
     if parent is None:
@@ -122,6 +122,6 @@ def remark(mention: Mention) -> Remark:
     element, start, attribute, value, name = mention
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
-    message = f"unclaimed mention: {text}, and nothing known says what it means: it stays as it is"
+    message = f"unclaimed mention: {text}, which the vocabulary does not know: it is not renamed"
     hint = "add a line to a vocabulary file: a uses/declares site, or keep"
     return Remark(element, start, attribute, "MB901", message, hint)

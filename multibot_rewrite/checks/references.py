@@ -1,4 +1,4 @@
-"""Names against what declares them: those that lead nowhere, to two things, or are there twice."""
+"""Names that nothing declares, that are ambiguous, or that are declared twice."""
 
 from __future__ import annotations
 
@@ -10,7 +10,12 @@ from lxml.etree import _Element
 from multibot_rewrite.checks.remarks import Remark, about
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
-from multibot_rewrite.rewriters.forms import Declared, Part
+from multibot_rewrite.nearest import did_you_mean
+
+# The lint imports these two from here.
+from multibot_rewrite.nearest import fold as fold  # noqa: PLC0414
+from multibot_rewrite.nearest import nearest as nearest  # noqa: PLC0414
+from multibot_rewrite.rewriters.forms import Declared, NamePart
 from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import locate
@@ -43,7 +48,7 @@ class Loose(NamedTuple):
     """A name in a claimed value that nothing declares."""
 
     claim: Claim
-    part: Part
+    part: NamePart
 
 
 def doubtful(inventory: Inventory) -> list[Claim]:
@@ -52,7 +57,9 @@ def doubtful(inventory: Inventory) -> list[Claim]:
     return [
         claim
         for claim in inventory.claims
-        if not (claim.site.plain and claim.value in declared[claim.site.plain])
+        if not (
+            claim.site.whole_value_kind and claim.value in declared[claim.site.whole_value_kind]
+        )
         and claim.site.role == "uses"
     ]
 
@@ -75,26 +82,25 @@ def loose_ends(
 
 
 def remarks(loose: Iterable[Loose], declared: Declared) -> Iterator[Remark]:
-    """What is said about them, each with the code of its place."""
+    """A remark for each, with the code for where it is."""
     hints: dict[str, str] = {}
     for it in loose:
         claim, part = it
         if part.text not in hints and len(hints) < HINTED:
             known = [known for kind in part.kinds for known in declared.get(kind, ())]
-            near = nearest(part.text, known[:COMPARED])
-            hints[part.text] = f"did you mean {near!r}?" if near else ""
+            hints[part.text] = did_you_mean(part.text, known[:COMPARED])
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
         message += _fault(part, declared)
         yield about(claim, _code(claim.site, part), message, hints.get(part.text, ""))
 
 
-def _fault(part: Part, declared: Declared) -> str:
+def _fault(part: NamePart, declared: Declared) -> str:
     found = (kind for kind in sorted(CLOSED_KINDS) if part.text in declared.get(kind, ()))
     other = next(found, "")
     return f"which is a {other}" if other else "which is not declared"
 
 
-def _code(site: Site, part: Part) -> str:
+def _code(site: Site, part: NamePart) -> str:
     if site.form == "scoped":
         return _SCOPE
     for section, path, code in _THEMES:
@@ -115,21 +121,6 @@ def where(claim: Claim) -> str:
     return f'<{tag} name="{name}">' if name else f"<{tag}>"
 
 
-def nearest(name: str, known: Collection[str]) -> str:
-    """The known name most like ``name``, or an empty string."""
-    from difflib import get_close_matches  # only a message needs it
-
-    folded = fold(name)
-    same = next((it for it in known if fold(it) == folded), "")
-    return same or next(iter(get_close_matches(name, known, 1, 0.7)), "")
-
-
-def fold(name: str) -> str:
-    """A name without what is often written in another way: case, scope, slash, dashes, spaces."""
-    bare = name.rpartition("::")[2].strip().strip("/").casefold()
-    return bare.replace("-", "_").replace(" ", "_")
-
-
 def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
     """Declarations of a name that is there already in their model, and the first one.
 
@@ -146,7 +137,7 @@ def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
 
 
 def duplicates(inventory: Inventory) -> Iterator[Remark]:
-    """The same in words."""
+    """The same as remarks."""
     source = inventory.document.source
     for claim, first in repeated(inventory):
         code = "MB806" if claim.site.section == SRDF_ROBOT else "MB201"
@@ -156,7 +147,7 @@ def duplicates(inventory: Inventory) -> Iterator[Remark]:
 
 
 def _scope(element: _Element) -> _Element | None:
-    """The model that a declaration stands in: names of nested SDF models are their own."""
+    """The model that a declaration is in: names of nested SDF models are their own."""
     return next(element.iterancestors("model", "robot"), None)
 
 

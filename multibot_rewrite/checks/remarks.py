@@ -1,4 +1,4 @@
-"""What a check says about a value of a document, before it is a line that somebody reads.
+"""A remark: what a check says about a value, before it is a finding with a line and a level.
 
 A rewrite prints it with the place of its element; the lint needs the element and the attribute.
 """
@@ -31,7 +31,7 @@ def about(claim: Claim, code: str, message: str, hint: str = "") -> Remark:
     return Remark(claim.element, claim.start, claim.attribute, code, message, hint)
 
 
-def told(document: Document, remarks: Iterable[Remark], level: str) -> Iterator[Finding]:
+def to_findings(document: Document, remarks: Iterable[Remark], level: str) -> Iterator[Finding]:
     """The remarks as findings."""
     for it in remarks:
         yield finding(document, it.start, it.code, level, it.message, it.hint)

@@ -19,7 +19,7 @@ from multibot_rewrite.plural import plural
 from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
-    Mention,
+    MentionPlace,
     Reason,
     Survey,
     Tally,
@@ -160,7 +160,7 @@ def _loaded_json(total: Survey, type_: str) -> dict[str, object]:
     }
 
 
-def _mention_json(mention: Mention, tally: Tally) -> dict[str, object]:
+def _mention_json(mention: MentionPlace, tally: Tally) -> dict[str, object]:
     return {
         "path": mention.path,
         "count": tally.times,
@@ -174,7 +174,7 @@ def _unknown(total: Survey, type_: str) -> list[tuple[Loaded, Tally]]:
     return ranked((it, t) for it, t in total.loaded.items() if it.type == type_ and not it.known)
 
 
-def _inside(report: Report) -> list[tuple[Mention, Tally]]:
+def _inside(report: Report) -> list[tuple[MentionPlace, Tally]]:
     return ranked(pair for pair in report.total.mentions.items() if not pair[0].exact)
 
 
@@ -215,7 +215,7 @@ def _loaded_parts(total: Survey, type_: str, words: str, top: int | None) -> Ite
 
 
 def _mention_parts(
-    what: str, mentions: Sequence[tuple[Mention, Tally]], top: int | None
+    what: str, mentions: Sequence[tuple[MentionPlace, Tally]], top: int | None
 ) -> Iterator[str | Grid]:
     yield f"\n{_times(mentions)} {what}"
     rows = [(str(t.times), str(t.files), m.path, clip(t.value), t.place) for m, t in mentions]
@@ -224,7 +224,7 @@ def _mention_parts(
         yield from _rest(rows, top)
 
 
-def _times(rows: Iterable[tuple[Mention, Tally] | tuple[Mention, Tally, Reason]]) -> int:
+def _times(rows: Iterable[tuple[MentionPlace, Tally] | tuple[MentionPlace, Tally, Reason]]) -> int:
     return sum(row[1].times for row in rows)
 
 

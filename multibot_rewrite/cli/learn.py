@@ -10,7 +10,7 @@ from multibot_rewrite.cli.output import deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.graph.check import doubts
-from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner
+from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.live.child import RosUnusable, observe
@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     library = built_in()
     learned = learn(graph, names, namespace, library)
     deliver(options, to_yaml(learned, options.stack, library).encode())
-    for remark in _notes(graph, learned, options.namespace):
+    for remark in _notes(graph, learned, options.namespace, bool(options.node)):
         note(options, f"note: {remark}")
     note(options, f"{plural(len(learned), 'node')} learned as stack {options.stack}")
     return INCONCLUSIVE if doubtful else DONE
@@ -54,12 +54,17 @@ def _graph(options: argparse.Namespace) -> Snapshot:
     return from_json(read_file(options.snapshot), options.snapshot)
 
 
-def _notes(graph: Snapshot, learned: Sequence[LearnedNode], namespace: str | None) -> Iterator[str]:
+def _notes(
+    graph: Snapshot, learned: Sequence[LearnedNode], namespace: str | None, named: bool
+) -> Iterator[str]:
     for node in learned:
         yield from (f"{node.seen}: {remark}" for remark in node.remarks)
     lost = helpers_without_owner(graph, [node.seen for node in learned])
     if lost:
         yield f"whose helpers these are is not seen, they are left out: {', '.join(lost)}"
+    tools = left_out(graph, [node.seen for node in learned], namespace or "/")
+    if tools and not named:
+        yield f"left out as tools: {', '.join(tools)}; to learn one give its name to --node"
     first = {node.facts.name.partition("/")[0] for node in learned if "/" in node.facts.name}
     if namespace is None and len(first) == 1 and all("/" in node.facts.name for node in learned):
         where = f"/{first.pop()}"

@@ -13,7 +13,7 @@ from multibot_rewrite.cli.parser import painted
 from multibot_rewrite.cli.process import DONE, PROGRAM, guarded, start
 from multibot_rewrite.cli.terminal import AUTO, is_coloured
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.version import __version__
 
 HELP, VERSION = ("-h", "--help"), ("-V", "--version")
@@ -45,7 +45,7 @@ def find_command(word: str) -> Command:
         return COMMANDS[word]
     if word.startswith("-"):
         raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
-    near = did_you_mean(word, COMMANDS, 0.5)
+    near = did_you_mean_one_of(word, COMMANDS)
     raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
 
 

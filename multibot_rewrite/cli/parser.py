@@ -12,15 +12,15 @@ from typing import NoReturn
 
 from multibot_rewrite.cli.options import Command, Example, Group
 from multibot_rewrite.cli.terminal import AUTO, is_coloured
-from multibot_rewrite.lazy import regex
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.version import __version__
 
 UNUSABLE = 2
 # Help is not wider than this, however wide the terminal: long lines are hard to read.
 WIDEST = 120
-_HEADING = regex(r"^([a-z][^\n:]*:)(?=$| )", re.MULTILINE)
-_NAME = regex(r"^(  (?:-\w, )?--[\w-]+)", re.MULTILINE)
+_HEADING = lazy_compile(r"^([a-z][^\n:]*:)(?=$| )", re.MULTILINE)
+_NAME = lazy_compile(r"^(  (?:-\w, )?--[\w-]+)", re.MULTILINE)
 
 
 class Parser(argparse.ArgumentParser):
@@ -151,5 +151,5 @@ def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
     before_end = takewhile(lambda word: word != "--", words)
     names = (word.partition("=")[0] for word in before_end if word.startswith("--"))
     wrong = next((name for name in names if name not in known), "")
-    near = did_you_mean(wrong, known, 0.6)
+    near = did_you_mean_one_of(wrong, known)
     return f"unknown option {wrong}{'; ' * bool(near)}{near}" if wrong else ""

@@ -128,8 +128,8 @@ def summary(first: Rewrite, robots: list[str]) -> str:
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)
-        for claim, spelling in zip(inventory.claims, plan.spellings, strict=True)
-        for kind, _ in spelling
+        for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True)
+        for kind, *_ in spelling
     }
     counts = Counter(kind for kind, _ in names)
     known = [plural(counts[kind], kind) for kind in SEPARATORS if counts[kind]]

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Callable, Collection
 
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 MAX_SECONDS = 3600
 # The highest ROS_DOMAIN_ID that rcl takes.
@@ -48,7 +48,7 @@ def one_of(known: Collection[str]) -> Callable[[str], str]:
     def read(text: str) -> str:
         if text in known:
             return text
-        near = did_you_mean(text, known, 0.5)
+        near = did_you_mean_one_of(text, known)
         hint = f"; {near}" if near else ""
         raise argparse.ArgumentTypeError(
             f"{text!r} is not known, use one of {', '.join(known)}{hint}"

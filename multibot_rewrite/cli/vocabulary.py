@@ -15,7 +15,7 @@ from multibot_rewrite.model import Site, UsageError
 from multibot_rewrite.reports.suggest import suggest, vocabulary_text
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import block_of, look_up, near_names
-from multibot_rewrite.rewriters.vocabulary import TYPES, Rewriter, Vocabulary
+from multibot_rewrite.rewriters.vocabulary import TYPES, Vocabulary, VocabularySection
 from multibot_rewrite.rewriters.vocabulary.describe import facts
 from multibot_rewrite.sources.read import read_source
 from multibot_rewrite.steps.collect import collect
@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
         check_target(options.output, files)
     vocabulary = builtin_tree(files).vocabulary
     types = [options.type] if options.type else list(TYPES)
-    found = vocabulary.rewriters(*types) if name is None else _found(vocabulary, name, types)
+    found = vocabulary.sections(*types) if name is None else _found(vocabulary, name, types)
     if options.form == JSON:
         deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
@@ -46,7 +46,7 @@ def _name(options: argparse.Namespace) -> str | None:
     return next(iter(options.words), None)
 
 
-def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Rewriter]:
+def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
     found = look_up(vocabulary, name, types)
     if found:
         return found
@@ -56,7 +56,7 @@ def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Rewr
     raise UsageError(f"{name!r} is no {what} of the vocabulary; {hint}")
 
 
-def _list(sections: Sequence[Rewriter]) -> Iterator[str | Grid]:
+def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """One line a section."""
     columns = ("type", "name", "ROS", "also called", "rows", "source")
     rows = [
@@ -66,18 +66,18 @@ def _list(sections: Sequence[Rewriter]) -> Iterator[str | Grid]:
     yield Grid(columns, rows)
 
 
-def _details(sections: Sequence[Rewriter]) -> Iterator[str | Grid]:
+def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """Everything known, a block of lines a section."""
-    for number, rewriter in enumerate(sections):
-        yield f"{chr(10) * (number > 0)}{rewriter.name}  {rewriter.file}:{rewriter.line}"
-        yield from (f"  {what}: {text}" for what, text in facts(rewriter).items())
-        rows = [_row(site, rewriter) for site in rewriter.sites]
+    for number, section in enumerate(sections):
+        yield f"{chr(10) * (number > 0)}{section.name}  {section.file}:{section.line}"
+        yield from (f"  {what}: {text}" for what, text in facts(section).items())
+        rows = [_row(site, section) for site in section.sites]
         if rows:
             yield Grid(("path", "role", "kinds", "form", "default", "note", "from"), rows)
 
 
-def _row(site: Site, rewriter: Rewriter) -> tuple[str, ...]:
-    not_inserted = " (not inserted)" if site.default and not rewriter.inserts else ""
+def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
+    not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
     note = " ".join(filter(None, [site.note, f"(when {site.when})" if site.when else ""]))
@@ -92,31 +92,31 @@ def _row(site: Site, rewriter: Rewriter) -> tuple[str, ...]:
     )
 
 
-def as_json(rewriter: Rewriter) -> dict[str, object]:
+def as_json(section: VocabularySection) -> dict[str, object]:
     """A section as ``--form json`` writes it; docs/coverage.md describes it."""
     return {
-        "type": rewriter.type,
-        "names": rewriter.names,
-        "ros": rewriter.ros,
-        "about": rewriter.about,
-        "source": rewriter.source,
-        "file": rewriter.file,
-        "line": rewriter.line,
-        "at": rewriter.at,
-        "blocks": rewriter.blocks,
-        "remap_only": rewriter.topics,
-        "rows": [_row_json(site, rewriter) for site in rewriter.sites],
+        "type": section.type,
+        "names": section.names,
+        "ros": section.ros,
+        "about": section.about,
+        "source": section.source,
+        "file": section.file,
+        "line": section.line,
+        "at": section.at,
+        "blocks": section.blocks,
+        "remap_only": section.topics,
+        "rows": [_row_json(site, section) for site in section.sites],
     }
 
 
-def _row_json(site: Site, rewriter: Rewriter) -> dict[str, object]:
+def _row_json(site: Site, section: VocabularySection) -> dict[str, object]:
     return {
         "path": site.path,
         "role": site.role,
         "kinds": site.kinds,
         "form": site.form,
         "default": site.default,
-        "inserted": bool(site.default) and rewriter.inserts,
+        "inserted": bool(site.default) and section.inserts,
         "when": site.when,
         "note": site.note,
         "block": block_of(site),

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.model import Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
@@ -127,6 +128,13 @@ def finding_at(
     """A finding at the place of ``node``."""
     mark = node.start_mark
     return Finding(code, level, message, hint, document.file, mark.line + 1, mark.column + 1)
+
+
+def found_at(document: YamlText, node: yaml.Node, rule: Rule, message: str, hint: str) -> Finding:
+    """A finding of ``rule`` at the place of ``node``."""
+    mark = node.start_mark
+    place = {"file": document.file, "line": mark.line + 1, "column": mark.column + 1}
+    return rule.finding(message, hint, **place)
 
 
 def replaced(node: yaml.ScalarNode, new: str) -> Splice:

@@ -8,7 +8,11 @@ from typing import NamedTuple
 from multibot_rewrite.findings.rule import Rule
 
 # What an example is written in -> how a Markdown page colours it; XML where it is not here.
-_LANGUAGES = {"yaml": "yaml", "lua": "lua", "graph": "text", "remap": "text"}
+_LANGUAGES = {
+    **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet"), "yaml"),
+    **dict.fromkeys(("graph", "remap"), "text"),
+    "lua": "lua",
+}
 
 
 class Group(NamedTuple):

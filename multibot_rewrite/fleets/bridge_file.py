@@ -32,6 +32,7 @@ from multibot_rewrite.companions.yaml_text import (
 )
 from multibot_rewrite.model import WARNING, Finding, InputError
 from multibot_rewrite.naming import POSTFIX
+from multibot_rewrite.nearest import did_you_mean
 
 # Stands for the name of the spawned model: it may differ from the namespace and the tag.
 MODEL_SLOT = "multibotModelSlot"
@@ -283,7 +284,8 @@ def _entry_findings(document: YamlText, entry: _Entry, context: Context) -> Iter
         yield finding_at(document, node, "MF501", WARNING, message, f"add a {ROS}")
     for kind, name in _PART.findall(entry.gz if MODEL_SLOT in entry.new_gz else ""):
         if not is_declared(context.names, kind, name) and not _PLACEHOLDER.search(name):
-            message = f"the description has no {kind} {name!r}{_nearest(name, context, kind)}"
+            known = context.names.declared.get(kind, ())
+            message = f"the description has no {kind} {name!r}{_near(name, known)}"
             yield finding_at(document, node, "MF507", WARNING, message, "correct the name")
     if text_of(node, SERVICE) and not text_of(node, SERVICE).strip("/").startswith("world/"):
         message = f"service {text_of(node, SERVICE)!r} is bridged once for all robots"
@@ -313,12 +315,6 @@ def _is_mention(node: yaml.Node, context: Context) -> bool:
     return is_text(node) and any(is_declared(known, it, node.value) for it in ("link", "joint"))
 
 
-def _nearest(name: str, context: Context, kind: str) -> str:
-    return _near(name, context.names.declared.get(kind, ()))
-
-
 def _near(name: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches
-
-    near = get_close_matches(name, list(known), 1, 0.6)
-    return f", did you mean {near[0]!r}?" if near else ""
+    near = did_you_mean(name, known)
+    return f", {near}" if near else ""

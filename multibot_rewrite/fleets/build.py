@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from functools import cache
 from typing import NamedTuple
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleets.commands_file import commands_file
@@ -20,6 +19,7 @@ from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, pa
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.model import Finding, UsageError
 from multibot_rewrite.remap.records import Table
@@ -43,7 +43,7 @@ def make_outputs(plan: FleetPlan) -> Outputs:
     Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
     would have the same path.
     """
-    with uncollected():
+    with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
         made = [

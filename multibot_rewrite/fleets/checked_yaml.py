@@ -9,6 +9,7 @@ import yaml
 
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.sources.read import read_file
 
 _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -102,14 +103,14 @@ def _in_words(error: Any) -> str:
     given, wanted = error.instance, error.validator_value
     if error.validator == "additionalProperties":
         known = error.schema["properties"]
-        return f"unknown key {_shown(_unknown(error))}; {nearest(_unknown(error), known)}"
+        return f"unknown key {_shown(_unknown(error))}; {_known(_unknown(error), known)}"
     if error.validator == "required":
         missing = next(key for key in wanted if key not in given)
         return f"the key {missing!r} is missing; add it"
     if given is None:
         return "the value is missing; write one, or remove the key"
     if error.validator == "enum":
-        return f"{_shown(given)} is not known; {nearest(given, wanted)}"
+        return f"{_shown(given)} is not known; {_known(given, wanted)}"
     if error.validator == "minItems" and not given:
         return "the list is empty; write at least one item"
     return f"{_shown(given)} is not valid; {_wanted(error)}"
@@ -145,11 +146,7 @@ def _where(path: Path) -> str:
     return f"{text}: " if text else ""
 
 
-def nearest(word: object, known: Iterable[object]) -> str:
+def _known(word: object, known: Iterable[object]) -> str:
     """What to write instead of an unknown word: the nearest known one, else all of them."""
-    from difflib import get_close_matches
-
     words = [str(it) for it in known]
-    near = get_close_matches(str(word), words, 1, 0.5)
-    more = f"; known are {', '.join(words)}"
-    return f"did you mean {near[0]!r}?" if near else more.removeprefix("; ")
+    return did_you_mean_one_of(str(word), words) or f"known are {', '.join(words)}"

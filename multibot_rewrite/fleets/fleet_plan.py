@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile
 from multibot_rewrite.fleets.rewritten_robots import (
@@ -15,6 +14,7 @@ from multibot_rewrite.fleets.rewritten_robots import (
     read_jobs,
     rewrite_robots,
 )
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
 
 
@@ -36,7 +36,7 @@ def plan_fleet(
     ``also`` are more nodes that every robot runs; ``jobs`` are the descriptions if they have been
     read already. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    with uncollected():
+    with gc_paused():
         naming = make_naming(**file.policy)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary)
         robots = rewrite_robots(file.robots, read)

@@ -117,8 +117,8 @@ def _kinds(naming: Naming, graph: bool) -> Naming:
 
 
 def _half(
-    source: bytes, file: str, robot: str, naming: Naming, template: pipeline.Template
+    source: bytes, file: str, robot: str, naming: Naming, template: pipeline.Prepared
 ) -> bytes:
     # The second rewrite finds names that the first one has rewritten for the other word.
-    prepared = pipeline.prepare(source, file, naming, template.tree, template.outside)
+    prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))

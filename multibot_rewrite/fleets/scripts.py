@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Mapping
 from functools import cached_property
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 from multibot_rewrite.arguments import checked
 from multibot_rewrite.companions.names.rename_map import spell
@@ -22,6 +22,7 @@ from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rcl_parameters import (
     Value,
@@ -33,60 +34,10 @@ from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot, Sourc
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.remap.records import TOPIC, NodeFacts, NodeTable, Problem, Table
+from multibot_rewrite.remap.records import TOPIC, Problem
 from multibot_rewrite.remap.table import placed, target_of
 from multibot_rewrite.remap.yaml_with_lines import unknown
 from multibot_rewrite.sources.read import read_file
-
-Rules = list[tuple[str, str]]
-
-
-class NodeNames(NamedTuple):
-    """Names and remappings of a robot's nodes, by their names in the stacks.
-
-    ``hosted`` maps a node to those that always run in its process, as costmaps do.
-    """
-
-    robot: str
-    nodes: Mapping[str, NodeTable]
-    hosted: Mapping[str, tuple[str, ...]]
-
-    @checked
-    def for_node(self, node: str) -> Rules:
-        """The node's remappings, as ``launch_ros.actions.Node`` takes them.
-
-        Rules for nodes that it hosts come first: rcl applies the first rule that matches. Raises
-        UsageError for a node that no stack of the fleet has.
-        """
-        own = self._found(node)
-        rules = [
-            (f"{self.nodes[it].name}:{rule.source}", rule.target)
-            for it in self.hosted.get(node, ())
-            for rule in self.nodes[it].rules
-        ]
-        return [*rules, *((rule.source, rule.target) for rule in own.rules)]
-
-    @checked
-    def name(self, node: str) -> str:
-        """The name the node runs under, without its namespace; raises as ``for_node``."""
-        return self._found(node).name
-
-    @checked
-    def namespace(self, node: str) -> str:
-        """The namespace the node runs in, from the root; raises as ``for_node``."""
-        return self._found(node).namespace
-
-    @checked
-    def full_name(self, node: str) -> str:
-        """The node's name with its namespace; raises as ``for_node``."""
-        return f"{self.namespace(node).rstrip('/')}/{self.name(node)}"
-
-    def _found(self, node: str) -> NodeTable:
-        if node in self.nodes:
-            return self.nodes[node]
-        where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
-        hint = "add its stack to stack: in the fleet file"
-        raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 
 class LoadedRobot:
@@ -129,7 +80,7 @@ class LoadedRobot:
         """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``. Raises
         nothing."""
         fleet = self._fleet.planned
-        return _names(fleet.table, fleet.facts, self._graph)
+        return names_of(fleet.table, fleet.facts, self._graph)
 
     @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
@@ -275,7 +226,7 @@ class LoadedFleet:
     @cached_property
     def table(self) -> NodeNames:
         """Names and remappings of the nodes that serve all robots; raises nothing."""
-        return _names(self.planned.table, self.planned.facts, "")
+        return names_of(self.planned.table, self.planned.facts, "")
 
     @cached_property
     def planned(self) -> Fleet:
@@ -337,18 +288,6 @@ def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
 def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
     """The fleet of a pickle: rewritten again from the descriptions that it includes."""
     return LoadedFleet(plan_fleet(file, jobs=jobs))
-
-
-def _names(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:
-    nodes: dict[str, NodeTable] = {}
-    for it in table.nodes:
-        if it.robot == robot:
-            nodes.setdefault(it.node, it)
-    hosted: dict[str, tuple[str, ...]] = {}
-    for fact in facts:
-        if fact.host in nodes and fact.name in nodes:
-            hosted[fact.host] = (*hosted.get(fact.host, ()), fact.name)
-    return NodeNames(robot, nodes, hosted)
 
 
 def _findings(plan: FleetPlan) -> tuple[Finding, ...]:

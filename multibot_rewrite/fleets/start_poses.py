@@ -152,7 +152,7 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
 def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
     """The odometry frames of gz-sim's systems, which a bridge brings to tf."""
     for host in inventory.hosts:
-        name = host.node.rewriter.names[0] if host.node.rewriter else ""
+        name = host.node.section.names[0] if host.node.section else ""
         topics = bridge_data()["plugins"].get(name, ())
         if any(row[2] == TF_TYPE for row in topics):
             given = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-from multibot_rewrite.bulk import uncollected
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.rules import frames, nodes, topics, type_and_qos
 from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding, View, make_view
@@ -41,7 +41,7 @@ ABSENCE = ("MG101", "MG102", "MG109", "MG110", "MG111", "MG203", "MG207")
 
 def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
-    with uncollected():
+    with gc_paused():
         view = make_view(plan, graph)
         found = [finding for rule in RULES for finding in rule(view)]
     if not doubts(graph):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.remap.records import NodeFacts, ResolvedName, Table
 from multibot_rewrite.steps.collect import Inventory
 
@@ -92,7 +92,7 @@ def expect(
     for name in (robot for robot in nodes if robot):
         own = tuple(frames.get(name, ()))
         word = words.get(name, name)
-        others = (*named.get(name, ()), *(spelled(frame, word, naming) for frame in usual))
+        others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
         may_miss = tuple(full for stack_name, full in nodes[name] if stack_name in optional)
         full = tuple(dict.fromkeys(full for _, full in nodes[name]))
@@ -126,12 +126,6 @@ def _defaults(facts: Iterable[NodeFacts]) -> Iterator[str]:
         yield from (name for name in names if name and "<" not in name)
 
 
-def spelled(frame: str, robot: str, naming: Naming) -> str:
-    """A frame as the layout spells it for a robot."""
-    there = affix(naming, "frame", frame)
-    return there.spell(frame, robot) if there else frame
-
-
 def named_frames(inventory: Inventory) -> tuple[str, ...]:
     """The frames that a description names anywhere, such as those of its plugins' messages."""
     values = (
@@ -158,5 +152,4 @@ def tf_topic(robot: str, naming: Naming) -> str:
         return topic
     if naming.topics == NAMESPACE:
         return f"/{robot}{topic}"
-    there = affix(naming, "topic", topic)
-    return there.spell(topic, robot) if there else topic
+    return spelled(naming, robot, "topic", topic)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.naming import Naming, affix
+from multibot_rewrite.naming import Naming, spelled
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.steps.collect import Inventory
 
@@ -40,11 +40,11 @@ def edges_of(
     root = next((link for link in inventory.declared["link"] if link not in children), "")
     result = {(robot, node.name): [*_sent(node, "")] for node in plugins}
     for node in facts:
-        spelled = [
-            frame._replace(default=_spelled(frame.default, word or robot, naming))
+        frames = [
+            frame._replace(default=spelled(naming, word or robot, "frame", frame.default))
             for frame in node.frames
         ]
-        own = [*_sent(node._replace(frames=tuple(spelled)), root)]
+        own = [*_sent(node._replace(frames=tuple(frames)), root)]
         result[robot, node.name] = tree if node.package == STATE_PUBLISHER else own
     return result
 
@@ -56,11 +56,6 @@ def description_edges(inventory: Inventory) -> Iterator[Edge]:
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
             yield Edge(names[0], names[1], joint.get("type") == "fixed")
-
-
-def _spelled(frame: str, robot: str, naming: Naming) -> str:
-    there = affix(naming, "frame", frame)
-    return there.spell(frame, robot) if there else frame
 
 
 def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:

@@ -9,10 +9,10 @@ from contextlib import contextmanager
 from functools import partial
 from typing import NoReturn
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.places import numbered, placed
@@ -44,7 +44,7 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
     found: list[Finding] = []
     sources: dict[str, bytes] = {}
     try:
-        with _limited(settings.seconds), uncollected():
+        with _limited(settings.seconds), gc_paused():
             sources[path] = data = read()
             for subject in read_subjects(path, data, settings):
                 if isinstance(subject, Failed):

@@ -8,13 +8,13 @@ import signal
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR
 
-_PLACE = regex(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
+_PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
 # What a reader says -> the rule that this is.
 _CODES = (
     ("No such file", "MB102"),

@@ -12,7 +12,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.steps.document import tag_end
 
@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from multibot_rewrite.sources.trace import Call
 
 Numbers = Mapping[_Element, int]
-_BLANK = regex(rb"\s*")
-_ATTRIBUTE = regex(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[^\"]*\"|'[^']*')")
+_BLANK = lazy_compile(rb"\s*")
+_ATTRIBUTE = lazy_compile(rb"\s((?:[^\s=:/>\"']+:)?([^\s=:/>\"']+))\s*=\s*(?:\"[^\"]*\"|'[^']*')")
 
 
 class Place(NamedTuple):

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.selection import is_on, level_of
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.directives import (
     ALWAYS_TOLD,
     IGNORE_FILE,
@@ -24,9 +24,9 @@ from multibot_rewrite.steps.document import locate
 UNUSED, BROKEN = "MB002", "MB003"
 # With one of them the file was not looked at to its end.
 _UNFINISHED = ALWAYS_TOLD - {UNUSED, BROKEN}
-_CALL = regex(r"(.*):(\d+): ")
+_CALL = lazy_compile(r"(.*):(\d+): ")
 # A xacro file whose root has no name is a part of another one.
-_NAMED = regex(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
+_NAMED = lazy_compile(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
 Position = tuple[int, int]
 
 

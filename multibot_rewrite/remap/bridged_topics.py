@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, cast
 
 from lxml import etree
 
-from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.steps.collect import Inventory
 
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
@@ -71,7 +71,7 @@ def _robot_topics(
     # With bare frames the spawner must give the model the robot's name, or two models collide.
     model = inventory.document.root.get("name", "") if naming.layout.frames else robot
     for host in inventory.hosts:
-        name = host.node.rewriter.names[0] if host.node.rewriter else ""
+        name = host.node.section.names[0] if host.node.section else ""
         yield from _plugin(
             host.element, bridge_data()["plugins"].get(name, ()), robot, model, naming
         )
@@ -140,8 +140,7 @@ def _robot_name(name: str, robot: str, naming: Naming) -> str:
     """A name as the robot's own topic."""
     if naming.topics == NAMESPACE:
         return f"/{robot}/{name}"
-    there = affix(naming, "topic", f"/{name}")
-    return there.spell(f"/{name}", robot) if there else f"/{name}"
+    return spelled(naming, robot, "topic", f"/{name}")
 
 
 def as_yaml(bridged: Iterable[BridgedTopic]) -> str:

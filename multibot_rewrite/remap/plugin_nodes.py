@@ -21,7 +21,7 @@ from multibot_rewrite.remap.records import (
     NodeTable,
 )
 from multibot_rewrite.rewriters.switches import switched_off, switches
-from multibot_rewrite.rewriters.vocabulary import Rewriter
+from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.steps.collect import Host, Inventory
 from multibot_rewrite.steps.document import locate
@@ -31,19 +31,19 @@ ROS_NODE = "ros/remapping"
 
 def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
     """Each ROS 2 plugin of ``robot``'s rewritten description: its endpoints, its names and rules."""
-    for host, rewriter in _ros_nodes(inventory):
-        name = _node_name(host.element, rewriter)
+    for host, section in _ros_nodes(inventory):
+        name = _node_name(host.element, section)
         rules = tuple(_rules(host, robot, name))
         # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
         private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
         frames = tuple(_frames(inventory, host))
-        off = _odometry_is_off(host, rewriter)
+        off = _odometry_is_off(host, section)
         facts = NodeFacts(
             name,
-            rewriter.names[0],
+            section.names[0],
             (*_endpoints(inventory, host), *private),
             frames=frames,
-            sends=tuple(_sends(rewriter, frames, inventory.declared["link"], off)),
+            sends=tuple(_sends(section, frames, inventory.declared["link"], off)),
         )
         namespace = "/" + _ros_text(host.element, "namespace").strip("/")
         yield facts, NodeTable(robot, name, namespace, name, rules)
@@ -59,32 +59,32 @@ def plugin_places(inventory: Inventory) -> list[str]:
     return [f"{document.file}:{line}" for line in lines]
 
 
-def _ros_nodes(inventory: Inventory) -> Iterator[tuple[Host, Rewriter]]:
+def _ros_nodes(inventory: Inventory) -> Iterator[tuple[Host, VocabularySection]]:
     for host in inventory.hosts:
-        rewriter = host.node.rewriter
-        if rewriter is not None and any(site.path == ROS_NODE for site in rewriter.sites):
-            yield host, rewriter
+        section = host.node.section
+        if section is not None and any(site.path == ROS_NODE for site in section.sites):
+            yield host, section
 
 
-def _node_name(plugin: etree._Element, rewriter: Rewriter) -> str:
+def _node_name(plugin: etree._Element, section: VocabularySection) -> str:
     """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
-    sites = [site for site in rewriter.sites if site.kinds[:1] == ("node",) and site.default]
-    if any(site.path == "@name" for site in rewriter.sites if site.role == "declares"):
+    sites = [site for site in section.sites if site.kinds[:1] == ("node",) and site.default]
+    if any(site.path == "@name" for site in section.sites if site.role == "declares"):
         return plugin.get("name", "").strip()
     named = (plugin.findtext(site.path, "").strip() or site.default for site in sites)
-    return next(named, "") or rewriter.names[0].replace("-", "_")
+    return next(named, "") or section.names[0].replace("-", "_")
 
 
 def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
     """Names in the plugin's code, and names that its parameters set."""
-    rewriter = host.node.rewriter
-    assert rewriter is not None
+    section = host.node.section
+    assert section is not None
     wired = (
-        (PUBLISHES, TOPIC, rewriter.publishes),
-        (SUBSCRIBES, TOPIC, rewriter.subscribes),
-        (SERVES, SERVICE, rewriter.serves),
+        (PUBLISHES, TOPIC, section.publishes),
+        (SUBSCRIBES, TOPIC, section.subscribes),
+        (SERVES, SERVICE, section.serves),
     )
-    off = switched_off(host.element, rewriter)
+    off = switched_off(host.element, section)
     for role, kind, names in wired:
         yield from (Endpoint(kind, role, name, when=off.get(name, "")) for name in names)
     for claim in inventory.claims:
@@ -100,8 +100,8 @@ def _frames(inventory: Inventory, host: Host) -> Iterator[FrameParameter]:
         for claim in inventory.claims
         if _is_frame(claim.site) and host.element in claim.element.iterancestors()
     }
-    assert host.node.rewriter is not None
-    for site in filter(_is_frame, host.node.rewriter.sites):
+    assert host.node.section is not None
+    for site in filter(_is_frame, host.node.section.sites):
         value = given.get(site.path, site.default)
         if value:
             yield FrameParameter(site.path, value)
@@ -111,19 +111,19 @@ def _is_frame(site: Site) -> bool:
     return site.form == "whole" and site.kinds[:1] == ("frame",)
 
 
-def _odometry_is_off(host: Host, rewriter: Rewriter) -> bool:
+def _odometry_is_off(host: Host, section: VocabularySection) -> bool:
     """Is odometry off? The first switch of tf is for odometry, others are for wheels."""
-    found = [it for it in switches(host.element, rewriter) if it.topic == "/tf"]
+    found = [it for it in switches(host.element, section) if it.topic == "/tf"]
     return bool(found) and not found[0].on
 
 
 def _sends(
-    rewriter: Rewriter, frames: tuple[FrameParameter, ...], links: Container[str], off: bool
+    section: VocabularySection, frames: tuple[FrameParameter, ...], links: Container[str], off: bool
 ) -> Iterator[tuple[str, str]]:
     """The transform of a plugin that publishes tf: from its odometry frame to a link."""
     own = [frame.parameter for frame in frames if frame.default not in links]
     base = [frame.parameter for frame in frames if frame.default in links]
-    if "/tf" in rewriter.publishes and own and base and not off:
+    if "/tf" in section.publishes and own and base and not off:
         yield own[0], base[0]
 
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-from multibot_rewrite.bulk import uncollected
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import ERROR, WARNING
-from multibot_rewrite.naming import NAMESPACE, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, Naming, spelled
 from multibot_rewrite.remap.records import (
     ACTION,
     SERVICE,
@@ -53,7 +53,7 @@ def build_table(
 
     ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
     """
-    with uncollected():
+    with gc_paused():
         return _build(robots, nodes, naming, plugins)
 
 
@@ -150,8 +150,7 @@ def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
     above, _, name = node.strip("/").rpartition("/")
     if naming.topics == NAMESPACE:
         return "/" + "/".join(filter(None, [robot, above])), name
-    there = affix(naming, "node", name)
-    return f"/{above}", there.spell(name, robot) if there else name
+    return f"/{above}", spelled(naming, robot, "node", name)
 
 
 def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
@@ -182,8 +181,8 @@ def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
     if naming.topics == NAMESPACE:
         return bare if name.startswith("/") else ""
     base, rest = _family(name)
-    there = affix(naming, SERVICE if kind == SERVICE and not rest else TOPIC, base)
-    return there.spell(base, robot) + rest if there else ""
+    target = spelled(naming, robot, SERVICE if kind == SERVICE and not rest else TOPIC, base)
+    return target + rest if target != base else ""
 
 
 def _family(name: str) -> tuple[str, str]:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 if TYPE_CHECKING:
     import yaml
@@ -142,12 +143,9 @@ def wrong(item: YamlItem, message: str) -> NoReturn:
 
 def unknown(what: str, name: str, known: Iterable[str], more: Iterable[str] = ()) -> str:
     """That ``name`` is not known, with the nearest of all and the list of ``known``."""
-    from difflib import get_close_matches  # only a message needs it
-
     known = sorted(known)
-    near = get_close_matches(name, [*known, *more], 1, 0.4)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return f"{what} {name!r} is not known; {hint}known: {', '.join(known) or 'none'}"
+    near = did_you_mean_one_of(name, [*known, *more])
+    return f"{what} {name!r} is not known; {near}{near and ' '}known: {', '.join(known) or 'none'}"
 
 
 def _shape(item: YamlItem) -> str:

@@ -1,1 +1,1 @@
-"""What is told of a description beside its rewrite."""
+"""Reports about a description: changes, explanations, coverage and suggested vocabulary."""

@@ -1,28 +1,28 @@
-"""Plan -> the list of what changed, for reports, ``--changes`` and whoever builds on it."""
+"""Plan -> the list of what changed, as ``--changes`` writes it."""
 
 from __future__ import annotations
 
 from multibot_rewrite.model import Change, Claim
-from multibot_rewrite.pipeline import Template
-from multibot_rewrite.rewriters.spelling import HOLE, respelled
+from multibot_rewrite.pipeline import Prepared
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled
 from multibot_rewrite.steps.document import locate
 
 
-def list_changes(template: Template, robot: str) -> list[Change]:
+def list_changes(template: Prepared, robot: str) -> list[Change]:
     """Every renamed value at its place in the source, then every inserted one at its parent's."""
     inventory, plan = template.inventory, template.plan
     source = inventory.document.source
     changes = []
-    for claim, spelling in zip(inventory.claims, plan.spellings, strict=True):
+    for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True):
         if spelling:
             new = respelled(claim.value, spelling, robot)
-            changes.append(_change(source, claim, spelling[0][0], new))
+            changes.append(_change(source, claim, spelling[0].kind, new))
     for claim, text in plan.collisions:
-        changes.append(_change(source, claim, "collision", text.replace(HOLE, robot)))
+        changes.append(_change(source, claim, "collision", text.replace(ROBOT_SLOT, robot)))
     starts = dict(zip(inventory.document.root.iter("*"), inventory.document.starts, strict=True))
     for item in plan.insertions:
         place = locate(source, starts[item.parent])
-        new = item.new.replace(HOLE, robot)
+        new = item.new.replace(ROBOT_SLOT, robot)
         changes.append(Change(*place, item.kind, _path(item.parent), item.old, new, "inserted"))
     return sorted(changes)
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import kept, mentioned
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
-from multibot_rewrite.rewriters.spelling import HOLE, kind_of, names_in, respelled
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import locate, value_slot
@@ -45,33 +45,36 @@ def explain_line(
 def _claimed(
     inventory: Inventory, plan: Plan, naming: Naming, robot: str, line: int
 ) -> Iterator[Explanation]:
-    recomputed = {claim.start: new.replace(HOLE, robot) for claim, new in plan.collisions}
-    for claim, spelling in zip(inventory.claims, plan.spellings, strict=True):
+    recomputed = {claim.start: new.replace(ROBOT_SLOT, robot) for claim, new in plan.collisions}
+    values = zip(inventory.claims, inventory.names, plan.renames.values, strict=True)
+    for claim, names, spelling in values:
         place = _place(inventory, claim.start, claim.attribute, claim.value)
         if place[0] != line:
             continue
         new = respelled(claim.value, spelling, robot)
         if claim.site.form == "collision":
             new = recomputed.get(claim.start, claim.value)
-        reason = "; ".join(_reasons(inventory, claim, naming)) or "it holds no name"
+        reason = "; ".join(_reasons(inventory, claim, names, naming)) or "it holds no name"
         path = tag_path(claim.element, claim.attribute)
         yield Explanation(*place, path, claim.value, claim.site, reason, new)
 
 
-def _reasons(inventory: Inventory, claim: Claim, naming: Naming) -> Iterator[str]:
+def _reasons(
+    inventory: Inventory, claim: Claim, names: Iterable[ResolvedName], naming: Naming
+) -> Iterator[str]:
     """What each name in the value is, and why it stays where it does."""
     declared = inventory.declared
     if claim.site.form == "collision":
         yield "a collision, named after its link by the conversion to SDF"
     if claim.site.form == "prefix" and naming.affix != PREFIX:
-        yield "it stands in front of names that code makes: a postfix cannot reach them"
+        yield "the plugin puts it in front of names, so a postfix cannot be added"
         return
-    for part in names_in(claim, declared):
-        kind = kind_of(part, claim.site.role, declared)
-        where = declared.get(kind, {}).get(part.text)
+    for name in names:
+        kind = name.kind
+        where = declared.get(kind, {}).get(name.text)
         known = f", declared at {_line_of(inventory, where)}" if where not in (None, claim) else ""
-        stays = _stays(naming, kind, part.text, claim.site.namespaced)
-        yield f"{kind or ' or '.join(part.kinds)} {part.text!r}{known}{stays and ': '}{stays}"
+        stays = _stays(naming, kind, name.text, claim.site.namespaced)
+        yield f"{kind or ' or '.join(name.kinds)} {name.text!r}{known}{stays and ': '}{stays}"
 
 
 def _line_of(inventory: Inventory, claim: Claim | None) -> str:
@@ -84,8 +87,8 @@ def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
     """Why a name is not spelled; empty where it is, or where only its look forbids it."""
     bare = name.strip("/")
     reasons = (
-        (not kind, "not declared, it stays"),
-        (kind not in naming.separators, f"layout {naming.layout.name} leaves {kind} names alone"),
+        (not kind, "not declared, so it is not renamed"),
+        (kind not in naming.separators, f"layout {naming.layout.name} does not rename {kind}s"),
         (kind in FRAME_KINDS and bare in naming.shared_frames, "a shared frame (--shared-frames)"),
         (kind in TOPIC_KINDS and bare in naming.shared_topics, "a shared topic (--shared-topics)"),
         (kind in TOPIC_KINDS and name.startswith("~"), "private to its node"),
@@ -124,9 +127,9 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
         inside = {host.element, *host.element.iterchildren("ros")}
         mine = [item for item in plan.insertions if item.parent in inside]
         if place[0] == line and mine:
-            added = tuple(item.xml.replace(HOLE, robot) for item in mine)
-            name = host.node.rewriter.name if host.node.rewriter else ""
-            reason = "the same for every robot otherwise"
+            added = tuple(item.xml.replace(ROBOT_SLOT, robot) for item in mine)
+            name = host.node.section.name if host.node.section else ""
+            reason = "added, or all robots would share the default"
             yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
 
 

@@ -1,4 +1,4 @@
-"""Where a value stands, as reports write it: ``robot/gazebo/plugin[libfoo.so]/frameName``."""
+"""Where a value is, as reports write it: ``robot/gazebo/plugin[libfoo.so]/frameName``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _NAMED = ("param", "parameter")
 
 
 def tag_path(element: _Element, attribute: str) -> str:
-    """Where a value stands: the tags from the root on, and the attribute."""
+    """Where a value is: the tags from the root on, and the attribute."""
     steps = [_step(element), *(_step(above) for above in element.iterancestors())]
     path = "/".join(reversed(steps))
     return f"{path}@{short_name(attribute)}" if attribute else path

@@ -11,7 +11,7 @@ from multibot_rewrite.pipeline import MENTIONED
 from multibot_rewrite.reports.paths import short_name
 from multibot_rewrite.reports.survey import loaded_by
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Node, hardware_keys, plugin_keys
+from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, TreeNode, hardware_keys, plugin_keys
 from multibot_rewrite.rewriters.vocabulary.grammar import (
     read_header,
     read_section,
@@ -56,7 +56,7 @@ class Guess(NamedTuple):
     by_tag: bool = False
 
 
-class Row(NamedTuple):
+class SuggestedRow(NamedTuple):
     """One path of a section: the first value seen there, and a guess if there is one."""
 
     path: str
@@ -64,7 +64,7 @@ class Row(NamedTuple):
     guess: Guess | None
 
 
-class Section(NamedTuple):
+class SuggestedSection(NamedTuple):
     """What can be said of one plugin or hardware class; ``blocks`` are those it shares.
 
     ``name`` is empty where no section can be called like it; ``label`` is what it is called then.
@@ -74,10 +74,10 @@ class Section(NamedTuple):
     name: str
     label: str
     blocks: tuple[str, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[SuggestedRow, ...]
 
 
-def suggest(inventory: Inventory) -> list[Section]:
+def suggest(inventory: Inventory) -> list[SuggestedSection]:
     """A section for each plugin that is unknown, and each unknown hardware class with parameters,
     in the order of the file."""
     hosts: dict[tuple[str, str, str], list[Host]] = {}
@@ -103,23 +103,25 @@ def _can_head(type_: str, name: str) -> bool:
         return False
 
 
-def _section(key: tuple[str, str, str], hosts: Sequence[Host], declared: Declared) -> Section:
+def _section(
+    key: tuple[str, str, str], hosts: Sequence[Host], declared: Declared
+) -> SuggestedSection:
     type_, name, label = key
     seen: dict[str, list[str]] = {}
     for host in hosts:
         for path, value in _values(host.element, host.node, ""):
             seen.setdefault(path, []).append(value)
-    rewriters = [host.node.rewriter for host in hosts if host.node.rewriter is not None]
-    blocks = [b for it in rewriters if it.type == "plugin" for b in it.blocks]
+    known = [host.node.section for host in hosts if host.node.section is not None]
+    blocks = [b for it in known if it.type == "plugin" for b in it.blocks]
     rows = tuple(_row(path, values, declared) for path, values in seen.items())
-    return Section(type_, name, label, tuple(dict.fromkeys(blocks)), rows)
+    return SuggestedSection(type_, name, label, tuple(dict.fromkeys(blocks)), rows)
 
 
-def _has_params(section: Section) -> bool:
+def _has_params(section: SuggestedSection) -> bool:
     return any("param" in split_path(row.path)[0][-1] for row in section.rows if row.path[0] != "@")
 
 
-def _values(element: _Element, node: Node | None, path: str) -> Iterator[tuple[str, str]]:
+def _values(element: _Element, node: TreeNode | None, path: str) -> Iterator[tuple[str, str]]:
     """Path and value of every attribute and text below an element that no row speaks of."""
     known = {""} if node is not None and node.text is not None else set()
     if node is not None:
@@ -134,7 +136,7 @@ def _values(element: _Element, node: Node | None, path: str) -> Iterator[tuple[s
         yield from _values(child, _below(node, child), f"{path}/{_step(child)}".lstrip("/"))
 
 
-def _below(node: Node | None, child: _Element) -> Node | None:
+def _below(node: TreeNode | None, child: _Element) -> TreeNode | None:
     below = node.children.get(str(child.tag)) if node is not None else None
     return below.select(child) if below is not None and below.select is not None else below
 
@@ -155,19 +157,21 @@ def _is_path(path: str) -> bool:
     return path in sites
 
 
-def _row(path: str, values: Sequence[str], declared: Declared) -> Row:
+def _row(path: str, values: Sequence[str], declared: Declared) -> SuggestedRow:
     """The best guess of all values seen at one path, with the kinds that others of them add."""
     word = tag_kind(path)
     guesses = [_guess(value, word, declared) for value in values]
-    told = [it for it in guesses if it is not None]
-    best = max(told, key=_weight, default=None)
+    made = [it for it in guesses if it is not None]
+    best = max(made, key=_weight, default=None)
     if best is None or not _is_path(path):
-        return Row(path, values[0], None)
+        return SuggestedRow(path, values[0], None)
     value = values[guesses.index(best)]
     if best.by_tag or best.form == "remap":
-        return Row(path, value, best)
-    others = [kind for it in told if not it.by_tag and it.form != "remap" for kind in it.kinds]
-    return Row(path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others)))))
+        return SuggestedRow(path, value, best)
+    others = [kind for it in made if not it.by_tag and it.form != "remap" for kind in it.kinds]
+    return SuggestedRow(
+        path, value, best._replace(kinds=tuple(dict.fromkeys((*best.kinds, *others))))
+    )
 
 
 def _weight(guess: Guess) -> tuple[bool, bool]:
@@ -205,22 +209,22 @@ def _by_value(value: str, declared: Declared) -> Guess | None:
         return Guess(("topic",), "remap", f"{shown(value)} is a remap rule")
     for form, names in _readings(value):
         found = {kind: next((n for n in names if n in declared[kind]), "") for kind in MENTIONED}
-        told = [(kind, name) for kind, name in found.items() if name]
-        if told:
-            return Guess(tuple(kind for kind, _ in told), form, _why(value, told))
+        named = [(kind, name) for kind, name in found.items() if name]
+        if named:
+            return Guess(tuple(kind for kind, _ in named), form, _why(value, named))
     if value.startswith("/") and value[1:] in declared["link"]:
         return Guess(("frame",), "whole", f"{shown(value)} is a link here, but for the slash")
     return None
 
 
-def _why(value: str, told: Sequence[tuple[str, str]]) -> str:
-    if all(name == value for _, name in told):
-        return f"{shown(value)} is a {' and a '.join(kind for kind, _ in told)} here"
-    return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in told)}"
+def _why(value: str, named: Sequence[tuple[str, str]]) -> str:
+    if all(name == value for _, name in named):
+        return f"{shown(value)} is a {' and a '.join(kind for kind, _ in named)} here"
+    return f"{shown(value)} holds {' and '.join(f'the {k} {shown(name)}' for k, name in named)}"
 
 
 def _readings(value: str) -> Iterator[tuple[str, Sequence[str]]]:
-    """Forms that the value may have, and the names that stand in it then."""
+    """Forms that the value may have, and the names in it then."""
     yield "whole", [value]
     if _NO_NAME.match(value):
         return
@@ -251,7 +255,7 @@ def shown(value: str) -> str:
     return repr(line if len(line) <= _LONGEST else f"{line[: _LONGEST - 1]}…")
 
 
-def vocabulary_text(sections: Iterable[Section], file: str) -> str:
+def vocabulary_text(sections: Iterable[SuggestedSection], file: str) -> str:
     """A vocabulary file that can be used as it is; only comments where there is no section."""
     name = " ".join(file.split())
     parts = [_text(section, name.rpartition("/")[2]) for section in sections]
@@ -264,7 +268,7 @@ def vocabulary_text(sections: Iterable[Section], file: str) -> str:
     return "\n".join([head, *parts])
 
 
-def _text(section: Section, file: str) -> str:
+def _text(section: SuggestedSection, file: str) -> str:
     if not section.name:
         return f"# no section can be called {shown(section.label)}\n"
     head = [f"[{section.type} {section.name}]", f"about: guessed from {file}, not checked"]
@@ -272,7 +276,7 @@ def _text(section: Section, file: str) -> str:
     return "\n".join([*head, *shared, *map(_line, section.rows)]) + "\n"
 
 
-def _line(row: Row) -> str:
+def _line(row: SuggestedRow) -> str:
     if row.guess is None:
         return f"# {' '.join(row.path.split())}: {shown(row.value)}"
     form = f" form={row.guess.form}" if row.guess.form != "whole" else ""

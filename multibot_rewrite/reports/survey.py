@@ -1,4 +1,4 @@
-"""How much of a set of descriptions is known: plugins, claims, and mentions that nobody claims."""
+"""How much of a set of descriptions the vocabulary knows: plugins, values, unclaimed names."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.pipeline import MENTIONED
 from multibot_rewrite.reports.paths import plugin_name, tag_path
-from multibot_rewrite.rewriters.spelling import kind_of, names_in
+from multibot_rewrite.rewriters.spelling import ResolvedName
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Host, Inventory
 from multibot_rewrite.steps.document import Document, locate, slot_values
@@ -39,8 +39,8 @@ class Loaded(NamedTuple):
     known: bool
 
 
-class Mention(NamedTuple):
-    """A place where a link's or joint's name stands unclaimed; ``exact`` if it is all of the value.
+class MentionPlace(NamedTuple):
+    """A place where a link's or joint's name is not claimed; ``exact`` if it is all of the value.
 
     ``path`` is ``robot/gazebo/plugin[libfoo.so]/frameName`` or ``robot/joint@type``; a ``param``
     has its name in brackets.
@@ -50,7 +50,7 @@ class Mention(NamedTuple):
     exact: bool
 
 
-_Thing = TypeVar("_Thing", Loaded, Mention)
+_Thing = TypeVar("_Thing", Loaded, MentionPlace)
 
 
 class Survey(NamedTuple):
@@ -59,7 +59,7 @@ class Survey(NamedTuple):
     files: int
     loaded: Mapping[Loaded, Tally]
     claims: Mapping[str, int]
-    mentions: Mapping[Mention, Tally]
+    mentions: Mapping[MentionPlace, Tally]
 
 
 class Reason(NamedTuple):
@@ -76,14 +76,15 @@ class Explained(NamedTuple):
     ``stale`` are the reasons that hold for none.
     """
 
-    explained: Sequence[tuple[Mention, Tally, Reason]]
-    left: Sequence[tuple[Mention, Tally]]
+    explained: Sequence[tuple[MentionPlace, Tally, Reason]]
+    left: Sequence[tuple[MentionPlace, Tally]]
     stale: Sequence[Reason]
 
 
 def survey(inventory: Inventory, tree: Tree) -> Survey:
     """What is known of one file."""
-    claims = Counter(_kind(claim, inventory) for claim in inventory.claims)
+    named = zip(inventory.claims, inventory.names, strict=True)
+    claims = Counter(_kind(claim, names) for claim, names in named)
     return Survey(1, _loaded(inventory), claims, _mentions(inventory, tree))
 
 
@@ -92,7 +93,7 @@ def add(surveys: Iterable[Survey]) -> Survey:
     files = 0
     loaded: dict[Loaded, Tally] = {}
     claims: Counter[str] = Counter()
-    mentions: dict[Mention, Tally] = {}
+    mentions: dict[MentionPlace, Tally] = {}
     for one in surveys:
         files += one.files
         claims.update(one.claims)
@@ -109,11 +110,9 @@ def _sum(first: Tally | None, second: Tally) -> Tally:
     return first._replace(times=first.times + second.times, files=first.files + second.files)
 
 
-def _kind(claim: Claim, inventory: Inventory) -> str:
+def _kind(claim: Claim, names: Sequence[ResolvedName]) -> str:
     """The kind of a claimed value, which is that of the first name in it."""
-    declared = inventory.declared
-    parts = names_in(claim, declared)
-    return kind_of(parts[0], claim.site.role, declared) or UNRESOLVED if parts else _first(claim)
+    return names[0].kind or UNRESOLVED if names else _first(claim)
 
 
 def _first(claim: Claim) -> str:
@@ -135,21 +134,21 @@ def _loaded(inventory: Inventory) -> dict[Loaded, Tally]:
 
 def loaded_by(host: Host) -> Loaded | None:
     """What an element loads; None where it loads nothing (a sensor is no plugin)."""
-    rewriter = host.node.rewriter
-    assert rewriter is not None
-    type_ = rewriter.select or rewriter.type
+    section = host.node.section
+    assert section is not None
+    type_ = section.select or section.type
     if type_ == "plugin":
-        return Loaded(type_, plugin_name(host.element), not is_unknown(rewriter))
+        return Loaded(type_, plugin_name(host.element), not is_unknown(section))
     class_ = host.element.findtext("hardware/plugin", "").strip() if type_ == "hardware" else ""
-    return Loaded(type_, class_, not rewriter.select) if class_ else None
+    return Loaded(type_, class_, not section.select) if class_ else None
 
 
-def _mentions(inventory: Inventory, tree: Tree) -> dict[Mention, Tally]:
+def _mentions(inventory: Inventory, tree: Tree) -> dict[MentionPlace, Tally]:
     names = {name for kind in MENTIONED for name in inventory.declared[kind]}
     values = slot_values(inventory.document.root)
-    found: dict[Mention, Tally] = {}
+    found: dict[MentionPlace, Tally] = {}
     for slot in unclaimed_mentions(inventory, values, names, tree):
-        mention = Mention(tag_path(slot.element, slot.attribute), slot.value == slot.name)
+        mention = MentionPlace(tag_path(slot.element, slot.attribute), slot.value == slot.name)
         tally = _first_or(found.get(mention), inventory.document, slot.start, slot.value)
         found[mention] = tally
     return found
@@ -204,6 +203,6 @@ def explain(total: Survey, reasons: Sequence[Reason]) -> Explained:
     return Explained(explained, left, [it for it in reasons if it not in used])
 
 
-def _holds(reason: Reason, mention: Mention) -> bool:
+def _holds(reason: Reason, mention: MentionPlace) -> bool:
     # Only * is a wildcard: brackets are part of a path.
     return fnmatchcase(mention.path, reason.path.replace("[", "[[]").replace("?", "[?]"))

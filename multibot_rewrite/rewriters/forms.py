@@ -18,13 +18,13 @@ Kinds = tuple[str, ...]
 # What a top-level "|" of a regular expression must not be looked for in.
 _WORD = re.compile(r"[^\s(),;\"]+")
 _OWNED = re.compile(r"::|/")
-# Assertions look beyond the name, so an affix cannot stand behind them.
+# Assertions look beyond the name, so an affix cannot follow them.
 _ASSERTION = re.compile(r"\(\?|\\[bB]")
 _POSIX = {"alpha": "a-zA-Z", "digit": "0-9", "alnum": "a-zA-Z0-9", "lower": "a-z", "upper": "A-Z"}
 _REGEX_PIECES = re.compile(r"\\.|\[\^?\]?(?:\\.|[^\]])*\]|.", re.DOTALL)
 
 
-class Part(NamedTuple):
+class NamePart(NamedTuple):
     """One name inside a value: its text, where it starts, and the kinds it may be.
 
     ``closed`` tells that the file itself must declare it, whatever the kind; ``matched`` is the
@@ -38,48 +38,48 @@ class Part(NamedTuple):
     matched: Kinds = ()
 
 
-Form = Callable[[str, Kinds, Declared], tuple[Part, ...]]
+Form = Callable[[str, Kinds, Declared], tuple[NamePart, ...]]
 
 
-def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def whole(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """The value is one name, white space around it aside."""
     name = value.strip()
     if name == value:
-        return (Part(0, name, kinds),) if name else ()
-    return (Part(value.index(name), name, kinds),) if name else ()
+        return (NamePart(0, name, kinds),) if name else ()
+    return (NamePart(value.index(name), name, kinds),) if name else ()
 
 
-def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """What the consumer puts in front of names, nothing at all included."""
     name = value.strip()
-    return (Part(value.index(name), name, kinds, False, kinds[:1]),)
+    return (NamePart(value.index(name), name, kinds, False, kinds[:1]),)
 
 
-def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """Names separated by commas or white space."""
     parts = []
     at = 0
     for name in value.replace(",", " ").split():
         at = value.index(name, at)
-        parts.append(Part(at, name, kinds))
+        parts.append(NamePart(at, name, kinds))
         at += len(name)
     return tuple(parts)
 
 
-def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def scoped(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """SDF's ``model::link``: the last piece is the name, the ones before it are models.
 
-    No part where the first model is none of this file, and none behind an included model: what
+    No part where the first model is not of this file, and none behind an included model: what
     they hold is named elsewhere. A link may be called ``a::b`` itself: SDF 1.7 is flattened so.
     """
-    scopes: list[Part] = []
+    scopes: list[NamePart] = []
     for at, name in _pieces(value):
         rest = value[at:].rstrip()
         if rest == name or any(rest in declared.get(kind, ()) for kind in kinds):
-            return (*scopes, Part(at, rest, kinds, True))
+            return (*scopes, NamePart(at, rest, kinds, True))
         if not scopes and name not in declared["model"]:
             return ()
-        scopes.append(Part(at, name, ("model",), True))
+        scopes.append(NamePart(at, name, ("model",), True))
         if is_included(name, declared):
             break
     return tuple(scopes)
@@ -99,29 +99,29 @@ def _pieces(value: str) -> Iterator[tuple[int, str]]:
         at += len(name) + 2
 
 
-def words(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def words(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """Text of whatever shape, ``(key value ...)``: every word of it that the file declares."""
     found = ((word.start(), word[0]) for word in _WORD.finditer(value))
     known = ((at, text, [k for k in kinds if text in declared.get(k, ())]) for at, text in found)
-    return tuple(Part(at, text, tuple(of), True) for at, text, of in known if of)
+    return tuple(NamePart(at, text, tuple(of), True) for at, text, of in known if of)
 
 
-def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """``link/light`` or ``link::visual``: a name and what is no name of ours behind it."""
     return tuple(_owner(value, kinds, declared)[0])
 
 
-def member(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a name below a link's."""
     if not _OWNED.search(value):
         return whole(value, kinds, declared)
     scopes, at = _owner(value, ("link",), declared)
     name = value[at:].rstrip()
     known = name and scopes and scopes[-1].text in declared["link"]
-    return (*scopes, Part(at, name, kinds)) if known else ()
+    return (*scopes, NamePart(at, name, kinds)) if known else ()
 
 
-def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[Part], int]:
+def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart], int]:
     """The models before ``::`` and the longest declared name behind them; where the rest starts.
 
     What is before the first declared model is a world.
@@ -131,7 +131,7 @@ def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[Part], in
     pieces = list(_pieces(value))
     for start, name in pieces[:-1]:
         if name in declared["model"] and not any(name in declared.get(k, ()) for k in kinds):
-            parts.append(Part(start, name, ("model",), True))
+            parts.append(NamePart(start, name, ("model",), True))
             at = start + len(name) + 2
     text = value[at:].rstrip()
     cuts = [found.start() for found in _OWNED.finditer(text)]
@@ -139,15 +139,17 @@ def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[Part], in
     known = (end for end in ends if any(text[:end] in declared.get(kind, ()) for kind in kinds))
     end = next(known, cuts[0] if cuts else len(text))
     if end:
-        parts.append(Part(at, text[:end], kinds))
+        parts.append(NamePart(at, text[:end], kinds))
     behind = _OWNED.match(text, end)
     return parts, at + (behind.end() if behind else end)
 
 
-def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def regex(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """A regular expression for whole names: each alternative is affixed inside its anchors."""
     found = ((at, text, _matched(text, kinds, declared)) for at, text in _alternatives(value))
-    return tuple(Part(at, text, kinds, True, matched[:1]) for at, text, matched in found if text)
+    return tuple(
+        NamePart(at, text, kinds, True, matched[:1]) for at, text, matched in found if text
+    )
 
 
 def _alternatives(value: str) -> Iterator[tuple[int, str]]:
@@ -178,30 +180,30 @@ def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
     return tuple(kind for kind in kinds if any(map(matches, declared.get(kind, ()))))
 
 
-def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def transport(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """A topic of Gazebo Classic's own: ``~/`` is the world, ``~/model/`` the model that follows."""
     name = value.strip()
     at = value.index(name)
     world = 2 if name.startswith("~/") else 0
     model = name[world:].partition("/")[0]
     if world and model in declared["model"]:
-        return (Part(at + world, model, ("model",), True),)
-    return (Part(at + world, name[world:], kinds),) if name[world:] else ()
+        return (NamePart(at + world, model, ("model",), True),)
+    return (NamePart(at + world, name[world:], kinds),) if name[world:] else ()
 
 
-def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """``[node:]from:=to``: ``from`` is the consumer's own word, ``to`` is the name in the graph."""
     lead = len(value) - len(value.lstrip())
     rule = split_remap(value.strip())
     if rule is None:
         return ()
-    parts = [Part(lead, rule.node, ("node",))] if rule.node else []
+    parts = [NamePart(lead, rule.node, ("node",))] if rule.node else []
     special = {"__node": ("node",), "__name": ("node",), "__ns": ("namespace",)}
-    parts.append(Part(lead + rule.target_at, rule.target, special.get(rule.source, kinds)))
+    parts.append(NamePart(lead + rule.target_at, rule.target, special.get(rule.source, kinds)))
     return tuple(parts)
 
 
-def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[Part, ...]:
+def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """Handled by code of its own (contact collisions)."""
     return ()
 

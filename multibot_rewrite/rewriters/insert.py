@@ -7,10 +7,11 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, affix
+from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, spelled
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import HOLE, respelled, spell_default
-from multibot_rewrite.rewriters.vocabulary import Rewriter, split_path, split_step
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
+from multibot_rewrite.rewriters.switches import is_true
+from multibot_rewrite.rewriters.vocabulary import VocabularySection, split_path, split_step
 from multibot_rewrite.rosnames import expand, split_remap
 
 _ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
@@ -21,7 +22,7 @@ ROS_CHILDREN = ("namespace", "remapping", "argument", "parameter", "qos")
 class Insertion(NamedTuple):
     """An element to insert into ``parent``, inside a new ``wrap`` element unless that is empty.
 
-    ``xml`` and ``new`` hold ``HOLE`` where the robot's name goes; ``old`` is what the consumer
+    ``xml`` and ``new`` hold ``ROBOT_SLOT`` where the robot's name goes; ``old`` is what the consumer
     would use without it.
     """
 
@@ -34,15 +35,15 @@ class Insertion(NamedTuple):
 
 
 def insertions(
-    host: etree._Element, rewriter: Rewriter, declared: Declared, naming: Naming
+    host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> list[Insertion]:
     """Everything ``host``, served by ``rewriter``, needs beyond what it says itself."""
-    if not rewriter.inserts:
+    if not section.inserts:
         return []
     hidden = "ros/" if _ros_home(host) is host else ""
-    found = list(_defaults(host, rewriter, declared, naming, hidden))
-    if any(site.path == "ros/remapping" for site in rewriter.sites):
-        found += _remaps(host, rewriter, naming)
+    found = list(_defaults(host, section, declared, naming, hidden))
+    if any(site.path == "ros/remapping" for site in section.sites):
+        found += _remaps(host, section, naming)
     return found
 
 
@@ -55,9 +56,13 @@ def _ros_home(host: etree._Element) -> etree._Element | None:
 
 
 def _defaults(
-    host: etree._Element, rewriter: Rewriter, declared: Declared, naming: Naming, hidden: str
+    host: etree._Element,
+    section: VocabularySection,
+    declared: Declared,
+    naming: Naming,
+    hidden: str,
 ) -> Iterator[Insertion]:
-    for site in rewriter.sites:
+    for site in section.sites:
         default = _default(host, site.default, naming)
         if not default:
             continue
@@ -66,8 +71,8 @@ def _defaults(
             continue
         spelling = spell_default(site, default, declared, naming)
         if spelling:
-            new = respelled(default, spelling, HOLE)
-            yield _insertion(host, path, spelling[0][0], default, new)
+            new = respelled(default, spelling, ROBOT_SLOT)
+            yield _insertion(host, path, spelling[0].kind, default, new)
 
 
 def _default(host: etree._Element, default: str, naming: Naming) -> str:
@@ -78,15 +83,15 @@ def _default(host: etree._Element, default: str, naming: Naming) -> str:
     sibling, derived, last = default.partition("/../")
     if not derived:
         return default
-    # Only a postfix stands in the segment that is replaced.
+    # Only a postfix is in the segment that is replaced.
     topic = host.findtext(sibling, "").strip() if naming.topics == POSTFIX else ""
     return topic[: topic.rfind("/") + 1] + last if topic else ""
 
 
 def _holds(host: etree._Element, condition: str) -> bool:
-    child, _, text = condition.partition("=")
-    found = host.findtext(child, "").strip()
-    return found == text or (text == "true" and found == "1")
+    child, _, wanted = condition.partition("=")
+    text = host.findtext(child, "")
+    return is_true(text) if wanted == "true" else text.strip() == wanted
 
 
 def _present(host: etree._Element, path: str) -> bool:
@@ -117,7 +122,9 @@ def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -
     return Insertion(parent, wrap, xml, kind, old, new)
 
 
-def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterator[Insertion]:
+def _remaps(
+    host: etree._Element, section: VocabularySection, naming: Naming
+) -> Iterator[Insertion]:
     """A rule for each topic that only a remap can move, unless the file has one."""
     home = _ros_home(host)
     texts = (
@@ -127,7 +134,7 @@ def _remaps(host: etree._Element, rewriter: Rewriter, naming: Naming) -> Iterato
     namespace = "" if home is None else (home.findtext("namespace") or "").strip()
     node = host.get("name", "")
     taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}
-    for topic in rewriter.topics:
+    for topic in section.topics:
         target = _remap_target(topic, naming)
         if target and expand(topic, namespace, node) not in taken:
             parent, wrap = (host, "ros") if home is None else (home, "")
@@ -143,5 +150,5 @@ def _remap_target(topic: str, naming: Naming) -> str:
         return ""
     if naming.topics == NAMESPACE:
         return relative if topic.startswith("/") else ""
-    there = affix(naming, "topic", relative)
-    return there.spell(relative, HOLE) if there else ""
+    target = spelled(naming, ROBOT_SLOT, "topic", relative)
+    return target if target != relative else ""

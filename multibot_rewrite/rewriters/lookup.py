@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from multibot_rewrite.model import Site
+from multibot_rewrite.nearest import nearest_few
 from multibot_rewrite.rewriters.tree import library_key
-from multibot_rewrite.rewriters.vocabulary import Rewriter, Vocabulary
-
-_LIKE = 0.6
+from multibot_rewrite.rewriters.vocabulary import Vocabulary, VocabularySection
 
 
-def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Rewriter]:
+def look_up(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
     """The sections of these types that ``name`` means: a library file in any spelling, a class, an
     element (``sensor`` also finds ``robot.sensor``, behind it), a sensor type or a block."""
     keys = spellings(name)
     found = [
-        rewriter
+        section
         for type_ in types
         for known in vocabulary.names(type_)
         if known in keys or (type_ == "element" and known.rpartition(".")[2] == name)
-        for rewriter in vocabulary.find(type_, known)
+        for section in vocabulary.find(type_, known)
     ]
-    found.sort(key=lambda rewriter: keys.isdisjoint(rewriter.names))
-    return list({(rewriter.file, rewriter.line): rewriter for rewriter in found}.values())
+    found.sort(key=lambda section: keys.isdisjoint(section.names))
+    return list({(section.file, section.line): section for section in found}.values())
 
 
 def spellings(name: str) -> set[str]:
@@ -34,11 +33,9 @@ def spellings(name: str) -> set[str]:
 
 def near_names(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[str]:
     """Up to three known names most like ``name``, whatever the case of the letters."""
-    from difflib import get_close_matches  # only a message needs it
-
     known = {known.lower(): known for type_ in types for known in vocabulary.names(type_)}
     words = sorted(word.lower() for word in spellings(name))
-    near = [word for key in words for word in get_close_matches(key, known, 3, _LIKE)]
+    near = [word for key in words for word in nearest_few(key, known, 3)]
     parts = [word for word in known if any(key and key in word for key in words)]
     return [known[word] for word in list(dict.fromkeys(near + parts))[:3]]
 

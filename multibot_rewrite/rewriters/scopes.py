@@ -1,4 +1,4 @@
-"""SDF looks a name up in the model it stands in, where a link and a joint cannot share it.
+"""SDF looks a name up in the model it is in, where a link and a joint cannot share it.
 
 The plan knows names by kind only. Where two models of a file use one name for two kinds, the model
 that the reference leads to decides.
@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from lxml import etree
 
-from multibot_rewrite.rewriters.forms import Declared, Part
+from multibot_rewrite.rewriters.forms import Declared, NamePart
 
 
 def scope_of(element: etree._Element) -> etree._Element | None:
     """The model (or robot) whose names a value of ``element`` is looked up among.
 
-    A model's own pose stands among its siblings.
+    A model's own pose is looked up among its siblings.
     """
     if element.tag == "pose" and _is_model(element.getparent()):
         element = element.getparent()  # type: ignore[assignment]
@@ -27,8 +27,8 @@ def _is_model(element: etree._Element | None) -> bool:
 
 
 def in_scope(
-    element: etree._Element, parts: tuple[Part, ...], declared: Declared
-) -> tuple[Part, ...]:
+    element: etree._Element, parts: tuple[NamePart, ...], declared: Declared
+) -> tuple[NamePart, ...]:
     """``parts`` of a scoped name, the last one's kind decided where the file has it as several."""
     if not parts:
         return parts

@@ -1,8 +1,9 @@
-"""What each claimed value becomes: its names found, resolved to a kind, and spelled."""
+"""The names in each claimed value: where they are, of what kind, and how they are spelled."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import (
@@ -15,27 +16,71 @@ from multibot_rewrite.naming import (
     is_keyword,
     removal,
 )
-from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, Part
+from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, NamePart
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
 
-HOLE = "\0"
-# Kind and affix of each renamed name in one value, in order; ``at`` counts from the value's start.
-Spelling = tuple[tuple[str, Affix], ...]
+ROBOT_SLOT = "\0"
 
 
-def names_in(claim: Claim, declared: Declared) -> tuple[Part, ...]:
-    """The names in a claimed value; none where it stands in the scope of another model."""
+class ResolvedName(NamedTuple):
+    """A name in a value: where it starts, and what it is; ``kind`` is empty where the file would
+    have to declare it as one of ``kinds`` and does not."""
+
+    at: int
+    text: str
+    kind: str
+    kinds: Kinds
+
+
+class Renamed(NamedTuple):
+    """A name in a value that changes; ``affix.at`` counts from the start of the value."""
+
+    kind: str
+    text: str
+    namespaced: bool
+    affix: Affix
+
+
+# The names that change in one value, in order.
+Spelling = tuple[Renamed, ...]
+
+
+def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[ResolvedName, ...]]:
+    """The names in each claimed value, resolved; claims of one key share theirs."""
+    known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
+    result = []
+    for claim in claims:
+        key = spelling_key(claim)
+        names = known.get(key)
+        if names is None:
+            names = known[key] = _resolved(claim, declared)
+        result.append(names)
+    return result
+
+
+def _resolved(claim: Claim, declared: Declared) -> tuple[ResolvedName, ...]:
+    site, value = claim.site, claim.value
+    if site.whole_value_kind and value in declared[site.whole_value_kind]:
+        return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
+    return tuple(
+        ResolvedName(part.at, part.text, kind_of(part, site.role, declared), part.kinds)
+        for part in names_in(claim, declared)
+    )
+
+
+def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
+    """The names in a claimed value; none where it is in the scope of another model."""
     site = claim.site
     parts = FORMS[site.form](claim.value, site.kinds, declared)
     return in_scope(claim.element, parts, declared) if site.form == "scoped" else parts
 
 
-def spelled_in(claim: Claim, declared: Declared, naming: Naming) -> tuple[Part, ...]:
-    """Those of them that the naming can reach: no postfix is where a prefix is asked for."""
+def is_reached(claim: Claim, naming: Naming) -> bool:
+    """Can the naming change this value? No postfix can be where the consumer wants a prefix."""
     site = claim.site
-    if site.form == "prefix" and (naming.affix != PREFIX or not (claim.value or takes_empty(site))):
-        return ()
-    return names_in(claim, declared)
+    if site.form != "prefix":
+        return True
+    return naming.affix == PREFIX and bool(claim.value or takes_empty(site))
 
 
 def takes_empty(site: Site) -> bool:
@@ -44,42 +89,29 @@ def takes_empty(site: Site) -> bool:
 
 
 def spelling_key(claim: Claim) -> tuple[object, str]:
-    """Claims of one key are spelled alike: a link or joint at every site, others at each site."""
+    """Claims of one key hold the same names: a link or joint at every site, others at each site."""
     site = claim.site
     if site.form == "scoped":
         return (id(site), scope_of(claim.element)), claim.value
-    return site.plain or id(site), claim.value
-
-
-def spell(claim: Claim, declared: Declared, naming: Naming) -> Spelling:
-    """Kind and affix of every name in the claimed value; empty where it stays as it is."""
-    plain = claim.site.plain
-    if plain and claim.value in declared[plain]:
-        there = affix(naming, plain, claim.value)
-        return ((plain, there),) if there else ()
-    return _spelling(
-        spelled_in(claim, declared, naming), claim.site, claim.site.role, declared, naming
-    )
+    return site.whole_value_kind or id(site), claim.value
 
 
 def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:
-    """The same for a value that would stand at a site if the file had it."""
+    """What changes in a value that would be at a site if the file had it."""
     if site.form == "prefix" and naming.affix != PREFIX:
         return ()
-    parts = FORMS[site.form](value, site.kinds, declared)
-    return _spelling(parts, site, "uses", declared, naming)
-
-
-def _spelling(
-    parts: Iterable[Part], site: Site, role: str, declared: Declared, naming: Naming
-) -> Spelling:
     result = []
-    for part in parts:
-        kind = kind_of(part, role, declared)
+    for part in FORMS[site.form](value, site.kinds, declared):
+        kind = kind_of(part, "uses", declared)
         there = affix(naming, kind, part.text, site.namespaced) if kind else None
         if there is not None:
-            result.append((kind, there._replace(at=part.at + there.at) if part.at else there))
+            result.append(renamed_at(part.at, kind, part.text, site.namespaced, there))
     return tuple(result)
+
+
+def renamed_at(at: int, kind: str, text: str, namespaced: bool, there: Affix) -> Renamed:
+    """A name that starts at character ``at`` of its value and has the affix ``there``."""
+    return Renamed(kind, text, namespaced, there._replace(at=at + there.at) if at else there)
 
 
 def must_be_declared(site: Site) -> bool:
@@ -87,7 +119,7 @@ def must_be_declared(site: Site) -> bool:
     return site.kinds[-1] in CLOSED_KINDS or site.form == "scoped"
 
 
-def kind_of(part: Part, role: str, declared: Declared) -> str:
+def kind_of(part: NamePart, role: str, declared: Declared) -> str:
     """Which of its kinds a name is; empty for a use of something that is not declared."""
     if part.matched:
         return part.matched[0]
@@ -114,22 +146,9 @@ def resolve(text: str, kinds: Kinds, role: str, declared: Declared, closed: bool
 
 def respelled(value: str, spelling: Spelling, robot: str) -> str:
     """The value with every affix in place."""
-    for _, there in reversed(spelling):
-        value = there.spell(value, robot)
+    for name in reversed(spelling):
+        value = name.affix.spell(value, robot)
     return value
-
-
-def respelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
-    """Declarations by the names they have for ``robot``."""
-    return {
-        kind: {_spelled(naming, kind, name, robot): claim for name, claim in names.items()}
-        for kind, names in declared.items()
-    }
-
-
-def _spelled(naming: Naming, kind: str, name: str, robot: str) -> str:
-    there = affix(naming, kind, name)
-    return there.spell(name, robot) if there else name
 
 
 def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:

@@ -7,9 +7,19 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
-    from multibot_rewrite.rewriters.vocabulary import Rewriter
+    from multibot_rewrite.rewriters.vocabulary import VocabularySection
 
-ON, OFF = ("true", "1"), ("false", "0")
+
+# As sdformat reads booleans (Param.cc, ValueFromStringImpl): case and white space around do not
+# count, any other text leaves the default.
+def is_true(text: str) -> bool:
+    """Does this text of a parameter turn it on?"""
+    return text.strip().lower() in ("true", "1")
+
+
+def is_false(text: str) -> bool:
+    """Does this text of a parameter turn it off?"""
+    return text.strip().lower() in ("false", "0")
 
 
 class Switch(NamedTuple):
@@ -20,20 +30,19 @@ class Switch(NamedTuple):
     on: bool
 
 
-def switches(plugin: _Element, rewriter: Rewriter) -> tuple[Switch, ...]:
+def switches(plugin: _Element, section: VocabularySection) -> tuple[Switch, ...]:
     """The switches of a plugin as they stand; one that is not there is as its code has it."""
-    return tuple(_switch(plugin, *it.split("=")) for it in rewriter.switches)
+    return tuple(_switch(plugin, *it.split("=")) for it in section.switches)
 
 
 def _switch(plugin: _Element, parameter: str, topic: str, usual: str = "off") -> Switch:
-    text = plugin.findtext(parameter, "").strip().lower()
-    on = text in ON or (usual == "on" and text not in OFF)
-    return Switch(parameter, topic, on)
+    text = plugin.findtext(parameter, "")
+    return Switch(parameter, topic, is_true(text) or (usual == "on" and not is_false(text)))
 
 
-def switched_off(plugin: _Element, rewriter: Rewriter) -> dict[str, str]:
+def switched_off(plugin: _Element, section: VocabularySection) -> dict[str, str]:
     """The topics that no switch of theirs turns on, and what would."""
-    found = switches(plugin, rewriter)
+    found = switches(plugin, section)
     on = {it.topic for it in found if it.on}
     off: dict[str, list[str]] = {}
     for it in found:

@@ -1,4 +1,4 @@
-"""Hang the vocabulary's sections on one another the way the document nests.
+"""The tree of rewriters: the vocabulary's sections, nested the way documents nest.
 
 A ``Node`` answers, for one element, which of its attributes and text are sites and which node
 serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
@@ -11,7 +11,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.model import Site, VocabularyError
-from multibot_rewrite.rewriters.vocabulary import Rewriter, Vocabulary, split_path, split_step
+from multibot_rewrite.rewriters.vocabulary import (
+    Vocabulary,
+    VocabularySection,
+    split_path,
+    split_step,
+)
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
@@ -33,16 +38,16 @@ def qualified(name: str) -> str:
     return f"{{{NAMESPACES[prefix]}}}{local}" if colon and prefix in NAMESPACES else name
 
 
-# The section for plugins nobody knows that have a <ros> block: gazebo_ros::Node reads that.
+# The section for unknown plugins with a <ros> block, which gazebo_ros::Node reads.
 ANY_WITH_ROS = "any_with_ros"
 
 
-class Node:
+class TreeNode:
     """What is known about the elements at one place of the document.
 
     ``select`` is set where the element itself decides which node serves it. ``active`` are the
-    children worth a visit: those with more below them than values to keep. ``section`` is the name
-    of an element's section, whose node is made when something first asks for it.
+    children worth a visit: those with more below them than values to keep. ``element_name``
+    is that of an element's section, whose node is made when something first asks for it.
     """
 
     __slots__ = (
@@ -51,24 +56,26 @@ class Node:
         "asked",
         "attributes",
         "children",
+        "element_name",
         "keeps",
-        "rewriter",
         "section",
         "select",
         "text",
         "values",
     )
 
-    def __init__(self, rewriter: Rewriter | None = None, sites: tuple[Site, ...] = ()) -> None:
-        self.section = ""
-        self._make: Callable[[Node], None] | None = None
-        self._know(rewriter, sites)
+    def __init__(
+        self, section: VocabularySection | None = None, sites: tuple[Site, ...] = ()
+    ) -> None:
+        self.element_name = ""
+        self._make: Callable[[TreeNode], None] | None = None
+        self._know(section, sites)
 
     @classmethod
-    def later(cls, section: str, make: Callable[[Node], None]) -> Node:
+    def later(cls, element_name: str, make: Callable[[TreeNode], None]) -> TreeNode:
         """A node that ``make`` completes when one of its other attributes is first asked for."""
         node = cls.__new__(cls)
-        node.section, node._make = section, make
+        node.element_name, node._make = element_name, make
         return node
 
     def __getattr__(self, name: str) -> Any:
@@ -80,22 +87,22 @@ class Node:
         make(self)
         return getattr(self, name)
 
-    def _know(self, rewriter: Rewriter | None, sites: tuple[Site, ...]) -> None:
-        self.rewriter = rewriter
-        self.children: dict[str, Node] = {}
-        self.active: dict[str, Node] = {}
+    def _know(self, section: VocabularySection | None, sites: tuple[Site, ...]) -> None:
+        self.section = section
+        self.children: dict[str, TreeNode] = {}
+        self.active: dict[str, TreeNode] = {}
         self.attributes: tuple[tuple[str, Site], ...] = ()
         self.text: Site | None = None
         self.keeps: dict[str, Site] = {}
-        self.select: Callable[[_Element], Node] | None = None
+        self.select: Callable[[_Element], TreeNode] | None = None
         self.asked = ""
-        self.values: dict[str, Node] = {}
+        self.values: dict[str, TreeNode] = {}
         for site in sites:
             self._add(site)
 
-    def fill(self, rewriter: Rewriter) -> None:
+    def fill(self, section: VocabularySection) -> None:
         """Make it the node of a section."""
-        self._know(rewriter, rewriter.sites)
+        self._know(section, section.sites)
 
     def _add(self, site: Site) -> None:
         steps, attribute = split_path(site.path)
@@ -114,18 +121,18 @@ class Node:
         else:
             node.text = claim
 
-    def _step(self, step: str, active: bool) -> Node:
+    def _step(self, step: str, active: bool) -> TreeNode:
         tag, attribute, value = split_step(step)
         tag = qualified(tag)
-        child = self.children.setdefault(tag, Node())
+        child = self.children.setdefault(tag, TreeNode())
         if active:
             self.active[tag] = child
         if not attribute:
             return child
         child.asked, child.select = attribute, child._by_value
-        return child.values.setdefault(value, Node())
+        return child.values.setdefault(value, TreeNode())
 
-    def _by_value(self, element: _Element) -> Node:
+    def _by_value(self, element: _Element) -> TreeNode:
         return self.values.get(element.get(self.asked, ""), self)
 
 
@@ -138,11 +145,11 @@ class Tree:
 
     def __init__(self, vocabulary: Vocabulary) -> None:
         self.vocabulary = vocabulary
-        self.formats: dict[str, Node] = {}
+        self.formats: dict[str, TreeNode] = {}
         self.tags: set[str] = set()
-        self._chosen: dict[tuple[str, str, int], Node] = {}
+        self._chosen: dict[tuple[str, str, int], TreeNode] = {}
         places = vocabulary.places()
-        self._nodes = {name: Node.later(name, self._make) for name in places}
+        self._nodes = {name: TreeNode.later(name, self._make) for name in places}
         self._below: dict[str, list[str]] = {name: [] for name in places}
         for name, parents in places.items():
             for parent in parents:
@@ -151,7 +158,7 @@ class Tree:
     def check(self) -> None:
         """Read every section now; raises VocabularyError for the first mistake."""
         for node in self._nodes.values():
-            assert node.rewriter is not None
+            assert node.section is not None
 
     def format_of(self, root: _Element, likely: str = "") -> str:
         """The section of a root element, empty where there is none.
@@ -172,36 +179,36 @@ class Tree:
         elif parent in self._below:
             self._below[parent].append(name)
         else:
-            (rewriter, *_) = self.vocabulary.find("element", name)
-            raise _wrong(rewriter, f"at: {parent}: there is no [element {parent}]")
+            (section, *_) = self.vocabulary.find("element", name)
+            raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
 
-    def _make(self, node: Node) -> None:
-        (rewriter,) = self.vocabulary.find("element", node.section)
-        node.fill(rewriter)
-        if rewriter.select:
-            if rewriter.select not in SELECTORS:
-                raise _wrong(rewriter, f"select: is one of {', '.join(SELECTORS)}")
-            node.select = self._selector(node, rewriter.select)
-        for name in self._below[node.section]:
+    def _make(self, node: TreeNode) -> None:
+        (section,) = self.vocabulary.find("element", node.element_name)
+        node.fill(section)
+        if section.select:
+            if section.select not in SELECTORS:
+                raise _wrong(section, f"select: is one of {', '.join(SELECTORS)}")
+            node.select = self._selector(node, section.select)
+        for name in self._below[node.element_name]:
             child = self._nodes[name]
             if node.children.setdefault(_tag(name), child) is not child:
-                place = f"{node.section}/{_tag(name)} has a section or sites already"
+                place = f"{node.element_name}/{_tag(name)} has a section or sites already"
                 raise _wrong(self.vocabulary.find("element", name)[0], place)
             node.active[_tag(name)] = child
         self._know(node)
 
-    def _know(self, node: Node) -> None:
+    def _know(self, node: TreeNode) -> None:
         waiting = [node]
         while waiting:
             for tag, child in waiting.pop().active.items():
                 self.tags.add(tag)
-                if not child.section:
+                if not child.element_name:
                     waiting += [child, *child.values.values()]
 
-    def _selector(self, base: Node, type_: str) -> Callable[[_Element], Node]:
+    def _selector(self, base: TreeNode, type_: str) -> Callable[[_Element], TreeNode]:
         keys = SELECTORS[type_]
 
-        def select(element: _Element) -> Node:
+        def select(element: _Element) -> TreeNode:
             for key in keys(element):
                 found = self.vocabulary.find(type_, key)
                 if found:
@@ -210,11 +217,11 @@ class Tree:
 
         return select
 
-    def _node(self, base: Node, rewriter: Rewriter) -> Node:
-        assert base.rewriter is not None
-        key = (base.rewriter.names[0], rewriter.file, rewriter.line)
+    def _node(self, base: TreeNode, section: VocabularySection) -> TreeNode:
+        assert base.section is not None
+        key = (base.section.names[0], section.file, section.line)
         if key not in self._chosen:
-            node = Node(rewriter, base.rewriter.sites + rewriter.sites)
+            node = TreeNode(section, base.section.sites + section.sites)
             node.children = base.children | node.children
             node.active = base.active | node.active
             self._chosen[key] = node
@@ -227,8 +234,8 @@ def _tag(name: str) -> str:
     return qualified(name.rpartition(".")[2])
 
 
-def _wrong(rewriter: Rewriter, message: str) -> VocabularyError:
-    return VocabularyError(f"{rewriter.file}:{rewriter.line}: [{rewriter.name}] {message}")
+def _wrong(section: VocabularySection, message: str) -> VocabularyError:
+    return VocabularyError(f"{section.file}:{section.line}: [{section.name}] {message}")
 
 
 def plugin_keys(element: _Element) -> list[str]:
@@ -272,7 +279,7 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _flavour(found: list[Rewriter], element: _Element) -> Rewriter:
+def _flavour(found: list[VocabularySection], element: _Element) -> VocabularySection:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace) and ros2 (snake_case,
@@ -282,12 +289,12 @@ def _flavour(found: list[Rewriter], element: _Element) -> Rewriter:
         return found[0]
     tags = {child.tag for child in element}
 
-    def known(rewriter: Rewriter) -> tuple[int, str]:
+    def known(section: VocabularySection) -> tuple[int, str]:
         own = {
             split_step(split_path(site.path)[0][0])[0]
-            for site in rewriter.sites
+            for site in section.sites
             if site.path[0] != "@"
         }
-        return len(own & tags), rewriter.ros
+        return len(own & tags), section.ros
 
     return max(found, key=known)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.rosnames.names import (
     MAX_TOKEN,
-    Fault,
+    NameFault,
     check_full_name,
     check_namespace,
     check_node_name,
@@ -28,7 +28,7 @@ from multibot_rewrite.rosnames.rules import (
 __all__ = [
     "MAX_TOKEN",
     "BoundNode",
-    "Fault",
+    "NameFault",
     "RemapRule",
     "bind",
     "check_full_name",

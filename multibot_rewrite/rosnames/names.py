@@ -10,7 +10,7 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import NamedTuple
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 
 # rmw: 255 less 8 for the rt/, rq/ and rr/ ... Reply of the wire; a namespace leaves room for "/x".
@@ -21,19 +21,19 @@ _DIGITS = frozenset("0123456789")
 _LETTERS = frozenset("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_")
 _TOKEN = _LETTERS | _DIGITS
 # Nearly every name there is; what does not match is looked at letter by letter.
-_PLAIN = regex(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
-_FULL = regex(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
-_SUBSTITUTION = regex(r"\{(node|ns|namespace)\}")
+_PLAIN = lazy_compile(r"(?:~?/)?[A-Za-z_][A-Za-z0-9_]*(?:/[A-Za-z_][A-Za-z0-9_]*)*")
+_FULL = lazy_compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
+_SUBSTITUTION = lazy_compile(r"\{(node|ns|namespace)\}")
 
 
-class Fault(NamedTuple):
-    """Why a name or rule is none: the reason in words, and the index of the character at fault."""
+class NameFault(NamedTuple):
+    """Why a name or rule is not valid, and the index of the wrong character."""
 
     reason: str
     at: int
 
 
-def check_topic_name(name: str) -> Fault | None:
+def check_topic_name(name: str) -> NameFault | None:
     """What is wrong with a topic or service name as code gives it, before expansion.
 
     ``~`` and ``{node}`` are allowed here. Doubled slashes and any length pass too, as in rcl: those
@@ -44,37 +44,37 @@ def check_topic_name(name: str) -> Fault | None:
     return _ends(name) or _braces_and_letters(name) or _first_letters(name)
 
 
-def check_full_name(name: str) -> Fault | None:
+def check_full_name(name: str) -> NameFault | None:
     """What is wrong with a fully qualified topic or service name."""
     return _full_form(name) or _too_long(name, MAX_TOPIC)
 
 
-def check_namespace(namespace: str) -> Fault | None:
+def check_namespace(namespace: str) -> NameFault | None:
     """What is wrong with a node's namespace: absolute, ``/`` alone or without a slash at its end."""
     if namespace == "/":
         return None
     return _full_form(namespace) or _too_long(namespace, MAX_NAMESPACE)
 
 
-def check_node_name(name: str) -> Fault | None:
+def check_node_name(name: str) -> NameFault | None:
     """What is wrong with a node's name: one token of at most 255 characters."""
     if name.isascii() and name.isidentifier():
         return _too_long(name, MAX_NODE)
     if not name:
-        return Fault("it is empty", 0)
+        return NameFault("it is empty", 0)
     fault = _letters(name, _TOKEN, "a letter, a digit or an underscore")
     return fault or _digit_first(name, 0)
 
 
-def _ends(name: str) -> Fault | None:
+def _ends(name: str) -> NameFault | None:
     if not name:
-        return Fault("it is empty", 0)
+        return NameFault("it is empty", 0)
     if name[0] in _DIGITS:
         return _digit_first(name, 0)
     return _slash_last(name) if name.endswith("/") else None
 
 
-def _braces_and_letters(name: str) -> Fault | None:
+def _braces_and_letters(name: str) -> NameFault | None:
     """Braces are neither nested nor left open, and hold one token; ``~`` only leads."""
     opened = -1
     for at, letter in enumerate(name):
@@ -97,26 +97,26 @@ def _braces_and_letters(name: str) -> Fault | None:
     return _at(name, opened, "is not closed") if opened >= 0 else None
 
 
-def _first_letters(name: str) -> Fault | None:
+def _first_letters(name: str) -> NameFault | None:
     # Two characters, as "~a", pass: rcl never looks at the last one here.
     if name[0] == "~" and len(name) > 2 and name[1] != "/":
         return _at(name, 1, "follows '~', after which only a slash may stand")
     return _digits_after_slashes(name)
 
 
-def _digits_after_slashes(name: str) -> Fault | None:
+def _digits_after_slashes(name: str) -> NameFault | None:
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == "/" and following in _DIGITS:
             return _digit_first(name, at)
     return None
 
 
-def _full_form(name: str) -> Fault | None:
+def _full_form(name: str) -> NameFault | None:
     """All that is asked of a fully qualified name but its length."""
     if _FULL.fullmatch(name):
         return None
     if not name:
-        return Fault("it is empty", 0)
+        return NameFault("it is empty", 0)
     if name[0] != "/":
         return _at(name, 0, "is not the slash that a fully qualified name starts with")
     if name.endswith("/"):
@@ -126,7 +126,7 @@ def _full_form(name: str) -> Fault | None:
     )
 
 
-def _pairs(name: str) -> Fault | None:
+def _pairs(name: str) -> NameFault | None:
     for at, (letter, following) in enumerate(pairwise(name), 1):
         if letter == following == "/":
             return _at(name, at, "is a slash right after a slash")
@@ -135,30 +135,30 @@ def _pairs(name: str) -> Fault | None:
     return None
 
 
-def _letters(name: str, allowed: frozenset[str], words: str) -> Fault | None:
+def _letters(name: str, allowed: frozenset[str], words: str) -> NameFault | None:
     for at, letter in enumerate(name):
         if letter not in allowed:
             return _at(name, at, f"is not {words}")
     return None
 
 
-def _at(name: str, at: int, reason: str) -> Fault:
-    return Fault(f"character {at + 1}, {name[at]!r}, {reason}", at)
+def _at(name: str, at: int, reason: str) -> NameFault:
+    return NameFault(f"character {at + 1}, {name[at]!r}, {reason}", at)
 
 
-def _digit_first(name: str, at: int) -> Fault:
+def _digit_first(name: str, at: int) -> NameFault:
     return _at(name, at, "is a digit, with which no part of a name starts")
 
 
-def _slash_last(name: str) -> Fault:
+def _slash_last(name: str) -> NameFault:
     return _at(name, len(name) - 1, "is a slash at the end")
 
 
-def _too_long(name: str, limit: int) -> Fault | None:
+def _too_long(name: str, limit: int) -> NameFault | None:
     if len(name) <= limit:
         return None
     # rcl points at the last character that is allowed.
-    return Fault(f"it has {len(name)} characters, ROS 2 allows {limit}", limit - 1)
+    return NameFault(f"it has {len(name)} characters, ROS 2 allows {limit}", limit - 1)
 
 
 def expand(name: str, namespace: str, node: str) -> str:

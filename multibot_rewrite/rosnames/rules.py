@@ -11,10 +11,10 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.rosnames.names import (
-    Fault,
+    NameFault,
     check_full_name,
     check_namespace,
     check_node_name,
@@ -25,10 +25,10 @@ from multibot_rewrite.rosnames.names import (
 TOPIC_SCHEME, SERVICE_SCHEME = SCHEMES = ("rostopic://", "rosservice://")
 NAMESPACE_KEY, NODE_KEYS = "__ns", ("__node", "__name")
 # lexer.c S3, S9, S10: two underscores in a row end a token, so no rule can hold such a name.
-_TOKEN = regex(r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*")
+_TOKEN = lazy_compile(r"(?:[A-Za-z]|_(?!_))(?:[A-Za-z0-9]|_(?!_))*")
 # Braces are not in the lexer's alphabet: a rule cannot hold {node} or {ns}.
-_PATH = regex(rf"(?:~?/)?{_TOKEN.pattern}(?:/{_TOKEN.pattern})*")
-_NAMESPACE = regex(rf"/(?:{_TOKEN.pattern}(?:/{_TOKEN.pattern})*/?)?")
+_PATH = lazy_compile(rf"(?:~?/)?{_TOKEN.pattern}(?:/{_TOKEN.pattern})*")
+_NAMESPACE = lazy_compile(rf"/(?:{_TOKEN.pattern}(?:/{_TOKEN.pattern})*/?)?")
 _FORMS = {_PATH: "a name", _TOKEN: "a node's name", _NAMESPACE: "a namespace that starts with '/'"}
 _HINTS = {
     "*": "a wildcard, which rcl does not have",
@@ -71,10 +71,10 @@ class BoundNode(NamedTuple):
 def parse_remap(text: str) -> RemapRule | None:
     """The rule that rcl makes of ``text``, what follows ``-r``; None where rcl refuses it."""
     rule = read_remap(text)
-    return None if isinstance(rule, Fault) else rule
+    return None if isinstance(rule, NameFault) else rule
 
 
-def read_remap(text: str) -> RemapRule | Fault:
+def read_remap(text: str) -> RemapRule | NameFault:
     """The rule that rcl makes of ``text``, or why it refuses it and at which character."""
     token = _TOKEN.match(text)
     prefixed = token and text.startswith(":", token.end()) and not _ends_source(text, token.end())
@@ -98,7 +98,7 @@ def _ends_source(text: str, at: int) -> bool:
 
 def _sides(
     text: str, node: str, scheme: str, source: tuple[int, int], form: re.Pattern[str]
-) -> RemapRule | Fault:
+) -> RemapRule | NameFault:
     """The rule whose left side ends at ``source[1]`` and whose right side has ``form``."""
     start, end = source
     if not text.startswith(":=", end):
@@ -111,11 +111,11 @@ def _sides(
     return RemapRule(node, text[start:end], target[0], start, end + 2, scheme)
 
 
-def _refused(text: str, at: int, wanted: str) -> Fault:
+def _refused(text: str, at: int, wanted: str) -> NameFault:
     found = next((hint for key, hint in _HINTS.items() if text.startswith(key, at)), "")
     if not found:
         found = repr(text[at]) if at < len(text) else "the end"
-    return Fault(f"character {at + 1}: expected {wanted}, found {found}", at)
+    return NameFault(f"character {at + 1}: expected {wanted}, found {found}", at)
 
 
 def split_remap(text: str) -> RemapRule | None:
@@ -166,7 +166,7 @@ def _first(rules: Iterable[RemapRule], keys: tuple[str, ...], node: str) -> str:
     return next((r.target for r in rules if r.source in keys and r.node in ("", node)), "")
 
 
-def _demand(what: str, name: str, fault: Fault | None) -> None:
+def _demand(what: str, name: str, fault: NameFault | None) -> None:
     if fault is not None:
         raise UsageError(f"{what} {name!r}: {fault.reason}")
 

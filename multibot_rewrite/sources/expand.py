@@ -38,7 +38,7 @@ _HINTS = (
     ("missing attribute", "add it, an <xacro:arg> needs its default"),
     ("not a boolean", "write true, false, 1, 0 or an expression"),
     ("must be valid python identifiers", "use letters, digits and underscores"),
-    ("invalid syntax", "mend the expression"),
+    ("invalid syntax", "correct the expression"),
     ("unknown macro name", "check its name and the <xacro:include> it comes from"),
     ("Undefined parameters", "give the macro all its parameters"),
     ("is not defined", "define it with <xacro:property> or <xacro:arg>"),
@@ -47,7 +47,7 @@ _HINTS = (
     ("not UTF-8", "save it as UTF-8"),
     ("amplification", "entities are not accepted, write out what they stand for"),
     ("unbound prefix", 'declare it: xmlns:xacro="http://www.ros.org/wiki/xacro"'),
-    ("not well-formed XML", "mend the XML and try again"),
+    ("not well-formed XML", "correct the XML and try again"),
 )
 
 

@@ -1,4 +1,4 @@
-"""Plan -> text: cut the source once at every hole, then each robot is one ``bytes.join``."""
+"""Plan -> text: cut the source once at every slot, then each robot is one ``bytes.join``."""
 
 from __future__ import annotations
 

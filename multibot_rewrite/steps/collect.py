@@ -1,4 +1,5 @@
-"""Document -> inventory: every value a site claims, every symbol declared, every plugin met."""
+"""Document -> inventory: every value a site claims, the names in it, every symbol declared, every
+plugin met."""
 
 from __future__ import annotations
 
@@ -9,8 +10,8 @@ from lxml import etree
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.spelling import takes_empty
-from multibot_rewrite.rewriters.tree import Node, Tree
+from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
+from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.document import Document, locate
 
 NOTHING: Declared = {}
@@ -18,34 +19,39 @@ SRDF = "srdf.robot"
 
 
 class Host(NamedTuple):
-    """An element whose rewriter was chosen by what it loads: a plugin or a ros2_control system."""
+    """An element whose section was chosen by what it loads: a plugin or a ros2_control system."""
 
     element: etree._Element
     start: int
-    node: Node
+    node: TreeNode
 
 
 class Inventory(NamedTuple):
     """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
-    URDF beside an SRDF included; ``format`` is the section of the root element."""
+    URDF beside an SRDF included; ``format`` is the section of the root element; ``names`` are the
+    names in each of the ``claims``, in their order."""
 
     document: Document
     claims: list[Claim]
     hosts: list[Host]
     declared: dict[str, dict[str, Claim]]
     format: str
+    names: list[tuple[ResolvedName, ...]]
 
 
-def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inventory:
-    """Walk the document in order beside the tree of rewriters; ``outside`` is declared elsewhere."""
+def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHING) -> Inventory:
+    """Walk the document in order along the tree of rewriters.
+
+    ``urdf_declarations`` is what the URDF beside an SRDF declares.
+    """
     claims: list[Claim] = []
     hosts: list[Host] = []
     walk = zip(document.elements, document.starts, strict=True)
     root, _ = next(walk)
-    format_ = _format(document, tree, SRDF if outside else "")
+    format_ = _format(document, tree, SRDF if urdf_declarations else "")
     node = tree.formats[format_]
-    nothing: dict[str, Node] = {}
-    below: dict[etree._Element, dict[str, Node]] = {root: node.active}
+    nothing: dict[str, TreeNode] = {}
+    below: dict[etree._Element, dict[str, TreeNode]] = {root: node.active}
     _claim(claims, node, root, document.starts[0])
     known = tree.tags
     for element, start in walk:
@@ -58,13 +64,15 @@ def collect(document: Document, tree: Tree, outside: Declared = NOTHING) -> Inve
             continue
         if found.select is not None:
             found = found.select(element)
-            if found.rewriter is not None:
+            if found.section is not None:
                 hosts.append(Host(element, start, found))
         if found.active:
             below[element] = found.active
         if found.attributes or found.text is not None:
             _claim(claims, found, element, start)
-    return Inventory(document, claims, hosts, _declared(claims, outside), format_)
+    declared = _declared(claims, urdf_declarations)
+    names = resolved_names(claims, declared)
+    return Inventory(document, claims, hosts, declared, format_, names)
 
 
 def _format(document: Document, tree: Tree, likely: str) -> str:
@@ -82,7 +90,7 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
     return found
 
 
-def _claim(claims: list[Claim], node: Node, element: etree._Element, start: int) -> None:
+def _claim(claims: list[Claim], node: TreeNode, element: etree._Element, start: int) -> None:
     for attribute, site in node.attributes:
         value = element.get(attribute)
         if value is not None:
@@ -100,8 +108,8 @@ def _applies(site: Site, element: etree._Element) -> bool:
     return parent is not None and parent.findtext(sibling, "").strip() == text
 
 
-def _declared(claims: list[Claim], outside: Declared) -> dict[str, dict[str, Claim]]:
-    declared = {kind: dict(outside.get(kind, {})) for kind in DECLARED_KINDS}
+def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:
+    declared = {kind: dict(urdf_declarations.get(kind, {})) for kind in DECLARED_KINDS}
     for claim in claims:
         site = claim.site
         name = claim.value.strip()

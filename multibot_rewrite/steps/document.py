@@ -1,19 +1,20 @@
 """Source bytes -> lxml tree and byte positions. Everything later decides on the tree and edits the
 bytes, so whatever is not edited stays as it was.
 
-A position is found by scanning one start tag; a value is editable only if what stands there reads
+A position is found by scanning one start tag; a value is editable only if the bytes there read
 back as the parsed value. What would make that unsafe (other encodings, DOCTYPE) is refused here.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.findings.place import locate as locate  # noqa: PLC0414
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Edit, Finding, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
@@ -23,19 +24,19 @@ MAX_BYTES = 16 * 1024 * 1024
 _PARSER = etree.XMLParser(
     resolve_entities=False, no_network=True, load_dtd=False, remove_blank_text=True
 )
-_OPENING = regex(rb"<[A-Za-z_:\x80-\xff]")
-_SILENT = regex(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
-_TAG = regex(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
-_ATTRIBUTE = regex(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+_OPENING = lazy_compile(rb"<[A-Za-z_:\x80-\xff]")
+_SILENT = lazy_compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
+_TAG = lazy_compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_ATTRIBUTE = lazy_compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
 _HINTS = (
     ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),
-    ("declaration allowed only at the start", "delete what stands before <?xml ...?>"),
+    ("declaration allowed only at the start", "delete what is before <?xml ...?>"),
     ("Invalid bytes in character encoding", "the text is not UTF-8; convert it: iconv -t UTF-8"),
     ("not proper UTF-8", "convert it: iconv -f LATIN1 -t UTF-8"),
-    ("XML or text declaration not at start", "delete what stands before <?xml ...?>"),
+    ("XML or text declaration not at start", "delete what is before <?xml ...?>"),
     ("Namespace prefix", 'declare it on the root element: xmlns:prefix="..."'),
     ("Unsupported version", 'write <?xml version="1.0"?>'),
     ("Document is empty", "the file holds no XML"),
@@ -82,7 +83,9 @@ def _refuse_bytes(source: bytes, file: str) -> None:
 def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
     message = " ".join(str(error.msg).split()).partition(", line ")[0]
     message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
-    hint = next((hint for start, hint in _HINTS if start in message), "mend the XML and try again")
+    hint = next(
+        (hint for start, hint in _HINTS if start in message), "correct the XML and try again"
+    )
     line, column = error.position
     return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
 
@@ -116,8 +119,8 @@ def slot_values(root: etree._Element) -> list[str]:
 
 
 def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[int, int] | None:
-    """Where a value of the element at ``start`` stands: of an attribute, or its text if that is
-    empty. None if what stands there does not read back as ``value``."""
+    """Where a value of the element at ``start`` is: of an attribute, or its text if that is empty.
+    None if the bytes there do not read back as ``value``."""
     if not attribute:
         return text_slot(source, start, value)
     # The common spelling, inside this tag and not inside another value; else the exact way.
@@ -131,8 +134,36 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
     return begin + len(attribute) + 3, begin + len(written) - 1
 
 
+def value_places(
+    source: bytes, start: int, attribute: str, value: str, characters: Iterable[int]
+) -> list[int] | None:
+    """The byte offsets of ``characters`` of a value; None where escapes hide one of them."""
+    slot = value_slot(source, start, attribute, value)
+    if slot is None:
+        return None
+    places = [_place(source, slot, value, at) for at in characters]
+    found = [place for place in places if place is not None]
+    return found if len(found) == len(places) else None
+
+
+def _place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
+    """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
+    begin, end = slot
+    # As many bytes as characters: nothing is escaped.
+    if end - begin == len(value):
+        return begin + at
+    raw = source[begin:end]
+    head, tail = value[:at].encode(), value[at:].encode()
+    if raw.endswith(tail) and b";" not in tail:
+        return end - len(tail)
+    for written in (head, head.replace(b"\n", b"\r\n")):
+        if raw.startswith(written):
+            return begin + len(written)
+    return None
+
+
 def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[int, int] | None:
-    """Where the value of an attribute stands, however it is quoted, spaced and escaped.
+    """Where the value of an attribute is, however it is quoted, spaced and escaped.
 
     A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
     """
@@ -146,7 +177,7 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
-    """Where the text right after a start tag stands, white space around it aside; None if it does
+    """Where the text right after a start tag is, white space around it aside; None if it does
     not read back as ``value``."""
     raw = value.encode()
     begin = source.find(b">", start) + 1
@@ -161,7 +192,7 @@ def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
 
 
 def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes] | None:
-    """The end of an empty element, and what stands around a text in it; None if it is not empty.
+    """The end of an empty element, and what to write around a text in it; None if it is not empty.
 
     A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
     """

@@ -1,12 +1,13 @@
-"""Inserted text in the bytes: how it is written, and how it is found again.
+"""Inserted elements in the bytes: how they are written, and how ``--strip`` finds them again.
 
-It is the first thing in its parent element and starts with a marker:
+They come first in their parent element, after a marker comment:
 
-    <!--multibot robot1 +2: odom, cmd_vel: the same for every robot otherwise-->
+    <!-- multibot robot1 +2 (added, or all robots would share odom, cmd_vel) -->
 
-The number counts the inserted elements that follow; ``expanded`` behind it says that the parent was
-``<a/>`` before. ``--strip`` takes out exactly that. The marker is a comment because TinyXML-2, which
-urdfdom and sdformat read with, refuses processing instructions inside the root element.
+The number counts the inserted elements that follow; ``expanded`` after it means that the parent was
+``<a/>`` before. The text holds no ": ": launch files pass a description on as a YAML string. The
+marker is a comment because TinyXML-2, which urdfdom and sdformat read with, refuses processing
+instructions inside the root element.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from lxml import etree
 
 from multibot_rewrite.model import Edit, InputError
 from multibot_rewrite.rewriters.insert import Insertion
-from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.document import Document, tag_end
 
-MARKER = b"<!--multibot "
-WHY = "the same for every robot otherwise"
+MARKER = b"<!-- multibot "
+WHY = "added, or all robots would share"
 
 
 class Marker(NamedTuple):
@@ -52,15 +53,20 @@ def _parent_edits(
     expanded = source[end - 2 : end] == b"/>"
     lead = _lead(source, start, end)
     elements = _elements(items, lead)
-    old = ("no namespace" if item.kind == "namespace" else item.old for item in items)
-    about = ", ".join(dict.fromkeys(old)).replace("--", "- -")
     word = " expanded" if expanded else ""
-    marker = f"<!--multibot {HOLE} +{len(elements)}{word}: {about}: {WHY}-->"
+    marker = f"<!-- multibot {ROBOT_SLOT} +{len(elements)}{word} ({WHY} {_shared(items)}) -->"
     text = "".join(lead + part for part in (marker, *elements))
     if expanded:
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
-        return hole_edits(end - 2, end, f">{text}{lead}</{name}>")
-    return hole_edits(end, end, text)
+        return slot_edits(end - 2, end, f">{text}{lead}</{name}>")
+    return slot_edits(end, end, text)
+
+
+def _shared(items: list[Insertion]) -> str:
+    """What all robots would share without the inserted elements, as a comment can hold it."""
+    names = ("the root namespace" if item.kind == "namespace" else item.old for item in items)
+    # A comment may not hold "--", a YAML string may not hold a colon and a space.
+    return ", ".join(dict.fromkeys(names)).replace("--", "- -").replace(": ", ":")
 
 
 def _lead(source: bytes, start: int, end: int) -> str:
@@ -79,9 +85,9 @@ def _elements(items: list[Insertion], lead: str) -> list[str]:
     return plain
 
 
-def hole_edits(start: int, end: int, text: str) -> list[Edit]:
-    """Replace ``start:end`` by ``text``, in which ``HOLE`` stands for the robot's name."""
-    first, *rest = (piece.encode() for piece in text.split(HOLE))
+def slot_edits(start: int, end: int, text: str) -> list[Edit]:
+    """Replace ``start:end`` by ``text``, in which ``ROBOT_SLOT`` stands for the robot's name."""
+    first, *rest = (piece.encode() for piece in text.split(ROBOT_SLOT))
     if not rest:
         return [Edit(start, end, first, None)]
     return [Edit(start, end, first, rest[0])] + [Edit(end, end, b"", piece) for piece in rest[1:]]
@@ -93,14 +99,15 @@ def markers(document: Document) -> list[Marker]:
         return []
     found = []
     for comment in document.root.iter(etree.Comment):
-        words = (comment.text or "").partition(":")[0].split()
-        if words[:1] == ["multibot"]:
+        words = (comment.text or "").partition("(")[0].split()
+        # A person may write a comment that starts with this word, too.
+        if words[:1] == ["multibot"] and words[2:3] and words[2][0] == "+":
             found.append(_read_marker(document, comment, words))
     return found
 
 
 def _read_marker(document: Document, comment: etree._Element, words: list[str]) -> Marker:
-    plain = len(words) in (3, 4) and words[2][:1] == "+" and words[2][1:].isdigit()
+    plain = len(words) in (3, 4) and words[2][1:].isdigit()
     if not plain or (len(words) == 4 and words[3] != "expanded"):
         raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
     return Marker(comment, words[1], int(words[2][1:]), len(words) == 4)

@@ -5,26 +5,25 @@ from __future__ import annotations
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
-from multibot_rewrite.rewriters.spelling import kind_of, spelled_in, spelling_key, unspelled
+from multibot_rewrite.rewriters.spelling import ResolvedName, is_reached, unspelled
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.document import emptied, value_slot
+from multibot_rewrite.steps.document import emptied, value_places, value_slot
 from multibot_rewrite.steps.inserted import removals
-from multibot_rewrite.steps.plan import value_place
 
 
 def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     """Edits that undo ``make_plan`` for ``robot``, in source order."""
     document = inventory.document
     edits = removals(document, robot)
-    claims = outside_of(inventory.claims, edits)
-    known: dict[tuple[object, str], list[tuple[int, int]]] = {}
-    for claim in claims:
-        key = spelling_key(claim)
-        spans = known.get(key)
-        if spans is None:
-            spans = known[key] = _spans(inventory, claim, naming, robot)
-        if spans:
-            edits += _claim_edits(document.source, claim, spans)
+    claims = not_inserted(inventory.claims, edits)
+    removed = list(edits)
+    known: dict[tuple[tuple[ResolvedName, ...], bool], list[tuple[int, int]]] = {}
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        key = names, claim.site.namespaced
+        if key not in known:
+            known[key] = _spans(*key, naming, robot)
+        if known[key] and is_reached(claim, naming) and not _inside(claim, removed):
+            edits += _claim_edits(document.source, claim, known[key])
 
     def unspell(kind: str, name: str) -> str:
         return unspelled(naming, kind, name, robot)
@@ -36,31 +35,31 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     return sorted(edits, key=lambda edit: edit.start)
 
 
-def outside_of(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
-    """The claims that do not stand in inserted text."""
-    if not removed:
-        return claims
-    inside = [(edit.start, edit.end) for edit in removed]
-    return [c for c in claims if not any(start <= c.start < end for start, end in inside)]
+def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
+    """The claims that are not in inserted elements."""
+    return [claim for claim in claims if not _inside(claim, removed)] if removed else claims
 
 
-def _spans(inventory: Inventory, claim: Claim, naming: Naming, robot: str) -> list[tuple[int, int]]:
-    """The parts of the claimed value that an affix put there."""
-    site = claim.site
+def _inside(claim: Claim, removed: list[Edit]) -> bool:
+    return any(edit.start <= claim.start < edit.end for edit in removed)
+
+
+def _spans(
+    names: tuple[ResolvedName, ...], namespaced: bool, naming: Naming, robot: str
+) -> list[tuple[int, int]]:
+    """The parts of a value with these names that an affix put there."""
     spans = []
-    for part in spelled_in(claim, inventory.declared, naming):
-        kind = kind_of(part, site.role, inventory.declared)
-        span = removal(naming, robot, kind, part.text, site.namespaced) if kind else None
+    for name in names:
+        span = removal(naming, robot, name.kind, name.text, namespaced)
         if span is not None:
-            spans.append((part.at + span[0], part.at + span[1]))
+            spans.append((name.at + span[0], name.at + span[1]))
     return spans
 
 
 def _claim_edits(source: bytes, claim: Claim, spans: list[tuple[int, int]]) -> list[Edit]:
-    slot = value_slot(source, claim.start, claim.attribute, claim.value)
-    if slot is None:
-        return []
+    value = claim.start, claim.attribute, claim.value
     if claim.site.form == "prefix" and spans == [(0, len(claim.value))]:
-        return [emptied(source, slot)]
-    places = [[value_place(source, slot, claim.value, at) for at in span] for span in spans]
-    return [Edit(a, b, b"", None) for a, b in places if a is not None and b is not None]
+        slot = value_slot(source, *value)
+        return [emptied(source, slot)] if slot else []
+    places = value_places(source, *value, [at for span in spans for at in span]) or []
+    return [Edit(a, b, b"", None) for a, b in zip(places[::2], places[1::2], strict=True)]

@@ -563,12 +563,12 @@ def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: 
 
 
 def test_the_list_has_every_section(multibot: Multibot) -> None:
-    sections = load_vocabulary().rewriters(*TYPES)
+    sections = load_vocabulary().sections(*TYPES)
     listed = multibot("vocabulary").out.splitlines()
     assert len(listed) == len(sections) + 1
     table = multibot.json("vocabulary", "--type", "hardware")["sections"]
     assert {section["type"] for section in table} == {"hardware"}
-    assert len(table) == len(load_vocabulary().rewriters("hardware"))
+    assert len(table) == len(load_vocabulary().sections("hardware"))
 
 
 def test_the_type_narrows_a_name(multibot: Multibot) -> None:
@@ -578,7 +578,7 @@ def test_the_type_narrows_a_name(multibot: Multibot) -> None:
 
 def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
     found = look_up(load_vocabulary(), "sensor", ["element"])
-    names = [rewriter.names[0] for rewriter in found]
+    names = [section.names[0] for section in found]
     assert names[0] == "sensor"
     assert {"robot.sensor", "link.sensor"} <= set(names)
 

@@ -13,6 +13,8 @@ from paths import ROOT
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.name_sites import kinds
 from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit, with_srdf
+from multibot_rewrite.companions.names.undeclared import is_undeclared
+from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.model import Finding, InputError
@@ -43,6 +45,14 @@ def run(text: str, it: Context, file: str = "a.yaml") -> tuple[str, tuple[Findin
 
 def text_of(text: str, it: Context) -> str:
     return run(text, it)[0]
+
+
+@pytest.mark.parametrize("frame", ["map", "odom", "world", "earth", "utm", "local_enu"])
+def test_frames_that_nodes_send_are_not_missed_in_the_description(frame: str) -> None:
+    """REP 105 and navsat_transform_node; the same frames as in parameter files."""
+    assert built_in_nodes().sent >= {frame}
+    assert not is_undeclared(context("L2", shared_frames=()), "frame", frame)
+    assert is_undeclared(context("L2", shared_frames=()), "frame", "base_lnik")
 
 
 def codes(text: str, it: Context) -> list[tuple[str, int]]:

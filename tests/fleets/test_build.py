@@ -629,7 +629,7 @@ ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a
 
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
-    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", spelled=other)
+    robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", frame_tag=other)
     end = PlannedEndpoint(f"/{other}", "topic", "publishes", f"/{word}", other, other)
     plan = Expectation("both", (robot,), (), (), tuple(frames), (end,), (), ((f"/{other}", word),))
     text = to_yaml(plan)

@@ -792,7 +792,7 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
 
 def robots_called(*names: str, layout: str = "L2") -> Expectation:
     naming = make_naming(layout)
-    declared = {name: [spelled(link, name, naming) for link in LINKS] for name in names}
+    declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
     return expect(build_table(names, NODES, naming), naming, declared)
 
 

@@ -15,7 +15,6 @@ from multibot_rewrite.graph.expectation import (
     PlannedEndpoint,
     PlannedRobot,
     expect,
-    spelled,
 )
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.snapshot import (
@@ -26,7 +25,7 @@ from multibot_rewrite.graph.snapshot import (
     from_json,
     to_json,
 )
-from multibot_rewrite.naming import Naming, affix, make_naming
+from multibot_rewrite.naming import Naming, affix, make_naming, spelled
 from multibot_rewrite.remap.records import (
     CALLS,
     PUBLISHES,
@@ -90,7 +89,7 @@ def fleets(draw: st.DrawFn) -> Fleet:
     still = tf._replace(name="/tf_static")
     nodes = [NodeFacts(name, "p", (*draw(some), tf, still)) for name in names]
     links = draw(st.lists(st.sampled_from(LINKS), min_size=1, max_size=4, unique=True))
-    frames = {robot: [spelled(link, robot, naming) for link in links] for robot in robots}
+    frames = {robot: [spelled(naming, robot, "frame", link) for link in links] for robot in robots}
     plan = expect(build_table(robots, nodes, naming), naming, frames)
     return Fleet(plan, beside(plan, as_planned(plan), naming))
 

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner
+from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.snapshot import (
@@ -25,6 +25,7 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
     to_json,
 )
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
@@ -557,6 +558,34 @@ def test_all_nodes_but_tools_are_learned() -> None:
     assert choose_nodes(seen, ("/rviz2",), "/") == ("/rviz2",)
 
 
+# What people run beside a robot: no part of it, whatever namespace it runs in.
+BESIDE = [
+    "rosbridge_websocket", "rosapi", "tf2_echo", "teleop_twist_keyboard", "joy_node", "gazebo",
+    "ros_gz_bridge", "spawner_arm_controller", "static_transform_publisher_x7", "my_container",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("tool", BESIDE)
+def test_what_the_check_ignores_is_not_learned_unless_asked_for_by_name(tool: str) -> None:
+    seen = graph(node(name="driver"), node(name=f"r1/{tool}"))
+    assert is_tool(f"/r1/{tool}")
+    assert choose_nodes(seen, (), "/") == ("/driver",)
+    assert choose_nodes(seen, (f"/r1/{tool}",), "/") == (f"/r1/{tool}",)
+
+
+@pytest.mark.parametrize("name", ["driver", "joint_state_broadcaster", "gazer", "bridge_driver"])
+def test_nodes_of_a_robot_are_no_tools(name: str) -> None:
+    assert not is_tool(f"/r1/{name}")
+
+
+def test_tools_that_may_be_a_robots_are_named() -> None:
+    """Not the hidden ones, launch and tf listeners: nobody plans those."""
+    names = ("driver", "can_bridge", "joy_node", "_ros2cli_7", "launch_ros_12")
+    seen = graph(*(node(name=name) for name in names), LISTENER)
+    assert left_out(seen, ["/driver"], "/") == ("/can_bridge", "/joy_node")
+    assert left_out(seen, ["/driver", "/joy_node"], "/") == ("/can_bridge",)
+
+
 def test_all_nodes_of_a_namespace_are_learned() -> None:
     seen = graph(node(name="r1/a"), node(name="r1/eye/b"), node(name="r11/c"), node(name="r1"))
     for namespace in ("/r1", "/r1/"):
@@ -665,7 +694,9 @@ def test_what_is_learned_gives_the_whole_table(
 ) -> None:
     mine = str(tmp_path / "mine.yaml")
     assert main(["learn", "--snapshot", str(shot), "--stack", "mine", "-o", mine]) == 0
-    assert capsys.readouterr() == ("", "multibot: 2 nodes learned as stack mine\n")
+    note = "left out as tools: /rviz2; to learn one give its name to --node"
+    said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine\n"
+    assert capsys.readouterr() == ("", said)
     names = [node.name for node in stack_of(user_stack(mine), "mine")]
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")

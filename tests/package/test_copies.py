@@ -24,7 +24,7 @@ from multibot_rewrite import (
     rewrite,
     rewrite_all,
 )
-from multibot_rewrite.fleets.scripts import NodeNames
+from multibot_rewrite.fleets.node_names import NodeNames
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
 SMALL = '<robot name="rover"><link name="base"/></robot>'
@@ -112,7 +112,7 @@ def test_errors_can_be_copied(
 def seen(fleet: LoadedFleet) -> list[object]:
     """What a launch script reads of a fleet."""
     return [fleet.file, fleet.findings, *(of_robot for it in fleet.robots for of_robot in (
-        it.name, it.model, it.namespace, it.spelled, it.pose, it.description, it.srdf,
+        it.name, it.model, it.namespace, it.tag, it.pose, it.description, it.srdf,
         it.frame("base_link"), it.topic("scan"), it.tf_remappings, it.spawn_arguments,
         it.transform_arguments, it.teleop_arguments, it.node("amcl", "params.yaml"),
     ))]  # fmt: skip

@@ -16,8 +16,13 @@ from paths import FIXTURES
 
 from multibot_rewrite.model import Site
 from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.tree import Node, qualified
-from multibot_rewrite.rewriters.vocabulary import Rewriter, load_vocabulary, split_path, split_step
+from multibot_rewrite.rewriters.tree import TreeNode, qualified
+from multibot_rewrite.rewriters.vocabulary import (
+    VocabularySection,
+    load_vocabulary,
+    split_path,
+    split_step,
+)
 
 LEAST_FACTS = 1500
 # Kinds of facts that are no name of ours: nothing may be renamed there.
@@ -105,25 +110,25 @@ def host_trouble(fact: Fact) -> str:
         ]
         if not flavours:
             return f"no section [{fact.type} {name}]{' for ROS ' + fact.ros if found else ''}"
-        for rewriter in flavours:
-            words = site_trouble(fact, host_site(rewriter, fact.path))
+        for section in flavours:
+            words = site_trouble(fact, host_site(section, fact.path))
             if words:
                 return words
     return ""
 
 
-def host_site(rewriter: Rewriter, path: str) -> Site | None:
+def host_site(section: VocabularySection, path: str) -> Site | None:
     """The row of a plugin or hardware class for a path, its own or one that holds for all."""
-    common = {"plugin": "plugin", "hardware": "ros2_control"}[rewriter.type]
+    common = {"plugin": "plugin", "hardware": "ros2_control"}[section.type]
     (shared,) = load_vocabulary().find("element", common)
-    return {site.path: site for site in shared.sites + rewriter.sites}.get(path)
+    return {site.path: site for site in shared.sites + section.sites}.get(path)
 
 
 def element_trouble(fact: Fact) -> str:
     """The same for a place in a document."""
     steps, attribute = split_path(fact.path[1:])
     tree = builtin_tree()
-    node: Node | None = tree.formats.get(steps[0])
+    node: TreeNode | None = tree.formats.get(steps[0])
     for step in steps[1:]:
         tag, asked, value = split_step(step)
         node = node and node.children.get(qualified(tag))

@@ -20,7 +20,7 @@ from multibot_rewrite import model
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("bulk", "version", "lazy", "nearest", "plural"),
+    ("gc_pause", "version", "lazy", "nearest", "plural"),
     ("findings",),
     ("model",),
     ("rosnames", "naming", "config", "arguments"),

@@ -25,7 +25,7 @@ from multibot_rewrite import (
     strip,
 )
 from multibot_rewrite.arguments import checked
-from multibot_rewrite.fleets.scripts import NodeNames
+from multibot_rewrite.fleets.node_names import NodeNames
 from multibot_rewrite.naming import Policy, make_naming
 
 ROVER = FIXTURES / "robots" / "rover.urdf"

@@ -12,7 +12,7 @@ from rcl_names import INSTALL, ask
 
 from multibot_rewrite import UsageError
 from multibot_rewrite.rosnames import (
-    Fault,
+    NameFault,
     RemapRule,
     check_full_name,
     check_namespace,
@@ -113,7 +113,7 @@ def ours_for(reason: str) -> str:
     return next(ours for theirs, ours in REASONS.items() if theirs in reason)
 
 
-def located(fault: Fault | None, name: str) -> int | None:
+def located(fault: NameFault | None, name: str) -> int | None:
     """Where the fault is, in bytes as rcl counts."""
     return None if fault is None else len(name[: fault.at].encode())
 

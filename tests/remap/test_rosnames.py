@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from multibot_rewrite import UsageError
 from multibot_rewrite.rosnames import (
     MAX_TOKEN,
-    Fault,
+    NameFault,
     RemapRule,
     bind,
     check_full_name,
@@ -141,7 +141,7 @@ def test_a_remap_rule_is_taken_apart(text: str, rule: RemapRule) -> None:
 def test_a_rule_that_rcl_refuses_says_where_and_what(text: str, place: int, found: str) -> None:
     assert parse_remap(text) is None
     fault = read_remap(text)
-    assert isinstance(fault, Fault)
+    assert isinstance(fault, NameFault)
     assert fault.at == place - 1
     assert fault.reason.startswith(f"character {place}: expected ")
     assert f", found {found}" in fault.reason
@@ -260,11 +260,11 @@ def test_full_names_and_namespaces_may_not_be(name: str, place: int, reason: str
         pytest.param(check_node_name, "a" * 255, id="node"),
     ],
 )
-def test_lengths_have_a_limit(check: Callable[[str], Fault | None], longest: str) -> None:
+def test_lengths_have_a_limit(check: Callable[[str], NameFault | None], longest: str) -> None:
     limit = len(longest)
     reason = f"it has {limit + 1} characters, ROS 2 allows {limit}"
     assert check(longest) is None
-    assert check(longest + "a") == Fault(reason, limit - 1)
+    assert check(longest + "a") == NameFault(reason, limit - 1)
 
 
 def test_the_root_is_a_namespace_and_no_topic() -> None:

@@ -58,10 +58,10 @@ def test_a_kept_value_says_why() -> None:
     ("line", "path", "options", "words"),
     [
         pytest.param(8, "odometry_frame", {}, "a shared frame", id="shared-frame"),
-        pytest.param(5, "gazebo@reference", {}, "not declared, it stays", id="dangling"),
         pytest.param(
-            9, "robot_base_frame", {"layout": "L1"}, "leaves link names alone", id="layout"
+            5, "gazebo@reference", {}, "not declared, so it is not renamed", id="dangling"
         ),
+        pytest.param(9, "robot_base_frame", {"layout": "L1"}, "does not rename links", id="layout"),
     ],
 )
 def test_a_value_that_stays_says_why(line: int, path: str, options: dict, words: str) -> None:

@@ -9,7 +9,7 @@ import pytest
 import multibot_rewrite
 from multibot_rewrite import rewrite
 from multibot_rewrite.checks.audit import is_unknown
-from multibot_rewrite.reports.suggest import Section, suggest, tag_kind, vocabulary_text
+from multibot_rewrite.reports.suggest import SuggestedSection, suggest, tag_kind, vocabulary_text
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriters.vocabulary import Vocabulary, load_vocabulary
@@ -37,7 +37,7 @@ def hardware(body: str) -> str:
     return f'<ros2_control name="s" type="system">{inner}<joint name="hip"/></ros2_control>'
 
 
-def suggested(body: str) -> list[Section]:
+def suggested(body: str) -> list[SuggestedSection]:
     return suggest(described(body))
 
 
@@ -223,8 +223,8 @@ NASTY = (
 )
 def test_the_suggestion_loads_and_leaves_nothing_unknown(body: str, tmp_path: Path) -> None:
     tree = loaded(text_for(body), tmp_path)
-    before = [host for host in described(body).hosts if _unknown(host.node.rewriter)]
-    after = [host for host in described(body, tree).hosts if _unknown(host.node.rewriter)]
+    before = [host for host in described(body).hosts if _unknown(host.node.section)]
+    after = [host for host in described(body, tree).hosts if _unknown(host.node.section)]
     assert before and not after
 
 
@@ -280,14 +280,16 @@ def test_what_a_small_vocabulary_lacks_can_be_suggested(corpus: dict[str, Path])
         text = vocabulary_text(sections, path.name)
         tree = Tree(Vocabulary(texts | {"new.vocab": text}))
         there = collect(document, tree)
-        assert not any(is_unknown(h.node.rewriter) for h in there.hosts if h.node.rewriter), path
-        assert len(tree.vocabulary.rewriters("plugin", "hardware")) == text.count("\n["), path
+        assert not any(is_unknown(h.node.section) for h in there.hosts if h.node.section), path
+        assert len(tree.vocabulary.sections("plugin", "hardware")) == text.count("\n["), path
         guessed |= _guessed(sections, tree.vocabulary)
     assert len(guessed) > 50
     assert {kind for _, kinds in guessed for kind in kinds} >= {"joint", "link", "frame", "topic"}
 
 
-def _guessed(sections: list[Section], vocabulary: Vocabulary) -> set[tuple[str, tuple[str, ...]]]:
+def _guessed(
+    sections: list[SuggestedSection], vocabulary: Vocabulary
+) -> set[tuple[str, tuple[str, ...]]]:
     """Path and kinds of every guessed row, as the vocabulary has read it."""
     found = set()
     for section in sections:

@@ -15,7 +15,7 @@ from multibot_rewrite.pipeline import prepare
 from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
-    Mention,
+    MentionPlace,
     Reason,
     Survey,
     Tally,
@@ -129,7 +129,7 @@ def test_what_is_claimed_or_kept_is_no_mention() -> None:
 
 def test_the_first_place_is_remembered() -> None:
     found = surveyed(f"\n\n{plugin('libacme.so', '<x>hip</x><x>base</x>')}")
-    mention = Mention("robot/gazebo/plugin[libacme.so]/x", True)
+    mention = MentionPlace("robot/gazebo/plugin[libacme.so]/x", True)
     assert found.mentions[mention] == Tally(2, 1, "a.urdf:3", "hip")
 
 
@@ -140,7 +140,7 @@ def test_surveys_add_up_and_keep_the_first_place() -> None:
     assert total.files == 2
     assert total.loaded[Loaded("plugin", "libacme.so", False)].times == 2
     assert total.claims["link"] == one.claims["link"] + two.claims["link"] == 8
-    x = Mention("robot/gazebo/plugin[libacme.so]/x", True)
+    x = MentionPlace("robot/gazebo/plugin[libacme.so]/x", True)
     assert total.mentions[x] == Tally(3, 2, "one.urdf:1", "hip")
     assert total.mentions[x._replace(path=x.path[:-1] + "y")].files == 1
 
@@ -153,7 +153,7 @@ def test_nothing_adds_nothing() -> None:
 
 def test_the_most_frequent_comes_first_then_the_name() -> None:
     tallies = {
-        Mention(name, True): Tally(n, 1, "", "") for name, n in (("b", 1), ("a", 1), ("c", 2))
+        MentionPlace(name, True): Tally(n, 1, "", "") for name, n in (("b", 1), ("a", 1), ("c", 2))
     }
     assert [mention.path for mention, _ in ranked(tallies.items())] == ["c", "a", "b"]
 

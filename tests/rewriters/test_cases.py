@@ -19,7 +19,7 @@ from multibot_rewrite.model import ERROR, Finding, Site
 from multibot_rewrite.naming import POSTFIX, Policy, make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.vocabulary import Rewriter, load_vocabulary
+from multibot_rewrite.rewriters.vocabulary import VocabularySection, load_vocabulary
 from multibot_rewrite.steps.apply import fill
 
 ROBOTS = ("robot1", "robot2")
@@ -31,10 +31,10 @@ REFUSED = [case for case in CASES if case.expect == "refused"]
 # An element that holds others and no name of its own has nothing to show.
 REWRITERS = [
     rewriter
-    for rewriter in load_vocabulary().rewriters("element", "plugin", "hardware", "sensor")
+    for rewriter in load_vocabulary().sections("element", "plugin", "hardware", "sensor")
     if rewriter.type != "element" or any(site.role != "keep" for site in rewriter.sites)
 ]
-BLOCKS = load_vocabulary().rewriters("block")
+BLOCKS = load_vocabulary().sections("block")
 LEAST_CASES = 1050
 LEAST_REFEREED = 980
 # Not a word of rewrite's naming policy.
@@ -177,7 +177,7 @@ def sizes(data: bytes) -> tuple[int, int] | None:
 
 def the_named_rewriter_is_at_work(case: Case) -> None:
     _, claims, hosts, *_ = run(case).template.inventory
-    served = {host.node.rewriter.name for host in hosts if host.node.rewriter is not None}
+    served = {host.node.section.name for host in hosts if host.node.section is not None}
     assert case.rewriter in served | {claim.site.section for claim in claims}
 
 
@@ -217,12 +217,12 @@ def test_every_rewriter_has_a_changed_and_a_same_case() -> None:
     assert {name: left for name, left in lacking.items() if left} == {}
 
 
-def wanted(rewriter: Rewriter) -> set[str]:
+def wanted(rewriter: VocabularySection) -> set[str]:
     renames = any(site.role != "keep" for site in rewriter.sites)
     return {"changed", "same"} if renames else {"same"}
 
 
-def outcomes(rewriter: Rewriter) -> set[str]:
+def outcomes(rewriter: VocabularySection) -> set[str]:
     return {case.expect for case in CASES if case.rewriter == rewriter.name}
 
 
@@ -232,12 +232,12 @@ def test_every_default_and_hard_wired_topic_is_inserted() -> None:
     assert {name: left for name, left in lacking.items() if left} == {}
 
 
-def inserted(rewriter: Rewriter) -> set[str]:
+def inserted(rewriter: VocabularySection) -> set[str]:
     cases = [case for case in REWRITTEN if case.rewriter == rewriter.name]
     return {item.old for case in cases for item in run(case).template.plan.insertions}
 
 
-def literals(rewriter: Rewriter) -> set[str]:
+def literals(rewriter: VocabularySection) -> set[str]:
     """What the consumer falls back to or hard-wires, private topics aside."""
     stated = {site.default.rpartition("?")[2] for site in rewriter.sites}
     defaults = {default for default in stated if "/../" not in default}
@@ -251,7 +251,7 @@ def test_every_row_of_the_vocabulary_renames_something() -> None:
     assert left == UNEXERCISED
 
 
-def rows(rewriter: Rewriter) -> list[Site]:
+def rows(rewriter: VocabularySection) -> list[Site]:
     """The rows of its own section at which something may be renamed."""
     own = f"{rewriter.type} {rewriter.names[0]}"
     return [site for site in rewriter.sites if site.role != "keep" and site.section == own]
@@ -260,7 +260,7 @@ def rows(rewriter: Rewriter) -> list[Site]:
 def touched_rows(case: Case) -> Iterator[Row]:
     """The rows at which the case renames a value."""
     _, plan, *_ = template = run(case).template
-    for claim, spelling in zip(template.inventory.claims, plan.spellings, strict=True):
+    for claim, spelling in zip(template.inventory.claims, plan.renames.values, strict=True):
         if spelling:
             yield place(claim.site)
     for claim, _ in plan.collisions:

@@ -329,7 +329,7 @@ def test_one_user_file_costs_no_parsing_of_the_rest(tmp_path: Path) -> None:
     mine = tmp_path / "mine.vocab"
     mine.write_text(SECTION.format(name="gazebo_ros_p3d") + "[block ros]\nextra uses link\n")
     vocabulary = load_vocabulary((str(mine),), packages=False)
-    parsed = {rewriter.name for found in vocabulary._found.values() for rewriter in found}
+    parsed = {section.name for found in vocabulary._found.values() for section in found}
     assert {"plugin gazebo_ros_p3d (ROS 2)", "block ros"} <= parsed
     assert len(parsed) < 6
 

@@ -9,7 +9,12 @@ import pytest
 
 from multibot_rewrite import VocabularyError, rewrite
 from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.rewriters.vocabulary import TYPES, Rewriter, check_vocabulary, load_vocabulary
+from multibot_rewrite.rewriters.vocabulary import (
+    TYPES,
+    VocabularySection,
+    check_vocabulary,
+    load_vocabulary,
+)
 
 HEAD = "[plugin mine]\nabout: a test\n"
 NEW_PLUGIN = """\
@@ -54,7 +59,7 @@ def complaint(path: str) -> str:
     return str(caught.value)
 
 
-def builtin() -> list[Rewriter]:
+def builtin() -> list[VocabularySection]:
     return check_vocabulary(load_vocabulary())
 
 
@@ -76,7 +81,7 @@ def builtin() -> list[Rewriter]:
         pytest.param("ros: 3", "ros: is '3', use 1 or 2", id="ros"),
         pytest.param("ros: 1\nros: 2", "ros:", id="ros-twice"),
         pytest.param("insert: maybe", "insert: is 'maybe', use yes or no", id="insert"),
-        pytest.param("switches: odom", "'odom' is no PARAMETER=TOPIC[=on]", id="switches"),
+        pytest.param("switches: odom", "'odom' is not PARAMETER=TOPIC[=on]", id="switches"),
         pytest.param("with: nope", "there is no [block nope]", id="block"),
         pytest.param("with: ros nope", "there is no [block nope]", id="second-block"),
     ],
@@ -187,7 +192,7 @@ def test_an_own_site_wins_over_its_block(tmp_path: Path) -> None:
 
 def test_the_builtin_vocabulary_has_no_mistake() -> None:
     rewriters = builtin()
-    assert {rewriter.type for rewriter in rewriters} == set(TYPES)
+    assert {section.type for section in rewriters} == set(TYPES)
     assert builtin_tree().formats.keys() >= {"robot"}
 
 

@@ -286,7 +286,9 @@ def test_strip_needs_the_rewritten_urdf() -> None:
     urdf = rewrite(ARM, ROBOT).data
     srdf = rewrite(SRDF, ROBOT, urdf=ARM).data
     assert strip(srdf, ROBOT, urdf=urdf) == SRDF
-    with pytest.raises(MultibotError, match=r"MB107 .* of the URDF is not spelled for robot1"):
+    with pytest.raises(
+        MultibotError, match=r"MB107 .* of the URDF does not have the name of robot1"
+    ):
         strip(srdf, ROBOT, urdf=ARM)
     with pytest.raises(MultibotError, match="--urdf"):
         strip(srdf, ROBOT)

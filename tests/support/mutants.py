@@ -18,7 +18,7 @@ SNIPPETS = (
     b"\r\n", b"\r", b"\t", b"/", b"//", b"::", b":=", b"~", b"robot1", b"/robot1", b"_robot1",
     b"world", b" xmlns='urn:x'", b" xmlns:a='urn:a'", b"<a:b/>", b"<gazebo/>", b"<plugin/>",
     b"<link/>", b"<joint/>", b'<link name=""/>', b'<gazebo reference="world"/>', b"${x}", b"\xc3\xa9",
-    b"<!--multibot robot1 +1: odom: x-->", b"<!--multibot-->", b"<ros/>", b"<link name='x'>y</link>",
+    b"<!-- multibot robot1 +1 (odom) -->", b"<!-- multibot -->", b"<ros/>", b"<link name='x'>y</link>",
 )  # fmt: skip
 
 

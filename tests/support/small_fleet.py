@@ -53,7 +53,7 @@ def plan(layout: str = "L2") -> Expectation:
 
 def frames(layout: str) -> dict[str, list[str]]:
     naming = make_naming(layout)
-    return {robot: [spelled(link, robot, naming) for link in LINKS] for robot in ROBOTS}
+    return {robot: [spelled(naming, robot, "frame", link) for link in LINKS] for robot in ROBOTS}
 
 
 def healthy(layout: str = "L2") -> Snapshot:
@@ -61,7 +61,9 @@ def healthy(layout: str = "L2") -> Snapshot:
     graph = as_planned(plan(layout))
     naming = make_naming(layout)
     odometry = tuple(
-        GraphFrame(robot.frames[0], spelled("odom", robot.name, naming), robot.tf, False, ())
+        GraphFrame(
+            robot.frames[0], spelled(naming, robot.name, "frame", "odom"), robot.tf, False, ()
+        )
         for robot in plan(layout).robots
     )
     return sent(graph._replace(frames=(*graph.frames, *odometry)))

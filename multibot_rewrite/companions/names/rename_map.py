@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from multibot_rewrite.naming import NOT_PLAIN, Naming, affix
+from multibot_rewrite.naming import NOT_PLAIN, Naming, spelled
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import resolve
 
@@ -40,8 +40,7 @@ def spell(names: RenameMap, word: str, value: str, namespaced: bool = True) -> s
     if not value or not NOT_PLAIN.isdisjoint(value) or "<" in value:
         return value
     kind = resolve(value, KINDS[word], "uses", names.declared)
-    there = affix(names.naming, kind, value, namespaced) if kind else None
-    return there.spell(value, names.robot) if there else value
+    return spelled(names.naming, names.robot, kind, value, namespaced)
 
 
 def is_declared(names: RenameMap, word: str, value: str) -> bool:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from multibot_rewrite.checks.mentions import mentioned
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain, is_shared_frame
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
+from multibot_rewrite.companions.params.known_nodes import built_in_nodes
+from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rosnames import check_topic_name
 
-# Frames that nodes send and no description declares (REP 105, navsat_transform_node).
-SENT = frozenset({"map", "odom", "world", "earth", "utm", "local_enu"})
 # What a word of the description may be, where a mention of it matters.
 _MENTIONED = ("link", "joint", "frame", "group")
 
@@ -25,7 +23,7 @@ def is_undeclared(context: Context, word: str, value: str) -> bool:
     bare = value[1:] if word == "frame" and value.startswith("/") else value
     if not declared or not is_plain(value) or is_declared(context.names, word, bare):
         return False
-    return word != "frame" or not (bare in SENT or is_shared_frame(context, bare))
+    return word != "frame" or not (bare in built_in_nodes().sent or is_shared_frame(context, bare))
 
 
 def undeclared_message(context: Context, word: str, value: str) -> tuple[str, str]:
@@ -34,15 +32,7 @@ def undeclared_message(context: Context, word: str, value: str) -> tuple[str, st
     other = "it stays unchanged; correct it"
     if word == "frame":
         other = "some node must publish it with the robot's name"
-    return f"{word} {value!r} is not in the description", nearest(value, known) or other
-
-
-def nearest(value: str, known: Iterable[str]) -> str:
-    """The most similar known name, as a question; empty for none."""
-    from difflib import get_close_matches  # only a message needs it
-
-    near = get_close_matches(value, list(known), 1, 0.6)
-    return f"did you mean {near[0]!r}?" if near else ""
+    return f"{word} {value!r} is not in the description", did_you_mean(value, known) or other
 
 
 def renamed_names(context: Context) -> frozenset[str]:

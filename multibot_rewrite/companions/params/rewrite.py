@@ -2,18 +2,25 @@
 
 ``known_nodes`` knows which parameters hold names (``params.yaml``). One step each: ``sections`` finds
 and renames sections, ``name_sites`` finds names, ``values`` renames them, ``shared_defaults`` inserts
-what is missing.
+what is missing. Checks: ``section_checks``, ``name_checks``, ``robot_names``, ``unknown_parameters``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.bulk import uncollected
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
+from multibot_rewrite.companions.params.name_checks import name_findings
 from multibot_rewrite.companions.params.name_sites import SectionNames, find_names
+from multibot_rewrite.companions.params.robot_names import (
+    namespace_findings,
+    placeholders_in_key,
+    placeholders_in_names,
+    robot_in_name,
+)
+from multibot_rewrite.companions.params.section_checks import key_findings, section_findings
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
@@ -21,20 +28,14 @@ from multibot_rewrite.companions.params.sections import (
     identify_sections,
     key_splices,
     raw_sections,
-    section_findings,
 )
 from multibot_rewrite.companions.params.shared_defaults import (
     default_lines,
     sources_without_topic,
     without_section,
 )
-from multibot_rewrite.companions.params.values import (
-    ParamsJob,
-    name_findings,
-    name_splices,
-    robot_in_name,
-    unclaimed_names,
-)
+from multibot_rewrite.companions.params.unknown_parameters import guessed_names, unclaimed_names
+from multibot_rewrite.companions.params.values import ParamsJob, name_splices
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,
     TAG_SLOT,
@@ -43,6 +44,7 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import Finding
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -64,7 +66,7 @@ def rewrite_params(
     move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
     an error. Raises InputError for a file that is not a parameter file or that rcl rejects.
     """
-    with uncollected():
+    with gc_paused():
         check_no_slots(document.text, document.file)
         words = frozenset(robots)
         job = ParamsJob(document, context, known or built_in_nodes(), facts_by_name(facts), words)
@@ -91,14 +93,32 @@ def _made(
     others: Sequence[RawSection],
 ) -> Iterator[Splice | Finding]:
     yield from key_splices(job.document, sections)
-    yield from section_findings(job.document, sections, job.context)
-    yield from robot_in_name(job, sections, [names for _, names in pages])
+    yield from _about_sections(job, sections, [names for _, names in pages])
     for section, names in pages:
         yield from name_splices(job, section, names)
-        yield from name_findings(job, section, names)
-        yield from sources_without_topic(job, section)
+        yield from _about_names(job, section, names)
     yield from unclaimed_names(job, [names for _, names in pages])
     yield from default_lines(job, pages, others)
+
+
+def _about_sections(
+    job: ParamsJob, sections: Sequence[ParamSection], pages: Sequence[SectionNames]
+) -> Iterator[Finding]:
+    yield from section_findings(job.document, sections)
+    for section in sections:
+        yield from placeholders_in_key(job.document, section)
+        if not section.shared:
+            yield from namespace_findings(job.document, section, job.context)
+    yield from robot_in_name(job.document, sections, pages, job.robots)
+
+
+def _about_names(job: ParamsJob, section: ParamSection, names: SectionNames) -> Iterator[Finding]:
+    for site in names.sites:
+        yield from name_findings(job, site)
+    yield from placeholders_in_names(job.document, names)
+    yield from key_findings(job.document, names)
+    yield from guessed_names(job, section, names)
+    yield from sources_without_topic(job, section)
 
 
 def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:

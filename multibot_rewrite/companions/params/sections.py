@@ -19,20 +19,20 @@ from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
     anchors,
-    finding_at,
+    found_at,
     line_of,
     pairs,
     replaced,
 )
-from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
-from multibot_rewrite.naming import affix
-from multibot_rewrite.rosnames import check_node_name
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.model import ERROR, Finding, InputError
+from multibot_rewrite.naming import spelled
 
 PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"
-_ANY = ("*", "**")
+ANY = ("*", "**")
 # Placeholders that a launch file replaces.
-_PLACEHOLDER = re.compile(r"[<${]")
+PLACEHOLDER = re.compile(r"[<${]")
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Helper nodes of old releases: they have sections, but no names of their own.
@@ -160,8 +160,8 @@ def _section(
     it: RawSection, context: Context, known: KnownNodes, types: Mapping[str, str]
 ) -> ParamSection:
     name = it.path.rpartition("/")[2]
-    filled = bool(_PLACEHOLDER.search(it.path))
-    wild = filled or any(token in _ANY for token in it.path.split("/"))
+    filled = bool(PLACEHOLDER.search(it.path))
+    wild = filled or any(token in ANY for token in it.path.split("/"))
     place = context.nodes.get(name if wild else it.path, "")
     shared = bool(place) and NAMESPACE_SLOT not in place
     if filled:
@@ -169,7 +169,7 @@ def _section(
     else:
         full = _full_wild(it.path, name, context) if wild else place or _full(it.path, context)
     inner = name.endswith(_INNER)
-    node = None if name in _ANY else identify_node(name, it.body, known, types)
+    node = None if name in ANY else identify_node(name, it.body, known, types)
     return ParamSection(it.keys, it.path, it.body, full, node, wild, shared, inner)
 
 
@@ -179,8 +179,8 @@ def _full(path: str, context: Context) -> str:
 
 def _full_wild(path: str, name: str, context: Context) -> str:
     """A pattern matches in any namespace; only the node's own name in it can change."""
-    there = None if name in _ANY else affix(context.topics.naming, "node", name)
-    return f"/{path[: len(path) - len(name)]}{there.spell(name, NAMESPACE_SLOT) if there else name}"
+    own = name if name in ANY else spelled(context.topics.naming, NAMESPACE_SLOT, "node", name)
+    return f"/{path[: len(path) - len(name)]}{own}"
 
 
 def identify_node(
@@ -217,6 +217,32 @@ def controller_types(found: Iterable[RawSection]) -> dict[str, str]:
     return types
 
 
+MIXED_KEY = declare(
+    "MF101",
+    "mixed-section-key",
+    ERROR,
+    what="The sections below one key need different names: a node of each robot is below it, and a "
+    "wildcard, a placeholder or a node that serves all robots.",
+    why="A node of each robot needs the robot's namespace in the key, the others need it as it is. "
+    "With either key, one of the nodes has no section and runs with its defaults.",
+    fix="Write each section under its own key, as in sensors/camera:.",
+    bad="""\
+sensors:
+  camera:
+    ros__parameters: {rate: 30}
+  "**":
+    ros__parameters: {use_sim_time: true}
+""",
+    good="""\
+/**:
+  ros__parameters: {use_sim_time: true}
+sensors/camera:
+  ros__parameters: {rate: 30}
+""",
+    formats=("params",),
+)
+
+
 def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Splice | Finding]:
     """The new keys above the sections."""
     new: dict[int, tuple[yaml.ScalarNode, str]] = {}
@@ -229,7 +255,7 @@ def key_splices(document: YamlText, sections: Sequence[ParamSection]) -> list[Sp
             if other != text:
                 message = f"the sections below {key.value!r} need different names: {other}, {text}"
                 hint = "write each section under its own key, as in node: ros__parameters:"
-                made.append(finding_at(document, key, "MF101", ERROR, message, hint))
+                made.append(found_at(document, key, MIXED_KEY, message, hint))
     made += [_key_splice(key, text) for key, text in new.values() if text != key.value]
     return made
 
@@ -250,90 +276,6 @@ def _texts(section: ParamSection) -> list[str]:
         tokens = tokens[:-count]
     first = "/" + "/".join(tokens)
     return [first, *reversed(texts)]
-
-
-def section_findings(
-    document: YamlText, sections: Sequence[ParamSection], context: Context
-) -> Iterator[Finding]:
-    """What is wrong with sections: repeated, shared, for one robot, without effect."""
-    shared = set()
-    first: dict[str, ParamSection] = {}
-    for section in sections:
-        key = section.keys[-1]
-        earlier = first.setdefault(section.path, section)
-        if earlier is not section:
-            first_line = line_of(earlier.keys[-1])
-            message = f"section {section.path} is repeated; the first is in line {first_line}"
-            hint = "rcl merges the two, PyYAML keeps only the last; merge them into one"
-            yield finding_at(document, key, "MF102", WARNING, message, hint)
-        if section.shared and section.path not in shared:
-            shared.add(section.path)
-            message = f"{section.path} serves all robots, so its section stays as it is"
-            yield finding_at(
-                document, key, "MF103", WARNING, message, "start it once, with this file"
-            )
-        else:
-            yield from _about_namespace(document, section, context)
-        yield from _about_name(document, section)
-    yield from _shadowed(document, sections)
-
-
-def _about_namespace(
-    document: YamlText, section: ParamSection, context: Context
-) -> Iterator[Finding]:
-    """A namespace in the section's name: that of one robot, or one below each robot's."""
-    tokens = section.path.split("/")
-    key = section.keys[0]
-    if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
-        return
-    tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
-    stack = next((tail for tail in tails if tail in context.nodes), "")
-    if stack or (tokens[-1] in _ANY and tokens[0] not in _ANY):
-        message = f"section {section.path} is for one robot only: its name includes a namespace"
-        hint = f"write {stack or '/**'}: instead; the build adds each robot's namespace"
-        yield finding_at(document, key, "MF104", ERROR, message, hint)
-    elif tails and not section.wild and not tokens[-1].startswith(tokens[0]):
-        message = (
-            f"section {section.path} has a namespace; it is placed below each robot's namespace"
-        )
-        hint = f"if {tokens[0]} is the name of a robot, write {tails[0]}: instead"
-        yield finding_at(document, key, "MF105", WARNING, message, hint)
-
-
-def _about_name(document: YamlText, section: ParamSection) -> Iterator[Finding]:
-    for at, key in enumerate(section.keys):
-        if _PLACEHOLDER.search(key.value):
-            message = f"section {section.path} holds a placeholder and stays as it is"
-            hint = "write only the node's name; the build adds each robot's namespace"
-            yield finding_at(document, key, "MF110", WARNING, message, hint)
-            continue
-        names = (it for it in key.value.strip("/").split("/") if it not in _ANY)
-        faults = ((it, check_node_name(it)) for it in names)
-        bad = next((f"{it!r}: {fault.reason}" for it, fault in faults if fault), "")
-        if at and key.value.startswith("/"):
-            bad = f"{key.value!r}: the slash it starts with makes two slashes in a row"
-        if bad:
-            hint = "rcl rejects the file, or no node matches this section; fix the name"
-            message = f"not a valid node name: {bad}"
-            yield finding_at(document, key, "MF106", WARNING, message, hint)
-
-
-def _shadowed(document: YamlText, sections: Sequence[ParamSection]) -> Iterator[Finding]:
-    """A later wildcard section overrides what an exact section sets (rcl merges in order)."""
-    for at, section in enumerate(sections):
-        if not section.wild or not any(not it.wild for it in sections[:at]):
-            continue
-        matches = re.compile(pattern_of(section.full)).fullmatch
-        here = dict(flattened(section.body))
-        for earlier in sections[:at]:
-            if earlier.wild or not matches(earlier.full):
-                continue
-            for name in here.keys() & dict(flattened(earlier.body)).keys():
-                message = (
-                    f"{name} of {earlier.path} is overridden by the later section {section.path}"
-                )
-                hint = "put wildcard sections first"
-                yield finding_at(document, here[name], "MF107", WARNING, message, hint)
 
 
 def pattern_of(full: str) -> str:

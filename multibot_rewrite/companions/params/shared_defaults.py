@@ -11,6 +11,7 @@ import yaml
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
 from multibot_rewrite.companions.params.known_nodes import KnownNode, Param, in_release
+from multibot_rewrite.companions.params.name_checks import prefix_only
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
@@ -20,7 +21,8 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
-from multibot_rewrite.companions.yaml_text import Splice, YamlText, finding_at, pairs, quoted
+from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
@@ -62,9 +64,7 @@ def _inexpressible(
 ) -> Iterator[Finding]:
     for param in node.defaults:
         if param.path not in here and not expressible(job.context, param.kind):
-            message = f"{param.path} can only add a prefix, but the fleet uses a postfix"
-            key = section.keys[-1]
-            yield finding_at(job.document, key, "MF117", WARNING, message, "set affix: prefix")
+            yield prefix_only(job.document, section.keys[-1], param.path)
 
 
 def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
@@ -112,6 +112,31 @@ def _matches(pattern: str, full: str) -> bool:
     return "*" in pattern and re.fullmatch(pattern_of(pattern), full) is not None
 
 
+NOT_INSERTED = declare(
+    "MF124",
+    "default-not-inserted",
+    WARNING,
+    what="All robots would share the default of a parameter, and the section has no place for a line "
+    "that sets it.",
+    why="The default has no robot's name in it: the node looks for base_link, but the robot's frame is "
+    "robot1/base_link.",
+    fix="Write each parameter on its own line, as in name: value.",
+    bad="""\
+smoother_server:
+  ros__parameters:
+    ? smoother_plugins
+    : [simple_smoother]
+""",
+    good="""\
+smoother_server:
+  ros__parameters:
+    smoother_plugins: [simple_smoother]
+""",
+    line=3,
+    formats=("params",),
+)
+
+
 def _insert(
     document: YamlText, body: yaml.MappingNode, lines: Sequence[DefaultLine]
 ) -> Splice | Finding:
@@ -129,7 +154,7 @@ def _insert(
         names = ", ".join(line.path for line in lines)
         message = f"{names}: all robots would share the default, and no line can be inserted here"
         hint = "write each parameter on its own line"
-        return finding_at(document, body, "MF124", WARNING, message, hint)
+        return found_at(document, body, NOT_INSERTED, message, hint)
     end = ("\r\n" if "\r\n" in document.text else "\n") + before
     return Splice(at, at, "".join(f"{text}{end}" for text in _texts(lines)))
 
@@ -138,6 +163,35 @@ def _texts(lines: Sequence[DefaultLine]) -> Iterator[str]:
     for comment in dict.fromkeys(line.comment for line in lines):
         yield comment
         yield from (f"{it.path}: {it.value}" for it in lines if it.comment == comment)
+
+
+NO_TOPIC = declare(
+    "MF127",
+    "costmap-source-without-topic",
+    WARNING,
+    what="A source of a costmap layer has no topic, so its id is the topic.",
+    why="The id is a relative name: up to Jazzy, scan becomes /robot1/local_costmap/scan, where nobody "
+    "publishes, and without namespaces all robots use one topic.",
+    fix="Add its topic.",
+    bad="""\
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      obstacle_layer:
+        observation_sources: scan
+        scan: {clearing: true}
+""",
+    good="""\
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      obstacle_layer:
+        observation_sources: scan
+        scan: {topic: /scan, clearing: true}
+""",
+    line=5,
+    formats=("params",),
+)
 
 
 def sources_without_topic(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
@@ -157,7 +211,7 @@ def sources_without_topic(job: ParamsJob, section: ParamSection) -> Iterator[Fin
             if f"{layer}.{source}.topic" not in names:
                 message = f"source {source} of {layer} has no topic, so it subscribes to {source!r}"
                 hint = f"add {layer}.{source}.topic: /{source}; it is renamed for each robot"
-                yield finding_at(job.document, key, "MF127", WARNING, message, hint)
+                yield found_at(job.document, key, NO_TOPIC, message, hint)
 
 
 def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
@@ -166,6 +220,31 @@ def _scalars(node: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, str]]:
             yield key, str(value.value)
         else:
             yield from _scalars(value)
+
+
+NO_SECTION = declare(
+    "MF125",
+    "node-without-section",
+    WARNING,
+    what="A node of the stack has no section in any parameter file of the robot, so all robots would "
+    "share its defaults.",
+    why="Defaults have no robot's name in them: amcl looks for base_footprint, but the robot's frame "
+    "is robot1/base_footprint. Without a section there is no place to insert the parameters.",
+    fix="Add a section for the node; use_sim_time is enough in it.",
+    bad="""\
+map_server:
+  ros__parameters:
+    use_sim_time: true
+""",
+    good="""\
+amcl:
+  ros__parameters:
+    use_sim_time: true
+""",
+    formats=("params",),
+    beside={"nodes.yaml": "stacks: {own: {nodes: [amcl]}}"},
+    options={"stack": "own", "nodes": "nodes.yaml"},
+)
 
 
 def without_section(
@@ -185,4 +264,4 @@ def without_section(
             words = ", ".join(it.path for it in lines)
             message = f"{name} has no section, so all robots would share its defaults for {words}"
             hint = "add a section for it (use_sim_time is enough); the lines are inserted there"
-            yield Finding("MF125", WARNING, message, hint, document.file, 1, 1)
+            yield NO_SECTION.finding(message, hint, file=document.file, line=1, column=1)

@@ -6,6 +6,7 @@ from colorsys import hls_to_rgb
 
 from multibot_rewrite.companions.rviz.read_config import rviz_data
 from multibot_rewrite.model import InputError
+from multibot_rewrite.nearest import did_you_mean_one_of
 
 Colour = tuple[int, int, int]
 # Steps of the golden angle never repeat a hue.
@@ -28,10 +29,7 @@ def read_colour(given: str | tuple[int, ...], robot: str = "") -> Colour:
             return red, green, blue
     except ValueError:
         pass
-    from difflib import get_close_matches
-
-    near = get_close_matches(given, known, 1, 0.5)
-    hint = f"did you mean {near[0]!r}?" if near else "write #rrggbb or [r, g, b]"
+    hint = did_you_mean_one_of(given, known) or "write #rrggbb or [r, g, b]"
     place = f"robot {robot!r}: " if robot else ""
     raise InputError(f"{place}colour {given!r} is not known; {hint}")
 

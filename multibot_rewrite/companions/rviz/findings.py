@@ -33,6 +33,7 @@ from multibot_rewrite.companions.rviz.values import (
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.nearest import MISTYPED, did_you_mean
 
 Robots = Sequence[RvizRobot]
 # Titles of displays and windows: never names of links.
@@ -240,18 +241,11 @@ def _missing(
     if any(is_declared(robot.names, place.word, bare) for robot in robots):
         return
     # A driver's frame need not be in the description: only a likely typo is reported.
-    near = _nearest(bare, robots, place.word)
+    near = did_you_mean(bare, _declared(robots, place.word), MISTYPED)
     if place.word == FRAME and not near:
         return
-    message = f"the description has no {place.word} {bare!r}{near}"
+    message = f"the description has no {place.word} {bare!r}{near and ', '}{near}"
     yield _finding(config, place.node, "MF206", message, "correct the name or delete the entry")
-
-
-def _nearest(name: str, robots: Robots, word: str) -> str:
-    from difflib import get_close_matches
-
-    near = get_close_matches(name, _declared(robots, word), 1, 0.8)
-    return f", did you mean {near[0]!r}?" if near else ""
 
 
 def _declared(robots: Robots, word: str) -> Iterable[str]:

@@ -11,13 +11,13 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import LEVELS, Finding
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.grouping import same_for
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 
 # What ends a line, steers a terminal, or stands in no XML or UTF-8: lone surrogates are bytes of a
 # file's name that are no UTF-8.
-_ODD = regex("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
-_SURROGATE = regex("[\ud800-\udfff]")
-_CALL = regex(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)
+_ODD = lazy_compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
+_SURROGATE = lazy_compile("[\ud800-\udfff]")
+_CALL = lazy_compile(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)
 
 
 class MacroCall(NamedTuple):

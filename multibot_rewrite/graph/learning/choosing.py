@@ -8,13 +8,15 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.graph.snapshot import LISTENER, Snapshot
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import nearest_few
 from multibot_rewrite.rosnames import check_full_name, check_namespace
 
 # A tf2 listener without a node creates its own node, named after its address.
 HELPER = re.compile(LISTENER + "[0-9a-f]+")
-# Tools to look at a graph, not part of a robot. A leading underscore hides a node.
-TOOL = re.compile(r"_.*|launch_ros_\d+|rqt_.*|rviz.*|rosbag2_.*|foxglove_bridge")
+# Hidden nodes, launch and tf2 listeners: never part of a robot.
+NEVER_MEANT = re.compile(rf".*/(_.*|launch_ros_\d+|{LISTENER}.*)")
 
 
 class Helpers(NamedTuple):
@@ -37,7 +39,7 @@ def choose_nodes(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple
             raise UsageError(f"{name}: no node has this name; {_suggestion(name, times)}")
         if not name.startswith(f"{base}/"):
             raise UsageError(f"{name}: the node is not below --namespace {base}")
-    below = (name for name in times if name.startswith(f"{base}/") and not _is_tool(name))
+    below = (name for name in times if name.startswith(f"{base}/") and not is_tool(name))
     chosen = sorted(set(names) or below)
     if not chosen:
         where = f"below {base}" if base else "in this graph"
@@ -48,6 +50,14 @@ def choose_nodes(graph: Snapshot, names: Sequence[str], namespace: str) -> tuple
             hint = "stop all but one; a node that was killed stays visible for 20 s"
             raise UsageError(f"{name}: {times[name]} nodes have this name; {hint}")
     return tuple(chosen)
+
+
+def left_out(graph: Snapshot, chosen: Iterable[str], namespace: str) -> tuple[str, ...]:
+    """Tools below ``namespace`` that are not learned although somebody may want to learn them."""
+    base = namespace_prefix(namespace)
+    below = {node.name for node in graph.nodes if node.name.startswith(f"{base}/")}
+    tools = (name for name in below.difference(chosen) if is_tool(name))
+    return tuple(sorted(name for name in tools if not NEVER_MEANT.fullmatch(name)))
 
 
 def namespace_prefix(namespace: str) -> str:
@@ -66,16 +76,9 @@ def check_seen_name(what: str, name: str) -> None:
         raise UsageError(f"{what} name {name!r} in the graph: {fault.reason}")
 
 
-def _is_tool(name: str) -> bool:
-    own = name.rpartition("/")[2]
-    return bool(TOOL.fullmatch(own) or HELPER.fullmatch(own))
-
-
 def _suggestion(name: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches  # only a message needs it
-
-    nodes = sorted(node for node in known if not _is_tool(node))
-    near = get_close_matches(name, nodes, 3, 0.5) or nodes[:3]
+    nodes = sorted(node for node in known if not is_tool(node))
+    near = nearest_few(name, nodes, 3) or nodes[:3]
     return f"running are {', '.join(near)}" if near else "no nodes are running, or only tools"
 
 

@@ -2,32 +2,19 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Set
-from fnmatch import translate
-from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.ownership import NameOwnership, frame_ownership, name_ownership
 from multibot_rewrite.graph.rules.similar_names import probable_matches
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tf_trees
-from multibot_rewrite.graph.snapshot import LISTENER, GraphEndpoint, Snapshot
+from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 INCONCLUSIVE = "inconclusive"
-# Nodes that come and go beside any fleet; no plan names them. Without a slash: in any namespace.
-IGNORED = (
-    # The tools' own: hidden ones, ros2 CLI, launch, tf listeners, spawners, containers.
-    "_*", "launch_ros_*", f"{LISTENER}*", "spawner_*", "spawn_entity*", "*_container",
-    "static_transform_publisher_*", "*_rclcpp_node", "*_service_client",
-    # What people look with, drive with and record with.
-    "rqt_*", "rviz*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_*", "tf2_*", "view_frames",
-    "teleop_*", "*_teleop", "joy*",
-    # The world of all robots.
-    "gazebo*", "gz_*", "ign_*", "ros_gz_*", "*_bridge",
-)  # fmt: skip
 # Node, kind, role and name of an endpoint.
 EndpointKey = tuple[str, str, str, str]
 
@@ -92,7 +79,7 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
     seen = Counter(node.name for node in graph.nodes)
     in_plan = {*robot_of, *plan.shared_nodes}
     others = [node for node in seen if node not in in_plan]
-    unplanned = tuple(node for node in others if not ignored(node, plan.ignored_nodes))
+    unplanned = tuple(node for node in others if not is_tool(node, plan.ignored_nodes))
     missing = {node: robot for node, robot in robot_of.items() if node not in seen}
     ownership = name_ownership(plan)
     return View(
@@ -141,17 +128,3 @@ def _index_endpoints(
             unplanned[node].append(endpoint)
         types[key] = type_
     return index
-
-
-def ignored(node: str, more: tuple[str, ...] = ()) -> bool:
-    """Whether a node needs no place in a plan; ``more`` are patterns besides the usual ones."""
-    full, last = _patterns(more)
-    return bool(last.fullmatch(node.rpartition("/")[2]) or full.fullmatch(node))
-
-
-@lru_cache(maxsize=8)
-def _patterns(more: tuple[str, ...]) -> tuple[re.Pattern[str], re.Pattern[str]]:
-    every = (*IGNORED, *more)
-    sides = ([p for p in every if "/" in p], [p for p in every if "/" not in p])
-    full, last = (re.compile("|".join(map(translate, side))) for side in sides)
-    return full, last

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedRobot
 from multibot_rewrite.graph.rules.causes import plugin_of, why_other_name
-from multibot_rewrite.graph.rules.comparison import GraphFinding, View, ignored
+from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.model import ERROR, WARNING
 
@@ -57,7 +58,7 @@ def duplicate_node_names(view: View) -> Iterator[GraphFinding]:
     """Two nodes with one name: half of the tools see only one of them."""
     for node, times in view.seen.items():
         robot = view.robot_of.get(node, "")
-        if times == 1 or (not robot and ignored(node, view.plan.ignored_nodes)):
+        if times == 1 or (not robot and is_tool(node, view.plan.ignored_nodes)):
             continue
         missing = [planned for planned, match in view.probable_matches.items() if match == node]
         cause = (

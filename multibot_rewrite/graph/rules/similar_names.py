@@ -7,17 +7,10 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.graph.rules.ownership import NameOwnership
+from multibot_rewrite.nearest import MISTYPED, nearest
 
 # With more names than these, some name is always similar.
 MOST_CANDIDATES = 50
-NEAR, VERY_NEAR = 0.6, 0.8
-
-
-def nearest(name: str, known: Iterable[str], cutoff: float = NEAR) -> str:
-    """The known name most like ``name``, or an empty string."""
-    from difflib import get_close_matches  # only where something is wrong
-
-    return next(iter(get_close_matches(name, list(known), 1, cutoff)), "")
 
 
 def similar(name: str, known: Collection[str]) -> str:
@@ -27,7 +20,7 @@ def similar(name: str, known: Collection[str]) -> str:
     extended = [other for other in known if other.startswith(name) or name.startswith(other)]
     if extended:
         return min(extended, key=lambda other: abs(len(other) - len(name)))
-    return nearest(name, known, VERY_NEAR)
+    return nearest(name, known, MISTYPED)
 
 
 class _Candidates(NamedTuple):

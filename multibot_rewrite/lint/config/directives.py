@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.checks.references import nearest
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.registry import RULES
 
 MARK = b"urdf-lint"
@@ -20,15 +20,15 @@ IGNORE, IGNORE_FILE = "ignore", "ignore-file"
 # No comment silences these: the lint did not look at a file, or a comment is wrong.
 ALWAYS_TOLD = frozenset({"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103"})
 _OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
-_PART = regex(
+_PART = lazy_compile(
     rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</?([^\s/>!?]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
     re.DOTALL,
 )
-_DIRECTIVE = regex(rb"<!--\s*urdf-lint\s*(:?)\s*([^\s:]*)(.*)-->", re.DOTALL)
+_DIRECTIVE = lazy_compile(rb"<!--\s*urdf-lint\s*(:?)\s*([^\s:]*)(.*)-->", re.DOTALL)
 # A dash or a colon with blanks around: neither MB401-MB405 nor MB401:MB402 drops a code silently.
-_REASON = regex(rb"\s*:(?=\s|$)|\s+(?:-|\xe2\x80\x93|\xe2\x80\x94)(?=\s|$)")
-_WORD = regex(rb"[^\s,]+")
-_LIKE_A_CODE = regex(r"[A-Za-z]{1,3}-?\d+")
+_REASON = lazy_compile(rb"\s*:(?=\s|$)|\s+(?:-|\xe2\x80\x93|\xe2\x80\x94)(?=\s|$)")
+_WORD = lazy_compile(rb"[^\s,]+")
+_LIKE_A_CODE = lazy_compile(r"[A-Za-z]{1,3}-?\d+")
 # What only some expansions of a xacro file hold.
 _SOMETIMES = frozenset({b"xacro:macro", b"xacro:if", b"xacro:unless"})
 _HOW = "write urdf-lint: ignore CODE, CODE - reason"

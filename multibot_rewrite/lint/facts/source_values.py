@@ -7,18 +7,18 @@ from collections.abc import Collection, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim
 from multibot_rewrite.steps.document import tag_end
 
 Starts = Mapping[_Element, int]
-_ATTRIBUTE = regex(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_ATTRIBUTE = lazy_compile(rb"\s([\w:.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 # What is the same text for every caller.
-_CONSTANT = regex(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
-_EXPRESSION = regex(rb"\$\{([^}]*)\}")
-_LITERAL = regex(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
-_NAME = regex(rb"[A-Za-z_]\w*")
+_CONSTANT = lazy_compile(rb"\$\((?:find [^)]*|dirname|env [^)]*)\)|\$\$")
+_EXPRESSION = lazy_compile(rb"\$\{([^}]*)\}")
+_LITERAL = lazy_compile(rb"'[^']*'|\"[^\"]*\"|&quot;.*?&quot;")
+_NAME = lazy_compile(rb"[A-Za-z_]\w*")
 
 
 def claim_is_fixed(subject: Subject, claim: Claim) -> bool:

@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
-_INCLUDE = regex(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
+_INCLUDE = lazy_compile(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
 # What is before the last substitution of a path is not known.
-_KNOWN = regex(r".*[)}]")
+_KNOWN = lazy_compile(r".*[)}]")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:

@@ -7,14 +7,14 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 
 DEEPEST = 4
 MOST_FOLDERS = 20_000
 # Ancestors of a description in which its own package is looked for.
 HIGHEST = 6
 _MANIFEST = "package.xml"
-_NAME = regex(rb"<name>\s*([^<\s]+)\s*</name>")
+_NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
 # Build results, libraries and the like: no sources of meshes below them.
 _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
 

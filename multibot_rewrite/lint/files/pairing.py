@@ -10,7 +10,7 @@ from glob import escape, glob
 from io import StringIO
 from typing import NamedTuple
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.facts.robot import Robot, read_robot
 from multibot_rewrite.lint.files.packages import package_folder
 from multibot_rewrite.lint.settings import Settings, matches
@@ -21,7 +21,7 @@ from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
 
-_NAME = regex(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
+_NAME = lazy_compile(rb"<robot\b[^>]*?\sname\s*=\s*[\"']([^\"'$]+)[\"']")
 # The root element is in the first bytes: the whole file need not be read.
 HEAD = 4096
 # Where a package of MoveIt has its URDF, from the folder of its SRDF.
@@ -150,5 +150,9 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
 def _names(srdf: Inventory) -> set[str]:
     """The links and joints an SRDF uses, those it declares aside."""
     own: Iterable[str] = srdf.declared["joint"]
-    used = {it.value.strip() for it in srdf.claims if it.site.role == "uses" and it.site.plain}
+    used = {
+        it.value.strip()
+        for it in srdf.claims
+        if it.site.role == "uses" and it.site.whole_value_kind
+    }
     return used.difference(own)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.checks.audit import nearest
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.schema.sections import (
     ROBOT,
     Kind,
@@ -35,11 +35,11 @@ _TOPS = etree.XPath(
 _TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
 # A number with a line end or tab right after it.
 _BROKEN = (
-    regex(rb"\n(?<=[\d.]\n)"),
-    regex(rb"\t(?<=[\d.]\t)"),
-    regex(rb"\r(?<=[\d.]\r)"),
+    lazy_compile(rb"\n(?<=[\d.]\n)"),
+    lazy_compile(rb"\t(?<=[\d.]\t)"),
+    lazy_compile(rb"\r(?<=[\d.]\r)"),
 )
-_ASSIGNED = regex(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
+_ASSIGNED = lazy_compile(rb"([\w.-]+)\s*=\s*[\"'][^\"'=]*$")
 # Joints of these types have no axis that urdfdom reads.
 _AXIS_FREE = ("fixed", "floating")
 

@@ -6,22 +6,22 @@ import re
 from collections.abc import Sequence
 from math import isfinite
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 
 _SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
 _UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
 # What most values look like. urdfdom takes blanks before a lone number and none after it.
 FINE = {
-    "number": regex(rf" *{_SCALAR}", re.ASCII),
-    "numbers": regex(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
-    "rgba": regex(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
-    "version": regex(r"0*1\.0+", re.ASCII),
+    "number": lazy_compile(rf" *{_SCALAR}", re.ASCII),
+    "numbers": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
+    "rgba": lazy_compile(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
+    "version": lazy_compile(r"0*1\.0+", re.ASCII),
 }
 _LONG = 200
 COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
-_NUMBER = regex(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
-_INFINITE = regex(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
-_UNITS = regex(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
+_NUMBER = lazy_compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
+_INFINITE = lazy_compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
+_UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
 
 
 def is_fine(kind: str, value: str) -> bool:

@@ -4,7 +4,7 @@ A file is a list of sections. The whole grammar:
 
     # a comment
     [element sensor]                     an XML element; names after the first are aliases
-    at: gazebo link                      the elements it may stand in ("/" is the document)
+    at: gazebo link                      the elements it may be in ("/" is the document)
     @name        declares sensor         the value at this path declares a name of this kind
     plugin/frame uses frame              the value refers to one (kinds are tried in order)
     @type        keep an enumeration     the value is never renamed, and why
@@ -12,7 +12,7 @@ A file is a list of sections. The whole grammar:
 A section is one of
 
     [element NAME]     an XML element by its tag; ``[element srdf.group]`` is about ``<group>`` too,
-                       where it stands elsewhere and means something else
+                       where it means something else
     [plugin NAME]      a plugin by its library, without ``lib`` and ``.so``, or by its class
     [hardware NAME]    a ros2_control hardware class, as in ``<plugin>``
     [sensor TYPE]      a ``<sensor>`` by its type
@@ -30,13 +30,13 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
 file declares it; a frame that is the name of a link is spelled like the link. A ``stem`` is a word
-that topics are made of, a ``subtopic`` stands below a stem or namespace.
+that topics are made of, a ``subtopic`` is below a stem or namespace.
 
     form=whole       the value is one name (where no form is given)
     form=list        names separated by commas or white space
     form=scoped      ``model::link``: models, then the name
     form=words       any text, ``(key value ...)``: those of its words that this file declares
-    form=suffixed    ``link/light``, ``link::visual``: a declared name and what is none behind it
+    form=suffixed    ``link/light``, ``link::visual``: a declared name with something else behind it
     form=member      ``link::sensor``, ``world::model::link::sensor``, ``link/sensor``: below a link
     form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
     form=regex       a regular expression for whole names, alternatives affixed one by one
@@ -47,7 +47,7 @@ that topics are made of, a ``subtopic`` stands below a stem or namespace.
 
 A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
 
-    at: ELEMENT...         elements only: where it may stand
+    at: ELEMENT...         elements only: where it may be
     select: TYPE           elements only: what it loads decides its section (plugin, hardware, sensor)
     with: BLOCK...         the lines of these blocks too; an own line at the same path wins
     ros: 1 | 2             for that ROS alone, where both have a plugin of this name
@@ -75,13 +75,13 @@ import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.rewriters.vocabulary.grammar import (
     FORMS,
     KINDS,
     TYPES,
-    Rewriter,
+    VocabularySection,
     assemble,
     merge,
     read_header,
@@ -93,14 +93,14 @@ from multibot_rewrite.rewriters.vocabulary.installed import advice, installed
 
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
-_AT = regex(r"^at:(.*)", re.MULTILINE)
+_AT = lazy_compile(r"^at:(.*)", re.MULTILINE)
 
 __all__ = [
     "FORMS",
     "KINDS",
     "TYPES",
-    "Rewriter",
     "Vocabulary",
+    "VocabularySection",
     "advice",
     "check_vocabulary",
     "load_vocabulary",
@@ -118,7 +118,7 @@ class Vocabulary:
     def __init__(self, texts: Mapping[str, str], extended: bool = False) -> None:
         self.extended = extended
         self._raw: dict[tuple[str, str], list[Raw]] = {}
-        self._found: dict[tuple[str, str], list[Rewriter]] = {}
+        self._found: dict[tuple[str, str], list[VocabularySection]] = {}
         for file, text in texts.items():
             self._index(file, text)
 
@@ -135,7 +135,7 @@ class Vocabulary:
                 self._raw.setdefault((type_, name), []).append((file, line, chunk))
             line += chunk.count("\n")
 
-    def find(self, type_: str, name: str) -> list[Rewriter]:
+    def find(self, type_: str, name: str) -> list[VocabularySection]:
         """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.
 
         Sections of one flavour are one; a later one without ``ros:`` adds to every flavour.
@@ -147,7 +147,7 @@ class Vocabulary:
                 self._add(self._found[key], self._read(*raw))
         return self._found[key]
 
-    def _add(self, found: list[Rewriter], new: Rewriter) -> None:
+    def _add(self, found: list[VocabularySection], new: VocabularySection) -> None:
         same = [at for at, old in enumerate(found) if new.ros in ("", old.ros)]
         for at in same:
             found[at] = merge(found[at], new)
@@ -159,7 +159,7 @@ class Vocabulary:
         return [name for kind, name in self._raw if kind == type_]
 
     def places(self) -> dict[str, list[str]]:
-        """Each element with a section and the elements it may stand in, without reading more."""
+        """Each element with a section and the elements it may be in, without reading more."""
         found: dict[str, list[str]] = {}
         for (type_, name), raws in self._raw.items():
             if type_ == "element":
@@ -169,20 +169,20 @@ class Vocabulary:
                 found[name] = list(dict.fromkeys(parents))
         return found
 
-    def rewriters(self, *types: str) -> list[Rewriter]:
+    def sections(self, *types: str) -> list[VocabularySection]:
         """All rewriters of these types, parsed and checked, in file order."""
         return self._parsed(key for key in self._raw if key[0] in types)
 
-    def rewriters_in(self, files: Container[str]) -> list[Rewriter]:
+    def sections_in(self, files: Container[str]) -> list[VocabularySection]:
         """All rewriters that these files have a part in, parsed and checked."""
         raws = self._raw.items()
         return self._parsed(key for key, raw in raws if any(part[0] in files for part in raw))
 
-    def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[Rewriter]:
-        found = [rewriter for key in keys for rewriter in self.find(*key)]
-        return list({(rewriter.file, rewriter.line): rewriter for rewriter in found}.values())
+    def _parsed(self, keys: Iterable[tuple[str, str]]) -> list[VocabularySection]:
+        found = [section for key in keys for section in self.find(*key)]
+        return list({(section.file, section.line): section for section in found}.values())
 
-    def _read(self, file: str, line: int, chunk: str) -> Rewriter:
+    def _read(self, file: str, line: int, chunk: str) -> VocabularySection:
         rows = chunk.split("\n")
         settings, own = read_section(file, line, rows)
         sites: dict[str, Site] = {}
@@ -191,11 +191,11 @@ class Vocabulary:
         header = read_header(f"{file}:{line}", rows[0])
         return assemble(file, line, header, settings, list((sites | own).values()))
 
-    def _block(self, place: str, name: str) -> Rewriter:
+    def _block(self, place: str, name: str) -> VocabularySection:
         found = self.find("block", name)
         if not found:
             known = ("block", name) in self._raw
-            wrong = f"[block {name}] stands in a circle" if known else f"there is no [block {name}]"
+            wrong = f"[block {name}] includes itself" if known else f"there is no [block {name}]"
             raise VocabularyError(f"{place}: with: {name}: {wrong}")
         return found[0]
 
@@ -213,7 +213,7 @@ def load_vocabulary(extra: tuple[str, ...] = (), *, packages: bool = True) -> Vo
     try:
         texts |= {name: _text(name, path) for name, path in more.items()}
         vocabulary = Vocabulary(texts, extended=bool(more))
-        vocabulary.rewriters_in(more)
+        vocabulary.sections_in(more)
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None
     return vocabulary
@@ -242,6 +242,6 @@ def _text(name: str, path: str) -> str:
         ) from None
 
 
-def check_vocabulary(vocabulary: Vocabulary) -> list[Rewriter]:
+def check_vocabulary(vocabulary: Vocabulary) -> list[VocabularySection]:
     """Parse every section; raises VocabularyError for the first mistake."""
-    return vocabulary.rewriters(*TYPES)
+    return vocabulary.sections(*TYPES)

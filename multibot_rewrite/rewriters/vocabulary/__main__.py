@@ -5,7 +5,11 @@ from __future__ import annotations
 import sys
 from itertools import groupby
 
-from multibot_rewrite.rewriters.vocabulary import Rewriter, check_vocabulary, load_vocabulary
+from multibot_rewrite.rewriters.vocabulary import (
+    VocabularySection,
+    check_vocabulary,
+    load_vocabulary,
+)
 from multibot_rewrite.rewriters.vocabulary.describe import facts
 
 HEAD = """\
@@ -27,19 +31,17 @@ def page() -> str:
     parts = [HEAD]
     for file, rewriters in by_file:
         parts.append(f"\n## {file}\n")
-        parts += [_section(rewriter) for rewriter in rewriters]
+        parts += [_section(section) for section in rewriters]
     return "".join(parts)
 
 
-def _section(rewriter: Rewriter) -> str:
-    lines = [f"\n### {rewriter.name}\n"]
-    told = facts(rewriter)
-    about = told.pop("about", "")
-    others = "; ".join(f"{what}: {text}" for what, text in told.items())
+def _section(section: VocabularySection) -> str:
+    lines = [f"\n### {section.name}\n"]
+    known = facts(section)
+    about = known.pop("about", "")
+    others = "; ".join(f"{what}: {text}" for what, text in known.items())
     lines += [f"\n{text}\n" for text in (about, others) if text]
-    own = [
-        site for site in rewriter.sites if site.section == f"{rewriter.type} {rewriter.names[0]}"
-    ]
+    own = [site for site in section.sites if site.section == f"{section.type} {section.names[0]}"]
     if own:
         lines.append("\n| where | what | default | note |\n|---|---|---|---|\n")
         lines += [

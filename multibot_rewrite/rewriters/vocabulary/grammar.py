@@ -1,4 +1,4 @@
-"""One section of a vocabulary file: its rows read, checked and made a ``Rewriter``.
+"""One section of a vocabulary file: its rows read, checked and made a ``VocabularySection``.
 
 The grammar is in the docstring of the package.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
 
@@ -55,11 +55,11 @@ FORMS = (
 )
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
-_SWITCH = regex(rf"{_NAME}=[^\s=]+(?:=on)?")
-_PATH = regex(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
+_SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
+_PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
 
-class Rewriter(NamedTuple):
+class VocabularySection(NamedTuple):
     """One section: what is known about an element, a plugin, a hardware class or a shared block.
 
     ``publishes``, ``subscribes`` and ``serves`` are topics and services that no element controls:
@@ -117,7 +117,7 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
 
 
 def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str], dict[str, Site]]:
-    """Settings and sites of a section whose header stands at ``line``."""
+    """Settings and sites of a section whose header is at ``line``."""
     section = " ".join(read_header(f"{file}:{line}", rows[0])[:2])
     settings: dict[str, str] = {}
     sites: dict[str, Site] = {}
@@ -144,8 +144,8 @@ def assemble(
     header: tuple[str, ...],
     settings: dict[str, str],
     sites: Sequence[Site],
-) -> Rewriter:
-    """A rewriter from the parts of its section; ``sites`` include those of its blocks."""
+) -> VocabularySection:
+    """A section from its parts; ``sites`` include those of its blocks."""
     if header[0] == "element" and "at" not in settings:
         raise VocabularyError(
             f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
@@ -155,7 +155,7 @@ def assemble(
     def words(key: str) -> tuple[str, ...]:
         return tuple(settings.get(key, "").split())
 
-    return Rewriter(
+    return VocabularySection(
         header[0],
         header[1:],
         tuple(site._replace(namespaced=namespaced) for site in sites),
@@ -178,7 +178,7 @@ def assemble(
     )
 
 
-def merge(first: Rewriter, second: Rewriter) -> Rewriter:
+def merge(first: VocabularySection, second: VocabularySection) -> VocabularySection:
     """What two sections say of one thing: a user's file may add to what is known.
 
     Raises VocabularyError where both say something of one path or set one setting differently.
@@ -211,7 +211,7 @@ def _same_block(site: Site, other: Site | None) -> bool:
     return other is not None and site.section == other.section and site.section[:6] == "block "
 
 
-def _either(first: Rewriter, second: Rewriter, setting: str) -> str:
+def _either(first: VocabularySection, second: VocabularySection, setting: str) -> str:
     old, new = getattr(first, setting), getattr(second, setting)
     if old and new and old != new:
         place = f"{second.file}:{second.line}"
@@ -231,7 +231,7 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
         )
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
-        raise VocabularyError(f"{place}: switches: {wrong[0]!r} is no PARAMETER=TOPIC[=on]")
+        raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
     settings[key] = value
 
 

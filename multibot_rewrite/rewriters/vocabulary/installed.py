@@ -61,7 +61,7 @@ def announcing(folders: Iterable[str]) -> list[str]:
         if name.endswith(_METADATA) and not name.startswith("~")  # pip's half-removed ones
     ]
     named = {path for path in paths if GROUP.encode() in _entry_points(path)}
-    # Mostly nobody does, and who hides whom need not be known.
+    # Usually none does: then the order of the folders does not matter.
     first = {_key(os.path.basename(path)): path for path in reversed(paths)} if named else {}
     return [path for path in first.values() if path in named]
 

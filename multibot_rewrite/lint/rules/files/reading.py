@@ -12,6 +12,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import declare, rule
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.model import Finding
+from multibot_rewrite.steps.renames import make_renames
 
 # These three are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
@@ -89,7 +90,8 @@ def leftover(subject: Subject) -> Iterator[Problem]:
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding a file, for the first robot whose name is in it."""
     settings = subject.settings
-    found = already_rewritten(subject.inventory, settings.naming, settings.robots, False)
+    renames = make_renames(subject.inventory, settings.naming)
+    found = already_rewritten(subject.inventory, renames, settings.robots, False)
     for it in islice(found, 1):
         yield Problem(subject.document.root, it.message, None, "lint the source it was made from")
 

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Problem, Subject
 
-_SCHEME = regex(r"([A-Za-z][A-Za-z0-9+.-]+)://")
+_SCHEME = lazy_compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 # A letter and a colon is a drive of Windows.
-_MACHINE = regex(r"/|[A-Za-z]:[/\\]")
+_MACHINE = lazy_compile(r"/|[A-Za-z]:[/\\]")
 MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visual></link>'
 
 

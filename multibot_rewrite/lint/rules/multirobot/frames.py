@@ -117,7 +117,7 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
     if subject.settings.robots and not subject.settings.naming.layout.tf_per_robot:
         return
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
+        rewriter = host.node.section
         if rewriter is None or "/tf" not in rewriter.publishes or not rewriter.inserts:
             continue
         if "/tf" in switched_off(host.element, rewriter) or _moves_tf(host.element):

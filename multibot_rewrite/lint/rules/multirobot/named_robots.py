@@ -13,16 +13,28 @@ from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
 from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.naming import Naming, make_naming, overlap
-from multibot_rewrite.rewriters.spelling import HOLE
+from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.renames import RenameMap, make_renames
 
-Hazard = Callable[[Inventory, Naming], Iterable[Remark]]
+Hazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
+ByNaming = Callable[[Inventory, Naming], Iterable[Remark]]
+
+
+def renames_of(subject: Subject) -> RenameMap:
+    """How each name of the description is spelled for the named robots."""
+    return make_renames(subject.inventory, subject.settings.naming)
+
+
+def _by_naming(hazard: ByNaming) -> Hazard:
+    """The same for what needs no spelled name."""
+    return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the named robots warns about; nothing where none are named."""
     if subject.settings.robots:
-        yield from problems(hazard(subject.inventory, subject.settings.naming))
+        yield from problems(hazard(subject.inventory, renames_of(subject)))
 
 
 joints_reordered = rule(
@@ -57,9 +69,9 @@ joints_reordered = rule(
 )
 def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots refuses as MB420."""
-    naming, names = subject.settings.naming, subject.settings.robots
+    names = subject.settings.robots
     if names:
-        yield from problems(robots.taken_names(subject.inventory, naming, names))
+        yield from problems(robots.taken_names(subject.inventory, renames_of(subject), names))
 
 
 @rule(
@@ -81,7 +93,7 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots refuses as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
-    for it in robots.meeting(subject.inventory, naming, pairs):
+    for it in robots.meeting(subject.inventory, renames_of(subject), pairs):
         yield Problem(subject.document.root, it.message, None, it.hint)
 
 
@@ -99,7 +111,7 @@ prefix_only = rule(
     good='<ros2_control name="h" type="system"><hardware><plugin>'
     "mock_components/GenericSystem</plugin></hardware></ros2_control>",
     options={"robots": TWO},
-)(partial(_if_robots, hazards.prefix_only))
+)(partial(_if_robots, _by_naming(hazards.prefix_only)))
 
 off_the_shared_tf = rule(
     "MB423",
@@ -113,7 +125,7 @@ off_the_shared_tf = rule(
     "</remapping></ros></plugin></gazebo>",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
     options={"robots": TWO, "naming": ONE_TF},
-)(partial(_if_robots, hazards.moved_tf))
+)(partial(_if_robots, _by_naming(hazards.moved_tf)))
 
 
 @rule(
@@ -142,17 +154,17 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.rewriters.contact import respell_collisions
-    from multibot_rewrite.steps.plan import LAST, respeller
+    from multibot_rewrite.steps.plan import LAST
+    from multibot_rewrite.steps.renames import respeller
 
-    document, claims, _, declared, _ = subject.inventory
+    document, claims, _, declared, *_ = subject.inventory
+    renames = renames_of(subject)
     first, last = (
-        respell_collisions(
-            document.root, claims, declared, respeller(subject.settings.naming, name)
-        )
-        for name in (HOLE, LAST)
+        respell_collisions(document.root, claims, declared, respeller(renames, name))
+        for name in (ROBOT_SLOT, LAST)
     )
     for (claim, text), (_, other) in zip(first, last, strict=False):
-        if text != other.replace(LAST, HOLE):
+        if text != other.replace(LAST, ROBOT_SLOT):
             message = f"the number in {claim.value!r} would depend on how the robot's name sorts"
             yield Problem(claim.element, message, claim.attribute, "use affix prefix")
 
@@ -171,7 +183,7 @@ sensor_names_meet = rule(
     '</plugin></hardware><sensor name="imu"/></ros2_control>',
     good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
     options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_if_robots, hazards.bare_lookups))
+)(partial(_if_robots, _by_naming(hazards.bare_lookups)))
 
 
 @rule(

@@ -61,7 +61,7 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     declared = subject.inventory.declared
     bare = []
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
+        rewriter = host.node.section
         if rewriter is None or not any("namespace" in it.kinds for it in rewriter.sites):
             continue
         items = insertions(host.element, rewriter, declared, APART)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from multibot_rewrite.checks import hazards
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, starts_of
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, process_wide_plugins
@@ -26,7 +26,7 @@ WORLD_SYSTEMS = {
     "gz-sim-air-pressure-system": "every barometer is published once more for each copy",
     "gz-sim-scene-broadcaster-system": "every state of the world is sent once more for each copy",
 }
-DEVICE = regex(
+DEVICE = lazy_compile(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
 )
 

@@ -39,14 +39,14 @@ def tag_of(claim: Claim) -> str:
 def process_wide_plugins(subject: Subject) -> set[_Element]:
     """The plugins that hand their remap rules to the whole Gazebo process."""
     hosts = subject.inventory.hosts
-    return {it.element for it in hosts if it.node.rewriter and it.node.rewriter.process_wide}
+    return {it.element for it in hosts if it.node.section and it.node.section.process_wide}
 
 
 def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
     """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
     declared = subject.inventory.declared
     for host in subject.inventory.hosts:
-        rewriter = host.node.rewriter
+        rewriter = host.node.section
         if rewriter is None or not any(map(_may_insert, rewriter.sites)):
             continue
         for it in insertions(host.element, rewriter, declared, APART):

@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 
 # How people call the parameter that is put in front of a robot's names.
-PREFIX = regex(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
-_PARAM = regex(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
-SUBSTITUTIONS = regex(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")
-_LITERAL = regex(r"'[^']*'|\"[^\"]*\"")
-_WORD = regex(r"[A-Za-z_]\w*")
+PREFIX = lazy_compile(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
+_PARAM = lazy_compile(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
+SUBSTITUTIONS = lazy_compile(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")
+_LITERAL = lazy_compile(r"'[^']*'|\"[^\"]*\"")
+_WORD = lazy_compile(r"[A-Za-z_]\w*")
 # Tag -> the attribute that refers to a link or joint; empty for the text.
 _REFERENCES = {
     "parent": "link",

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.rules.names.shared import BLANK, SUBSTITUTION, TOKEN, name_of_robot
 from multibot_rewrite.model import Claim
@@ -17,7 +17,7 @@ from multibot_rewrite.steps.document import value_slot
 
 ROS_KINDS = frozenset({"topic", "service", "namespace"})
 # ROS 1, ROS 2 and both Gazebos agree on these.
-_ALLOWED_EVERYWHERE = regex(r"[\w/~]*", re.ASCII)
+_ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
 
 
 @rule(

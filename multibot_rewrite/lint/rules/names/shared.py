@@ -7,13 +7,13 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lazy import regex
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
 
 # Names with a substitution are skipped: MB105 reports them.
 SUBSTITUTION = "$"
-BLANK = regex(r"\s")
-TOKEN = regex(r"[A-Za-z_]\w*", re.ASCII)
+BLANK = lazy_compile(r"\s")
+TOKEN = lazy_compile(r"[A-Za-z_]\w*", re.ASCII)
 
 
 def named(subject: Subject) -> Iterator[tuple[str, str, _Element]]:

@@ -140,7 +140,9 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     if not subject.elements.tops("ros2_control", "transmission"):
         return
     claims = subject.inventory.claims
-    named = {it.value for it in claims if it.site.plain == "joint" and _drives_a_joint(it)}
+    named = {
+        it.value for it in claims if it.site.whole_value_kind == "joint" and _drives_a_joint(it)
+    }
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")

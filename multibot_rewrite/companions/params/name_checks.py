@@ -1,0 +1,284 @@
+"""What is wrong with the names in a section, and which of them are not rewritten."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+import yaml
+
+from multibot_rewrite.companions.context import Context
+from multibot_rewrite.companions.names.by_kind import (
+    expressible,
+    frames_differ,
+    is_plain,
+    is_shared_frame,
+)
+from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.params.name_sites import NameSite
+from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.yaml_text import YamlText, found_at
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.rosnames import check_topic_name
+
+# Patterns that match everything or nothing hold no robot's name.
+_OPEN_PATTERNS = frozenset({".*", "*", "[*]", "(?!)", "^$"})
+
+
+def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    """The finding about one name, if any."""
+    if site.kind == "frame":
+        yield from _undeclared_frame(job, site)
+    elif site.kind in ("joint", "link", "sensor"):
+        yield from _undeclared(job, site)
+    elif site.kind in ("topic", "service"):
+        yield from _invalid_topic(job, site)
+    elif site.kind in ("stem", "link_prefix", "joint_prefix"):
+        yield from _inexpressible(job, site)
+    elif site.kind == "doubles":
+        yield from _prefix_twice(job, site)
+    elif site.kind == "exclusive":
+        yield from _same_for_all(job, site)
+    elif site.kind in ("pattern", "text"):
+        yield from _not_rewritten(job, site)
+
+
+UNDECLARED = declare(
+    "MF111",
+    "parameter-names-unknown-joint",
+    WARNING,
+    what="A parameter names a joint, link or sensor that is not in the description.",
+    why="It stays as it is. A controller with a joint that no hardware has fails to start (no such "
+    "interface), and a plugin waits for a link that never comes.",
+    fix="Correct the name; the nearest one is in the message.",
+    bad="""\
+joint_trajectory_controller:
+  ros__parameters:
+    joints: [wheel_jiont]
+""",
+    good="""\
+joint_trajectory_controller:
+  ros__parameters:
+    joints: [wheel_joint]
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _undeclared(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    value = site.value.lstrip("/")
+    known = job.context.names.declared.get(site.kind, {})
+    # A joint of another controller: controller/joint.
+    chained = site.kind == "joint" and "/" in value and value.rpartition("/")[2] in known
+    if site.param is None or chained or not _is_unknown(job, site, known):
+        return
+    message = f"{site.kind} {value!r} is not in the description"
+    hint = did_you_mean(value, known) or "it stays unchanged; correct it"
+    yield found_at(job.document, site.scalar, UNDECLARED, message, hint)
+
+
+UNDECLARED_FRAME = declare(
+    "MF112",
+    "parameter-names-unknown-frame",
+    WARNING,
+    what="A parameter names a frame that is neither in the description nor published by a known node.",
+    why="It gets the robot's name all the same. If nobody publishes it under that name, every look-up "
+    "in tf2 fails, and the node waits for the transform.",
+    fix="Correct the name, or let the node that publishes the frame use the robot's name.",
+    bad="""\
+amcl:
+  ros__parameters:
+    base_frame_id: base_lnk
+""",
+    good="""\
+amcl:
+  ros__parameters:
+    base_frame_id: base_link
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _undeclared_frame(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    value = site.value.lstrip("/")
+    known = job.context.names.declared.get("link", {})
+    published = value in job.known.sent or is_shared_frame(job.context, value)
+    if published or not _is_unknown(job, site, known):
+        return
+    what = "frame" if site.param else "possible frame"
+    message = f"{what} {value!r} is not in the description"
+    hint = did_you_mean(value, known) or "some node must publish it with the robot's name"
+    yield found_at(job.document, site.scalar, UNDECLARED_FRAME, message, hint)
+
+
+def _is_unknown(job: ParamsJob, site: NameSite, known: Iterable[str]) -> bool:
+    """Is it a name that a description with ``known`` names does not declare?"""
+    if not known or not is_plain(site.value):
+        return False
+    return not is_declared(job.context.names, site.kind, site.value.lstrip("/"))
+
+
+INVALID_TOPIC = declare(
+    "MF113",
+    "parameter-topic-invalid",
+    WARNING,
+    what="The value of a parameter is not a valid topic or service name.",
+    why="rcl rejects such a name: the node fails when it creates the publisher, subscription or "
+    "service.",
+    fix="Correct the name: its parts have letters, digits and underscores, and start with no digit.",
+    bad="""\
+amcl:
+  ros__parameters:
+    scan_topic: 2d/scan
+""",
+    good="""\
+amcl:
+  ros__parameters:
+    scan_topic: lidar/scan
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _invalid_topic(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    fault = check_topic_name(site.value) if is_plain(site.value) else None
+    if fault:
+        message = f"{site.value!r} is not a valid {site.kind} name: {fault.reason}"
+        hint = "it stays unchanged; correct it"
+        yield found_at(job.document, site.scalar, INVALID_TOPIC, message, hint)
+
+
+PREFIX_ONLY = declare(
+    "MF117",
+    "parameter-adds-prefix-only",
+    WARNING,
+    what="A parameter can only put something before names, but the fleet puts the robot's name behind "
+    "them.",
+    why="The node makes its frames or joints out of this parameter: none of them gets the robot's "
+    "name, so two robots publish the same frames.",
+    fix="Set affix: prefix in the fleet file.",
+    bad="""\
+camera:
+  ros__parameters:
+    camera_name: front
+""",
+    good="""\
+usb_cam:
+  ros__parameters:
+    frame_id: lidar_link
+""",
+    line=3,
+    formats=("params",),
+    options={"affix": "postfix"},
+)
+
+
+def prefix_only(document: YamlText, node: yaml.Node, name: str) -> Finding:
+    """The finding about a parameter that cannot express a postfix."""
+    message = f"{name} can only add a prefix, but the fleet uses a postfix"
+    return found_at(document, node, PREFIX_ONLY, message, "set affix: prefix")
+
+
+def _inexpressible(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    if not expressible(job.context, site.kind):
+        yield prefix_only(job.document, site.scalar, site.key.value)
+
+
+PREFIX_TWICE = declare(
+    "MF115",
+    "frame-prefix-twice",
+    ERROR,
+    what="A parameter adds a prefix to frames that have the robot's name already. It is a warning "
+    "where all robots use the same frames or a launch file sets the prefix.",
+    why="robot_state_publisher sends robot1/robot1/base_link, and all others look for "
+    "robot1/base_link: no transform is found.",
+    fix='Write "".',
+    bad="""\
+robot_state_publisher:
+  ros__parameters:
+    frame_prefix: rover/
+""",
+    good="""\
+robot_state_publisher:
+  ros__parameters:
+    frame_prefix: ""
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _prefix_twice(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    certain = frames_differ(job.context) and is_plain(site.value)
+    message = f"{site.key.value} {site.value!r} adds a prefix to frames a second time"
+    found = found_at(job.document, site.scalar, PREFIX_TWICE, message, 'write ""')
+    yield found if certain else found._replace(level=WARNING)
+
+
+SAME_FOR_ALL = declare(
+    "MF118",
+    "same-port-or-file",
+    WARNING,
+    what="A port, file or other thing that only one node can have is the same for all robots.",
+    why="The node of the second robot cannot open the port, or both write into one file and damage it.",
+    fix="Set it for each robot, in a parameter file that is loaded after this one.",
+    bad="""\
+rosbridge_websocket:
+  ros__parameters:
+    port: 9090
+""",
+    good="""\
+rosbridge_websocket:
+  ros__parameters:
+    max_message_size: 1000000
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _same_for_all(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    if site.value and site.value.lower() not in ("false", "no", "off"):
+        message = f"{site.key.value} {site.value} is the same for all robots"
+        hint = "set it for each robot, in a parameter file that is loaded after this one"
+        yield found_at(job.document, site.scalar, SAME_FOR_ALL, message, hint)
+
+
+NOT_REWRITTEN = declare(
+    "MF122",
+    "pattern-not-rewritten",
+    WARNING,
+    what="A pattern or expression may hold names, which are not rewritten.",
+    why="Topics and frames get the robot's name, but the pattern still has the old ones: it matches "
+    "nothing, or the names of all robots.",
+    fix="Check that it works for each robot, or write one that matches in any namespace.",
+    bad="""\
+foxglove_bridge:
+  ros__parameters:
+    topic_whitelist: ["/scan.*"]
+""",
+    good="""\
+foxglove_bridge:
+  ros__parameters:
+    topic_whitelist: [".*"]
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _not_rewritten(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    sure = site.kind == "pattern" or _mentions(job.context, site.value)
+    if sure and site.value not in _OPEN_PATTERNS:
+        message = f"names in {site.key.value} {site.value!r} are not rewritten"
+        hint = "check that it works for each robot"
+        yield found_at(job.document, site.scalar, NOT_REWRITTEN, message, hint)
+
+
+def _mentions(context: Context, value: str) -> bool:
+    words = "".join(c if c.isalnum() or c in "_-/" else " " for c in value).split()
+    return any(is_declared(context.names, kind, it) for it in words for kind in ("link", "joint"))
