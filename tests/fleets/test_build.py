@@ -258,7 +258,7 @@ def test_errors_stop_the_job_and_strict_makes_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fleet_folder(tmp_path)
-    assert build(tmp_path, "--strict") == 1
+    assert build(tmp_path, "--fail-on", "warning") == 1
     assert "nothing was written" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 

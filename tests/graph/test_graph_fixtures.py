@@ -69,7 +69,7 @@ def test_a_healthy_graph_is_silent(layout: str, capsys: CaptureFixture[str]) -> 
 def test_a_broken_graph_gives_exactly_its_lines(case: Case, capsys: CaptureFixture[str]) -> None:
     same(f"{case.stem}.json", case.broken(healthy(case.layout)))
     plan = f"{FOLDERS[case.layout]}/plan.yaml"
-    code = main(["check", plan, "--snapshot", f"{case.stem}.json"])
+    code = main(["check", plan, "--snapshot", f"{case.stem}.json", "--verbose"])
     out = capsys.readouterr().out
     assert out == (ROOT / f"{case.stem}.txt").read_text()
     assert tuple(re.findall(r": (MG\d{3}) ", out)) == case.found

@@ -764,12 +764,13 @@ def test_helpers_without_a_node_are_reported(
         (["--namespace", "old"], "'old' is not a full name"),
         (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
         (["--namespace", "/none"], "there is no node to learn below /none"),
-        (["--stack", ""], "'' is no name of a stack, give one word"),
-        (["--stack", "a\nb"], "is no name of a stack, give one word"),
+        (["--stack", ""], "'' is not a name of a stack, give one word"),
+        (["--stack", "a\nb"], "is not a name of a stack, give one word"),
         (["--timeout", "5"], "--timeout and --domain are for the live graph"),
         (["--domain", "5"], "--timeout and --domain are for the live graph"),
-        (["--node"], "argument --node: expected at least one argument"),
-        (["-o", "no/where.yaml"], "no/where.yaml: cannot be written: the folder no does not exist"),
+        (["--node"], "argument --node: expected one argument"),
+        (["--node", "/driver", "/eye"], "unexpected /eye; a list is written A,B"),
+        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file, not a folder"),
     ],
 )
 def test_wrong_use_is_one_line(

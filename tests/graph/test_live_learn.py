@@ -74,9 +74,7 @@ def files(
     found = {name: folder / f"{name}.yaml" for name in ("root", "below")}
     shot, stack = str(folder / "graph.json"), ["--stack", "mine", "-o"]
     with live_fleet.running(domain(0), code, below, **tf2):
-        live = multibot(
-            0, "learn", "--node", "/driver", "/pilot", *stack, str(found["root"]), **tf2
-        )
+        live = multibot(0, "learn", "--node", "/driver,/pilot", *stack, str(found["root"]), **tf2)
         seen = multibot(0, "snapshot", "-o", shot, **tf2)
     words = ("--snapshot", shot, "--namespace", "/old", *stack, str(found["below"]))
     later = multibot(0, "learn", *words)

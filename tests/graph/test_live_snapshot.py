@@ -189,7 +189,7 @@ def test_actions_are_in_the_snapshot(seen: Snapshot, has_tf: bool) -> None:
 def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     if not fleet:
         pytest.skip("tf2_msgs was not built for this run, so it cannot be taken away")
-    result = multibot(0, "--expect", "/robot1/state", "/robot2/state")
+    result = multibot(0, "--expect", "/robot1/state,/robot2/state")
     assert "the frames on /robot1/tf, /robot2/tf, /tf_static were not read" in result.stderr
     assert result.stdout.splitlines()[2].split()[:3] == ["node", "process", "publishes"]
     assert "/robot2/state" in result.stdout
@@ -197,7 +197,7 @@ def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
 
 def test_expected_nodes_end_the_observation_and_a_topic_is_queried(fleet: Build) -> None:
     names = ["/robot1/drive", "/robot2/drive"]
-    result = multibot(0, "-o", "-", "--expect", *names, "--topic", "/heartbeat", **fleet)
+    result = multibot(0, "-o", "-", "--expect", ",".join(names), "--topic", "/heartbeat", **fleet)
     assert result.returncode == 0, result.stderr
     view = from_json(result.stdout.encode(), "stdout")
     assert view.environment.settled == EXPECTED
