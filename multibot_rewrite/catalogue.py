@@ -23,14 +23,30 @@ An *error* stops the job, a *warning* does so with `--fail-on warning`, a *note*
 are tested: the first has the finding, the last does not. The rules that `urdf-lint` has as well are on
 [their own page](lint-rules.md).
 """
+GRAPH_INTRO = """\
+`multibot check` and `multibot rehearse` compare a plan with the running graph. A line of an example
+begins with `planned:` (in the plan), `running:` (in the graph) or `as planned:` (in both). Whole fleets
+with a fault each, and the lines that are printed, are in `fixtures/graphs`.
+
+Where the view of the graph may be incomplete, a finding about something missing is *inconclusive*
+instead of an error.
+
+Not reported: further topics of a node below its robot's name; operator topics without a publisher;
+tools (RViz, rqt, ros2 CLI, rosbag2, bridges, teleop, containers, Gazebo's own nodes); frames below a
+declared link whose names begin like the link's (`camera_link` has `camera_depth_frame`).
+"""
 
 
 class Home(NamedTuple):
-    """Rules whose codes begin with ``start``, and the modules (below the package) that declare them."""
+    """Rules whose codes begin with ``start``, and the modules (below the package) that declare them.
+
+    ``intro`` is the Markdown above them.
+    """
 
     start: str
     title: str
     modules: tuple[str, ...]
+    intro: str = ""
 
 
 HOMES: tuple[Home, ...] = (
@@ -48,6 +64,19 @@ HOMES: tuple[Home, ...] = (
             "companions.params.shared_defaults",
         ),
     ),
+    Home(
+        "MG1",
+        "nodes, topics and services",
+        (
+            "graph.rules.nodes",
+            "graph.rules.endpoints",
+            "graph.rules.leaks",
+            "graph.rules.type_and_qos",
+            "graph.rules.publishers",
+        ),
+        GRAPH_INTRO,
+    ),
+    Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
 )
 
 
@@ -71,7 +100,7 @@ def _declared(home: Home) -> Iterator[Rule]:
 def findings_page() -> str:
     """The page of the rules that only other commands than ``urdf-lint`` have."""
     groups = (
-        Group(it.start, it.title, tuple(sorted(_declared(it), key=lambda rule: rule.code)))
+        Group(it.start, it.title, tuple(sorted(_declared(it), key=lambda it: it.code)), it.intro)
         for it in HOMES
     )
     return page(HEAD, groups)

@@ -19,11 +19,18 @@ def grouped(findings: Iterable[Finding], names: Mapping[str, str]) -> list[Findi
 
     ``names`` maps each word that stands for a robot in texts (its name, its prefix) to the robot.
     """
+    return [first for first, _ in with_members(findings, names)]
+
+
+def with_members(
+    findings: Iterable[Finding], names: Mapping[str, str]
+) -> list[tuple[Finding, list[Finding]]]:
+    """As ``grouped``, each with the findings that it stands for."""
     groups: dict[Finding, list[tuple[str, Finding]]] = {}
     for it in findings:
         robot = it.robot or _only_robot(it, names)
         groups.setdefault(_without(it, robot, names), []).append((robot, it))
-    return [_first(members) for members in groups.values()]
+    return [(_first(members), [it for _, it in members]) for members in groups.values()]
 
 
 def _only_robot(finding: Finding, names: Mapping[str, str]) -> str:

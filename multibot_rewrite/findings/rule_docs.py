@@ -16,11 +16,12 @@ _LANGUAGES = {
 
 
 class Group(NamedTuple):
-    """The rules whose codes begin with ``start``, and what they are about."""
+    """The rules whose codes begin with ``start``, and what they are about; ``intro`` is Markdown."""
 
     start: str
     title: str
     rules: tuple[Rule, ...]
+    intro: str = ""
 
 
 def explained(rule: Rule) -> str:
@@ -41,7 +42,8 @@ def page(head: str, groups: Iterable[Group]) -> str:
     """A page of rules in Markdown, a heading for each group and rule."""
     parts = [head]
     for group in groups:
-        parts.append(f"\n## {group.start}: {group.title}\n")
+        intro = f"\n{group.intro}" if group.intro else ""
+        parts.append(f"\n## {group.start}: {group.title}\n{intro}")
         parts += (_section(rule) for rule in group.rules)
     return "".join(parts)
 

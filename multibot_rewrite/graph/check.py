@@ -1,4 +1,4 @@
-"""Expectation and snapshot -> findings: one pure function for each rule.
+"""Expectation and snapshot -> findings: every declared rule in the order of the codes.
 
 Where the view of the graph may be incomplete, a finding about something missing is *inconclusive*.
 """
@@ -6,47 +6,44 @@ Where the view of the graph may be incomplete, a finding about something missing
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from typing import cast
 
+from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.rules import frames, nodes, topics, type_and_qos
-from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding, View, make_view
+from multibot_rewrite.graph.rules import (
+    endpoints,
+    frame_names,
+    leaks,
+    nodes,
+    publishers,
+    transforms,
+    type_and_qos,
+)
+from multibot_rewrite.graph.rules.comparison import View, make_view
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
-GraphRule = Callable[[View], Iterator[GraphFinding]]
-RULES: tuple[GraphRule, ...] = (
-    nodes.missing_nodes,
-    topics.missing_endpoints,
-    topics.leaks,
-    topics.planned_leaks,
-    topics.wrong_tf_listeners,
-    topics.cross_talk,
-    nodes.duplicate_node_names,
-    type_and_qos.type_conflicts,
-    type_and_qos.incompatible_qos,
-    nodes.unexpected_nodes,
-    topics.topics_below_own_namespace,
-    topics.subscriptions_without_publisher,
-    frames.two_parents,
-    frames.colliding_frames,
-    frames.disconnected_trees,
-    frames.undeclared_frames,
-    frames.wrong_tf_topics,
-    frames.frames_without_robot_name,
-)
+_MODULES = (nodes, endpoints, leaks, type_and_qos, publishers, transforms, frame_names)
+_FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
+RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 WAITED_FOR = "expected-not-seen"
 # Findings about something missing: an incomplete view cannot prove them.
-ABSENCE = ("MG101", "MG102", "MG109", "MG110", "MG111", "MG203", "MG207")
+ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 
 
-def check(plan: Expectation, graph: Snapshot) -> list[GraphFinding]:
+def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
     with gc_paused():
         view = make_view(plan, graph)
-        found = [finding for rule in RULES for finding in rule(view)]
+        found = [finding for rule in RULES.values() for finding in _ask(rule, view)]
     if not doubts(graph):
         return found
     return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
+
+
+def _ask(rule: Rule, view: View) -> Iterator[Finding]:
+    return cast(Callable[[View], Iterator[Finding]], rule.check)(view)
 
 
 def doubts(graph: Snapshot) -> tuple[Caveat, ...]:
@@ -57,6 +54,6 @@ def doubts(graph: Snapshot) -> tuple[Caveat, ...]:
     return tuple(caveat for caveat in incomplete(graph) if caveat.code != WAITED_FOR)
 
 
-def _inconclusive(finding: GraphFinding) -> GraphFinding:
-    cause = "the view of the graph may be incomplete: see the caveats of the snapshot"
-    return finding._replace(level=INCONCLUSIVE, cause=cause)
+def _inconclusive(finding: Finding) -> Finding:
+    hint = "the view of the graph may be incomplete: see the caveats of the snapshot"
+    return finding._replace(level=INCONCLUSIVE, hint=hint, file="", line=0)

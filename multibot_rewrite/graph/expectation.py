@@ -69,6 +69,11 @@ class Expectation(NamedTuple):
     sources: tuple[tuple[str, str], ...] = ()
 
 
+def robot_words(plan: Expectation) -> dict[str, str]:
+    """The words that stand for robots, in names and in frames, and the robot of each."""
+    return {word: it.name for it in plan.robots for word in (it.name, it.frame_tag) if word}
+
+
 def expect(
     table: Table,
     naming: Naming,

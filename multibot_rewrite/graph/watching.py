@@ -6,11 +6,10 @@ from collections.abc import Iterable
 from enum import IntEnum
 from typing import NamedTuple
 
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.check import ABSENCE, check, doubts
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
-from multibot_rewrite.model import ERROR
 
 
 class Verdict(IntEnum):
@@ -37,16 +36,16 @@ class WatchState(NamedTuple):
     """
 
     graph: Snapshot
-    findings: tuple[GraphFinding, ...]
-    appeared: tuple[GraphFinding, ...]
-    solved: tuple[GraphFinding, ...]
+    findings: tuple[Finding, ...]
+    appeared: tuple[Finding, ...]
+    solved: tuple[Finding, ...]
     robots: tuple[Progress, ...]
     complete: bool
     verdict: Verdict
     worst: Verdict
 
 
-def judge(found: Iterable[GraphFinding], graph: Snapshot) -> Verdict:
+def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
     """As planned, not as planned, or inconclusive because the view may be incomplete."""
     if any(finding.level == ERROR for finding in found):
         return Verdict.WRONG
@@ -73,15 +72,17 @@ def next_state(plan: Expectation, graph: Snapshot, before: WatchState | None) ->
     )
 
 
-def _not_in(
-    known: Iterable[GraphFinding], found: Iterable[GraphFinding]
-) -> tuple[GraphFinding, ...]:
+def _not_in(known: Iterable[Finding], found: Iterable[Finding]) -> tuple[Finding, ...]:
     """What is found and not known; a finding with another cause is the same finding."""
-    before = {finding._replace(cause="") for finding in known}
-    return tuple(finding for finding in found if finding._replace(cause="") not in before)
+    before = set(map(_without_cause, known))
+    return tuple(finding for finding in found if _without_cause(finding) not in before)
 
 
-def _to_remember(found: Iterable[GraphFinding], graph: Snapshot, complete: bool) -> Verdict:
+def _without_cause(finding: Finding) -> Finding:
+    return finding._replace(hint="", file="", line=0)
+
+
+def _to_remember(found: Iterable[Finding], graph: Snapshot, complete: bool) -> Verdict:
     """The verdict that counts for the worst so far.
 
     What is not started yet does not count, nor that the graph is still changing.

@@ -133,7 +133,7 @@ def test_faults_are_first(show: Open) -> None:
     assert len(texts) == len(
         nav2_graphs.scene(nav2_graphs.nav2(), nav2_graphs.spoiled(nav2_graphs.nav2())).findings
     )
-    assert any("/cmd_vel is not robot1's own" in text for text in texts)
+    assert any("/cmd_vel, which is not a name of robot1" in text for text in texts)
     assert in_view(driver, every(driver, "#findings tbody tr")[0])
 
 
@@ -167,7 +167,8 @@ def test_findings_are_filtered_by_level_and_robot(show: Open) -> None:
     graph = nav2_graphs.with_end(nav2_graphs.spoiled(plan), "/robot2/gripper", "/robot2/grip")
     scene = nav2_graphs.scene(plan, graph)
     driver = show(to_html(scene))
-    pairs = [(finding.level, finding.robot) for finding in scene.findings]
+    pairs = [(row.finding.level, row.finding.robot) for row in scene.rows]
+    assert not any(row.finding.others for row in scene.rows)
     level, robot = (Select(it) for it in every(driver, "#filters select"))
     assert len(seen(driver, "#findings tbody tr")) == len(pairs)
     robot.select_by_visible_text("robot2")
@@ -204,10 +205,31 @@ def test_a_part_of_the_drawing_is_marked_by_click_and_by_key(show: Open) -> None
 
 def test_findings_are_reached_with_the_keyboard(show: Open) -> None:
     driver = show(spoiled())
-    link = row(driver, "MG104").find_element(By.TAG_NAME, "a")
+    link = row(driver, "MG104").find_element(By.CSS_SELECTOR, "a.place")
     driver.execute_script("arguments[0].focus()", link)
     link.send_keys(Keys.ENTER)
     assert labels(driver, "g.hit") == {"/robot2/amcl", "/robot1/scan"}
+
+
+def test_a_code_opens_what_it_means(show: Open) -> None:
+    driver = show(spoiled())
+    (folded,) = every(driver, "#rule-MG104")
+    assert "one robot is driven" not in folded.text.lower()
+    row(driver, "MG104").find_element(By.CSS_SELECTOR, "a.rule").click()
+    assert "one robot is driven" in folded.text.lower()
+    assert in_view(driver, folded)
+    assert every(driver, ".hit") == []
+
+
+def test_a_row_of_many_robots_is_found_by_each_of_them(show: Open) -> None:
+    plan = nav2_graphs.fleet(5, 4)
+    graph = nav2_graphs.healthy(plan)
+    for robot in plan.robots:
+        graph = nav2_graphs.moved(graph, f"/{robot.name}/topic1", "/topic1", "driver")
+    driver = show(to_html(nav2_graphs.scene(plan, graph)))
+    Select(every(driver, "#filters select")[1]).select_by_visible_text("robot4")
+    shown = seen(driver, "#findings tbody tr")
+    assert ["robot1, robot2, robot3 and 2 more" in it.text for it in shown] == [True, True]
 
 
 def test_a_large_fleet_opens_where_something_is_wrong(show: Open) -> None:
@@ -318,7 +340,7 @@ def test_it_reads_and_links_without_scripts(
         assert seen(driver, "#findings tbody tr") and seen(driver, "svg.graph")
         every(driver, "label[for=more]")[0].click()
         assert seen(driver, ".more")
-        row(driver, "MG103").find_element(By.TAG_NAME, "a").click()
+        row(driver, "MG103").find_element(By.CSS_SELECTOR, "a.place").click()
         (target,) = every(driver, "g:target")
         assert in_view(driver, target)
     finally:

@@ -8,9 +8,9 @@ import pytest
 from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
 from graph_cases import healthy as planned
 
+from multibot_rewrite.findings.finding import INCONCLUSIVE
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot
 from multibot_rewrite.graph.watching import Verdict, next_state
 from multibot_rewrite.model import ERROR, WARNING
@@ -49,7 +49,7 @@ def below(parent: str, *frames: str, topic: str = "/tf_static") -> list[GraphFra
 
 
 def found(plan: Expectation, seen: Snapshot) -> list[tuple[str, str, tuple[str, ...]]]:
-    return [(it.code, it.robot, tuple(it.about)) for it in check(plan, seen)]
+    return [(it.code, it.robot, tuple(it.names)) for it in check(plan, seen)]
 
 
 # Whose a name is, where one robot's name begins another's.
@@ -137,7 +137,7 @@ def test_a_disconnected_tree_has_the_frame_name_with_a_dot() -> None:
     edges = [it for it in seen.frames if it.child != "camera.link.robot1"]
     torn = [it for it in check(DOTS, seen._replace(frames=tuple(edges))) if it.code == "MG203"]
     assert [it.robot for it in torn] == ["robot1"]
-    assert "camera.link.robot1.robot1" in torn[0].cause
+    assert "camera.link.robot1.robot1" in torn[0].hint
 
 
 # A copy of tf for those who look on.

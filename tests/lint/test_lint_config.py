@@ -133,13 +133,15 @@ def test_the_naming_is_that_of_the_options_of_urdf_postfix(project: Path) -> Non
         layout = "L4"
         affix = "prefix"
         topics = "namespace"
+        groups = "rename"
         separators = {link = "_", sensor = "__"}
         shared-frames = ["map"]
         shared-topics = []
     """
-    wanted = make_naming("L4", "prefix", "namespace", {"link": "_", "sensor": "__"}, ["map"], [])
+    marks = {"link": "_", "sensor": "__"}
+    wanted = make_naming("L4", "prefix", "namespace", marks, ["map"], [], "rename")
     assert read(project, text).settings.naming == wanted
-    assert read(project, 'affix = "prefix"').settings.naming == make_naming("L2", "prefix")
+    assert read(project, 'affix = "prefix"').settings.naming == make_naming(affix="prefix")
 
 
 ON = [

@@ -161,7 +161,7 @@ def test_fix_writes_and_tells_what_is_left(
     assert file.read_bytes().count(b"xmlns") == 0
     assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, FIXED)
     assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
-    assert f"mended {file}" in err and "other.urdf" not in err
+    assert f"fixed {file}" in err and "other.urdf" not in err
 
 
 def test_what_is_found_through_another_file_is_not_lost(

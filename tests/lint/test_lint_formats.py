@@ -109,7 +109,9 @@ def thousand(here: Path) -> Linted:
     return Linted(lint_files(["many.urdf"], SETTINGS, jobs=1), ["many.urdf"])
 
 
-@pytest.fixture(params=["nasty", "thousand", "none", "nothing"])
+@pytest.fixture(
+    params=["nasty", pytest.param("thousand", marks=pytest.mark.slow), "none", "nothing"]
+)
 def linted(request: pytest.FixtureRequest, here: Path) -> Linted:
     if request.param == "none":
         return Linted([], ["a.urdf", "b.urdf"])

@@ -19,6 +19,7 @@ HARDWARE = """<ros2_control name="h" type="system"><hardware><plugin>x/Y</plugin
 </ros2_control>"""
 TWO = ("robot1", "robot2")
 BOTH, BARE = make_naming("both"), make_naming("tf-per-robot")
+ONE_TF = make_naming("frames-per-robot")
 
 
 def codes(folder: Path, text: str, select: str = "MB4", **options: Any) -> list[str]:
@@ -142,8 +143,9 @@ def test_tf_that_is_on_unless_switched_off(tmp_path: Path) -> None:
 
 def test_where_robots_share_tf_no_rule_is_missing(tmp_path: Path) -> None:
     text = DRIVE.format("<publish_odom_tf>true</publish_odom_tf>")
-    assert codes(tmp_path, text, "MB408", robots=TWO) == []
+    assert codes(tmp_path, text, "MB408", robots=TWO, naming=ONE_TF) == []
     assert codes(tmp_path, text, "MB408", robots=TWO, naming=BOTH) == ["MB408"]
+    assert codes(tmp_path, text, "MB408", robots=TWO) == ["MB408"]
 
 
 @pytest.mark.parametrize(

@@ -218,4 +218,4 @@ def test_the_cost_of_wrong_names_grows_with_their_number_and_not_faster(tmp_path
         assert len(lint(tmp_path, links + blocks)) == count
         return lambda: lint(tmp_path, links + blocks)
 
-    assert growth(prepared, 100, 400) < 1.5
+    assert growth(prepared, 50, 200) < 1.5

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from graph_examples import read_example
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.findings.finding import Finding
@@ -15,6 +16,7 @@ from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.graph.check import check
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 
@@ -39,6 +41,7 @@ COMPANIONS = {
     "lua": ("example.lua", "lua"),
     "bridge": ("example.yaml", "bridge"),
 }
+GRAPH = "graph"
 FLEET: dict[str, Any] = {
     "layout": "frames-per-robot",
     "affix": "prefix",
@@ -122,9 +125,15 @@ def _fleet(rule: Rule, keys: dict[str, Any], folder: Path) -> list[Finding]:
     return list(make_outputs(plan).findings)
 
 
+def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """A plan and a graph in the lines of ``graph_examples``."""
+    return check(*read_example(example))
+
+
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
     "rewrite": rewrite_example,
     "fleet": fleet_example,
+    GRAPH: graph_example,
 }

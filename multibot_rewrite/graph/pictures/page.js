@@ -6,7 +6,8 @@ const selects = all("#filters select");
 function filter() {
   const [level, robot] = selects.map((select) => select.value);
   for (const row of rows) {
-    const fits = (!level || row.dataset.level === level) && (!robot || row.dataset.robot === robot);
+    const fits = (!level || row.dataset.level === level) &&
+      (!robot || row.dataset.robot.split(" ").includes(robot));
     row.hidden = !fits;
   }
   const shown = rows.filter((row) => !row.hidden).length;
@@ -38,7 +39,7 @@ function reveal(place) {
 }
 
 function go(row) {
-  const place = document.querySelector(row.querySelector("a").hash);
+  const place = document.querySelector(row.querySelector("a.place").hash);
   mark(row.dataset.hits.split(" ").filter(Boolean));
   row.classList.add("picked");
   if (!place) return;
@@ -48,6 +49,8 @@ function go(row) {
 
 for (const row of rows) {
   row.addEventListener("click", (event) => {
+    const rule = event.target.closest("a.rule");
+    if (rule) return reveal(document.querySelector(rule.hash));
     event.preventDefault();
     go(row);
   });

@@ -5,11 +5,13 @@ from __future__ import annotations
 import base64
 import hashlib
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from itertools import groupby
 
+from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.graph.pictures.explanations import explanations, rule_link
 from multibot_rewrite.graph.pictures.overview import Tile, overview
 from multibot_rewrite.graph.pictures.page_sections import (
     LEVELS,
@@ -22,17 +24,15 @@ from multibot_rewrite.graph.pictures.page_sections import (
     make_sections,
     summarize,
 )
-from multibot_rewrite.graph.pictures.scene import Scene
+from multibot_rewrite.graph.pictures.scene import FindingRow, Scene
 from multibot_rewrite.graph.pictures.simplify import only_common
 from multibot_rewrite.graph.pictures.states import MISSING, STATES
 from multibot_rewrite.graph.pictures.svg import MEANINGS, Ids, group_svg, safe, tree_svg
 from multibot_rewrite.graph.pictures.text import counted
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree
-from multibot_rewrite.graph.rules.comparison import GraphFinding
 from multibot_rewrite.graph.snapshot import QUIET
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.graph.wording import SEVERAL, shorten
-from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import LAYOUTS
 
 # The heading for a verdict, and its CSS class.
@@ -66,6 +66,7 @@ def to_html(scene: Scene) -> bytes:
         *_header(scene),
         "<main>\n",
         *_findings(scene, ids, sections),
+        *explanations(row.finding.code for row in scene.rows),
         *_graphs(scene, ids, sections),
         *_trees(scene, ids),
         *_environment(scene),
@@ -120,10 +121,9 @@ def _findings(scene: Scene, ids: Ids, sections: Sequence[PageSection]) -> Iterat
         yield f'<div class="wide"><table><thead><tr>{heads}</tr></thead>\n<tbody>\n'
         order = {robot: at for at, robot in enumerate(scene.robots)}
         inside = {one.group.robot: (one.id, ids_in(one, ids)) for one in sections}
-        for finding, about in zip(scene.findings, scene.targets, strict=True):
-            targets = ids_of(about, ids)
-            link = link_to(finding, targets, inside)
-            yield _row(finding, order.get(finding.robot, -1), targets, link)
+        for row in scene.rows:
+            targets = ids_of(row.targets, ids)
+            yield _row(row, order, targets, link_to(row.finding, targets, inside))
         yield "</tbody></table></div>\n"
     yield "</section>\n"
 
@@ -147,15 +147,20 @@ def _select(name: str, default: str, options: Iterable[tuple[str, str]]) -> str:
     return f'<label>{name} <select name="{name}">{first}{inner}</select></label> '
 
 
-def _row(finding: GraphFinding, robot: int, targets: Iterable[str], link: str) -> str:
-    cause = f"<small>{safe(finding.cause)}</small>" if finding.cause else ""
-    level = safe(finding.level)
+def _row(row: FindingRow, order: Mapping[str, int], targets: Iterable[str], link: str) -> str:
+    finding = row.finding
+    robots = (finding.robot, *finding.others)
+    numbers = " ".join(str(order.get(robot, -1)) for robot in robots)
+    hint = f"<small>{safe(finding.hint)}</small>" if finding.hint else ""
+    level, who = safe(finding.level), safe(shorten(robots))
+    node = safe(finding.node or "show")
     return (
-        f'<tr data-level="{level}" data-robot="{robot}" data-hits="{" ".join(targets)}">'
+        f'<tr data-level="{level}" data-robot="{numbers}" data-hits="{" ".join(targets)}">'
         f'<td><b class="level {level}">{level}</b></td>'
-        f'<td><a href="{link}">{safe(finding.code)}</a></td>'
-        f"<td>{safe(finding.robot)}</td><td><code>{safe(finding.node)}</code></td>"
-        f"<td>{safe(finding.message)}{cause}</td></tr>\n"
+        f'<td><a class="rule" href="{rule_link(finding.code)}">{safe(finding.code)}</a></td>'
+        f'<td title="{safe(", ".join(robots))}">{who}</td>'
+        f'<td><a class="place" href="{link}"><code>{node}</code></a></td>'
+        f"<td>{safe(finding.message)}{hint}</td></tr>\n"
     )
 
 

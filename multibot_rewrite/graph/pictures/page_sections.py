@@ -6,13 +6,12 @@ from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping
 from typing import NamedTuple, TypeVar
 
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.graph.pictures.scene import Group, Scene
 from multibot_rewrite.graph.pictures.simplify import has_faults, without_common
 from multibot_rewrite.graph.pictures.states import Targets
 from multibot_rewrite.graph.pictures.svg import Ids
 from multibot_rewrite.graph.pictures.text import counted
-from multibot_rewrite.graph.rules.comparison import INCONCLUSIVE, GraphFinding
-from multibot_rewrite.model import ERROR, WARNING
 
 LEVELS = (ERROR, WARNING, INCONCLUSIVE)
 # In a larger fleet only faulty robots are unfolded, and no more than MOST_OPEN.
@@ -41,7 +40,7 @@ def make_ids(scene: Scene) -> Ids:
     names = sorted({name.name for group in scene.groups for name in group.names})
     frames = dict.fromkeys((one.topic, row.frame) for one in scene.trees for row in one.rows)
     ids = Ids(_numbered("n", nodes), _numbered("t", names), _numbered("f", frames), frozenset())
-    wanted = {id_ for about in scene.targets for id_ in ids_of(about, ids)}
+    wanted = {id_ for row in scene.rows for id_ in ids_of(row.targets, ids)}
     return ids._replace(anchors=frozenset(wanted))
 
 
@@ -81,7 +80,7 @@ def ids_in(section: PageSection, ids: Ids) -> set[str]:
 
 
 def link_to(
-    finding: GraphFinding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
+    finding: Finding, targets: Iterable[str], sections: Mapping[str, tuple[str, set[str]]]
 ) -> str:
     """Where a finding is shown: in its robot's section, or in another one.
 

@@ -6,7 +6,9 @@ from collections import defaultdict
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.grouping import with_members
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
 from multibot_rewrite.graph.pictures.states import (
     FAULTY,
     LEAK,
@@ -17,10 +19,11 @@ from multibot_rewrite.graph.pictures.states import (
     Targets,
     find_targets,
     make_states,
+    merged,
     worst,
 )
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree, make_frame_trees
-from multibot_rewrite.graph.rules.comparison import GraphFinding, View, make_view
+from multibot_rewrite.graph.rules.comparison import View, make_view
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
 from multibot_rewrite.graph.watching import Verdict, judge
 
@@ -96,8 +99,15 @@ class Crossing(NamedTuple):
     names: tuple[str, ...]
 
 
+class FindingRow(NamedTuple):
+    """A finding, with the robots of which the same is true, and what it is about at all of them."""
+
+    finding: Finding
+    targets: Targets
+
+
 class Scene(NamedTuple):
-    """All that is drawn; ``targets`` has what the finding at the same index is about."""
+    """All that is drawn; ``rows`` are the ``findings``, those of several robots as one."""
 
     verdict: Verdict
     layout: str
@@ -105,8 +115,8 @@ class Scene(NamedTuple):
     groups: tuple[Group, ...]
     crossings: tuple[Crossing, ...]
     trees: tuple[FrameTree, ...]
-    findings: tuple[GraphFinding, ...]
-    targets: tuple[Targets, ...]
+    findings: tuple[Finding, ...]
+    rows: tuple[FindingRow, ...]
     environment: Environment
 
 
@@ -117,7 +127,7 @@ class _RobotOf(NamedTuple):
     names: Mapping[str, str]
 
 
-def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[GraphFinding]) -> Scene:
+def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[Finding]) -> Scene:
     """What is drawn of ``graph`` with its plan and findings."""
     view = make_view(plan, graph)
     targets = find_targets(view, found)
@@ -133,9 +143,14 @@ def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[GraphFinding]
         tuple(_crossings(edges, robot_of)),
         make_frame_trees(view, states),
         tuple(found),
-        targets,
+        tuple(_rows(plan, dict(zip(found, targets, strict=True)))),
         graph.environment,
     )
+
+
+def _rows(plan: Expectation, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+    for finding, members in with_members(targets, robot_words(plan)):
+        yield FindingRow(finding, merged(targets[it] for it in members))
 
 
 def _edges(view: View, states: States) -> Iterator[DrawnEdge]:

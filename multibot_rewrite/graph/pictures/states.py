@@ -3,29 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
-from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.check import RULES
+from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
-from multibot_rewrite.model import ERROR, WARNING
 
 OK, LEAK, CROSS_TALK, MISSING = "ok", "leak", "cross-talk", "missing"
 UNEXPECTED, CLASH = "unexpected", "clash"
 # The worst first.
 STATES = (LEAK, CROSS_TALK, CLASH, MISSING, UNEXPECTED, OK)
 FAULTY = frozenset({LEAK, CROSS_TALK, CLASH, MISSING})
-STATE_OF_CODE = {
-    "MG101": MISSING,
-    "MG102": MISSING,
-    "MG103": LEAK,
-    "MG104": CROSS_TALK,
-    "MG108": UNEXPECTED,
-    "MG109": MISSING,
-}
+STATE_OF_CODE = {it.code: str(it.options["drawn"]) for it in RULES.values() if it.options["drawn"]}
 # For all other codes.
 STATE_OF_LEVEL = {ERROR: CLASH, WARNING: UNEXPECTED}
-# These name one node, but are about all endpoints of a name.
-ABOUT_ALL_ENDPOINTS = ("MG106",)
 TF_CODES = "MG2"
 # A frame where it is drawn: the tf topic of its tree, and its name.
 FrameKey = tuple[str, str]
@@ -37,6 +30,12 @@ class Targets(NamedTuple):
     nodes: tuple[str, ...]
     names: tuple[str, ...]
     frames: tuple[FrameKey, ...]
+
+
+def merged(targets: Iterable[Targets]) -> Targets:
+    """What several findings are about, each part once."""
+    nodes, names, frames = zip(*targets, strict=True)
+    return Targets(*(tuple(dict.fromkeys(chain(*part))) for part in (nodes, names, frames)))
 
 
 class States(NamedTuple):
@@ -52,7 +51,7 @@ def worst(states: Iterable[str]) -> str:
     return min(states, key=STATES.index, default=OK)
 
 
-def find_targets(view: View, findings: Iterable[GraphFinding]) -> tuple[Targets, ...]:
+def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
     topics = [tree.topic for tree in view.trees]
     return tuple(
@@ -63,7 +62,7 @@ def find_targets(view: View, findings: Iterable[GraphFinding]) -> tuple[Targets,
     )
 
 
-def make_states(findings: Iterable[GraphFinding], targets: Iterable[Targets]) -> States:
+def make_states(findings: Iterable[Finding], targets: Iterable[Targets]) -> States:
     """The states of everything that findings are about; the worst where there are several."""
     endpoints: dict[tuple[str, str], str] = {}
     nodes: dict[str, str] = {}
@@ -80,23 +79,24 @@ def make_states(findings: Iterable[GraphFinding], targets: Iterable[Targets]) ->
     return States(endpoints, nodes, frames)
 
 
-def _endpoint_targets(view: View, finding: GraphFinding) -> Targets:
+def _endpoint_targets(view: View, finding: Finding) -> Targets:
     if not finding.node:
         robot = view.robots.get(finding.robot)
-        return Targets(robot.nodes if robot else (), finding.about, ())
-    users = dict.fromkeys(end.node for name in finding.about for end in view.by_name.get(name, ()))
+        return Targets(robot.nodes if robot else (), finding.names, ())
+    users = dict.fromkeys(end.node for name in finding.names for end in view.by_name.get(name, ()))
     words = _words(finding.message)
-    others = [node for node in users if finding.code in ABOUT_ALL_ENDPOINTS or node in words]
-    return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), finding.about, ())
+    all_ends = RULES[finding.code].options["all_ends"]
+    others = [node for node in users if all_ends or node in words]
+    return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), finding.names, ())
 
 
-def _frame_targets(view: View, finding: GraphFinding, topics: Sequence[str]) -> Iterator[FrameKey]:
+def _frame_targets(view: View, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
     """The frames on the topics that the message names; else on the robot's own, or on any topic."""
     words = {tree_topic(word) for word in _words(finding.message)}
     robot = view.robots.get(finding.robot)
     own = [topic for topic in topics if robot and topic == tree_topic(robot.tf)]
     named = [topic for topic in topics if topic in words]
-    return ((topic, frame) for topic in named or own or topics for frame in finding.about)
+    return ((topic, frame) for topic in named or own or topics for frame in finding.names)
 
 
 def _words(message: str) -> set[str]:

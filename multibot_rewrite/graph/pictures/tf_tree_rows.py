@@ -6,22 +6,12 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.graph.check import RULES
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, States
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
-
-# What is written beside a frame.
-FAULTS = {
-    "MG201": "two parents",
-    "MG202": "sent by several robots",
-    "MG203": "one of several roots",
-    "MG204": "not in the description",
-    "MG205": "wrong topic",
-    "MG206": "robot's name twice",
-    "MG207": "without the robot's name",
-}
 
 
 class FrameRow(NamedTuple):
@@ -130,7 +120,7 @@ def _rows(
             depth,
             forest.robots[frame],
             CLASH if codes else OK,
-            tuple(FAULTS.get(code, code) for code in codes),
+            tuple(RULES[code].name.replace("-", " ") for code in codes),
             forest.static.get((parent, frame), False),
             repeated=frame in seen,
         )

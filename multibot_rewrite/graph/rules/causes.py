@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from multibot_rewrite.graph.expectation import PlannedEndpoint
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.rosnames import check_topic_name, expand
@@ -14,6 +18,25 @@ DOES = {
     SERVES: "offers",
     CALLS: "has a client for",
 }
+# FILE:LINE, as plans have the place of a plugin.
+_PLACE = re.compile(r"(.+):(\d{1,9})")
+
+
+class Cause(NamedTuple):
+    """Why something is so, and what to do; file and line of a description where that is written.
+
+    The fields are those of ``Finding``.
+    """
+
+    hint: str
+    file: str = ""
+    line: int = 0
+
+
+def caused(hint: str, place: str) -> Cause:
+    """The cause that is written at ``place``, which is ``file:line`` or something else."""
+    found = _PLACE.fullmatch(place)
+    return Cause(hint, found[1], int(found[2])) if found else Cause(hint)
 
 
 def plugin_of(view: View, node: str) -> tuple[str, str]:
@@ -41,16 +64,39 @@ def name_without_rules(planned: PlannedEndpoint) -> str:
     return expand(planned.code_name, namespace or "/", node)
 
 
-def why_not_remapped(view: View, planned: PlannedEndpoint) -> str:
+def names_without_rules(view: View, planned: PlannedEndpoint) -> tuple[str, ...]:
+    """The names an endpoint may have where no remap rule and no namespace is applied."""
+    in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
+    plain = view.ownership.without_robot(planned.name, view.robot_of[planned.node])
+    names = (name_without_rules(planned), in_root, plain)
+    return tuple(name for name in names if name not in ("", "/", planned.name))
+
+
+def in_namespaces_above(node: str, name: str) -> Iterator[str]:
+    """A name directly in a node's namespace, moved to each of the namespaces above."""
+    namespace = node.rpartition("/")[0]
+    while namespace and name.startswith(f"{namespace}/"):
+        rest = name.removeprefix(namespace)
+        namespace = namespace.rpartition("/")[0]
+        yield namespace + rest
+        name = namespace + rest
+
+
+def use_absolute(name: str) -> str:
+    """What to do about a relative name below the node's own namespace."""
+    return f"the node resolves a relative name in its own namespace: write {name} in its parameters"
+
+
+def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
     """Why a name is still the one in the code, although a rule should remap it."""
     rule = remap_rule(planned)
     plugin, place = plugin_of(view, planned.node)
     if plugin:
         missing = f"remap rule {rule}" if rule else "namespace or remap rule for it"
-        return f"{plugin} has no {missing}, see {place}"
+        return caused(f"{plugin} has no {missing}, see {place}", place)
     if not rule:
-        return "another remap rule, or an absolute name in its parameters, changes it"
-    return f"the remap rule {rule} is not applied"
+        return Cause("another remap rule, or an absolute name in its parameters, changes it")
+    return Cause(f"the remap rule {rule} is not applied")
 
 
 def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
@@ -64,19 +110,28 @@ def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
     return f"; pass it with --ros-args -r {rule}, or with {launch}{parts}"
 
 
-def why_other_name(view: View, node: str, match: str) -> str:
+def tf_rule(robot: PlannedRobot, topic: str) -> str:
+    """The remap rule for a tf topic; its target is relative in the robot's own namespace."""
+    namespaced = any(node.startswith(f"/{robot.name}/") for node in robot.nodes)
+    place = robot.tf.removeprefix(f"/{robot.name}/") if namespaced else robot.tf
+    return f"/{topic}:={'/'.join(topic if it == 'tf' else it for it in place.split('/'))}"
+
+
+def why_other_name(view: View, node: str, match: str) -> Cause:
     """Why a planned node runs under another name, which is ``match``."""
     robot = view.robot_of[node]
     plugin, place = plugin_of(view, node)
     plain = view.ownership.without_robot(node, robot)
     namespaced = node == f"/{robot}{plain}"
     if match not in (plain, f"/{plain.rpartition('/')[2]}"):
-        return f"{match} is running; is it this node under another name?"
+        return Cause(f"{match} is running; is it this node under another name?")
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
-        return f"{match} is running: {plugin} has no {missing}, see {place}"
+        return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
     if namespaced:
         option = f"namespace={robot!r} in the launch file, or --ros-args -r __ns:=/{robot}"
-        return f"{match} is running: it was started without the robot's namespace; use {option}"
-    option = f"--ros-args -r __node:={node.rpartition('/')[2]}"
-    return f"{match} is running: it was started without the robot's name; use {option}"
+        missing = "namespace"
+    else:
+        option = f"--ros-args -r __node:={node.rpartition('/')[2]}"
+        missing = "name"
+    return Cause(f"{match} is running: it was started without the robot's {missing}; use {option}")

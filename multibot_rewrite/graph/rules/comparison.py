@@ -1,4 +1,4 @@
-"""The view that the rules check: a snapshot beside its plan. And the finding of a rule."""
+"""The view that the rules check: a snapshot beside its plan."""
 
 from __future__ import annotations
 
@@ -14,30 +14,8 @@ from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
-INCONCLUSIVE = "inconclusive"
 # Node, kind, role and name of an endpoint.
 EndpointKey = tuple[str, str, str, str]
-
-
-class GraphFinding(NamedTuple):
-    """A fault in the graph: what was expected, what is seen, the likely cause and what to do.
-
-    ``level`` is ``error``, ``warning`` or ``inconclusive``. ``about`` are the topics, services,
-    actions or frames concerned; empty for a finding about a whole node or robot.
-    """
-
-    code: str
-    level: str
-    robot: str
-    node: str
-    message: str
-    cause: str
-    about: tuple[str, ...] = ()
-
-    def __str__(self) -> str:
-        cause = f" ({self.cause})" if self.cause else ""
-        who = self.node or self.robot or "graph"
-        return f"{who}: {self.level}: {self.code} {self.message}{cause}"
 
 
 class View(NamedTuple):

@@ -4,58 +4,89 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedRobot
-from multibot_rewrite.graph.rules.causes import plugin_of, why_other_name
-from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.rules.causes import Cause, caused, plugin_of, why_other_name
+from multibot_rewrite.graph.rules.comparison import View
+from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.model import ERROR, WARNING
 
 
-def missing_nodes(view: View) -> Iterator[GraphFinding]:
-    """A node of the plan that is not in the graph."""
+@graph_rule(
+    "MG101",
+    "missing-node",
+    ERROR,
+    absence=True,
+    drawn="missing",
+    what="A node of the plan is not in the graph. For a node that serves all robots it is a"
+    " warning.",
+    why="All its topics, services and actions are missing. Where it runs under another name, it"
+    " works for the wrong robot, or for all of them.",
+    fix="Start it, with its namespace. The hint has the node that runs in its place, or the line"
+    " of the description that starts it.",
+    bad="""\
+planned: /robot1/driver
+as planned: /robot1/planner
+running: /driver
+""",
+    good="""\
+as planned: /robot1/driver
+as planned: /robot1/planner
+""",
+)
+def missing_node(view: View) -> Iterator[Finding]:
+    """Of the plan; a robot without any of its nodes is one finding of ``missing_robot``."""
     for robot in view.plan.robots:
-        missing = [node for node in robot.nodes if _is_missing(view, robot, node)]
-        if missing and view.seen.keys().isdisjoint(robot.nodes):
-            yield _missing_robot(view, robot)
-            continue
-        for node in missing:
+        for node in () if _is_absent(view, robot) else _missing(view, robot):
             match = view.probable_matches.get(node, "")
             cause = why_other_name(view, node, match) if match else _not_started(view, node)
             message = f"node {node} is in the plan, but not in the graph"
-            yield GraphFinding("MG101", ERROR, robot.name, node, message, cause)
+            yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
     for node in dict.fromkeys(view.plan.shared_nodes):
         if node not in view.seen:
             message = f"node {node} for all robots is in the plan, but not in the graph"
-            yield GraphFinding("MG101", WARNING, "", node, message, "is it started?")
+            yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
 
-def _is_missing(view: View, robot: PlannedRobot, node: str) -> bool:
+def _missing(view: View, robot: PlannedRobot) -> list[str]:
     """An optional node is missing only where it runs under another name."""
-    return node not in view.seen and (node not in robot.optional or node in view.probable_matches)
+    return [
+        node
+        for node in robot.nodes
+        if node not in view.seen and (node not in robot.optional or node in view.probable_matches)
+    ]
 
 
-def _not_started(view: View, node: str) -> str:
+def _is_absent(view: View, robot: PlannedRobot) -> bool:
+    return view.seen.keys().isdisjoint(robot.nodes) and bool(_missing(view, robot))
+
+
+def _not_started(view: View, node: str) -> Cause:
     plugin, place = plugin_of(view, node)
     if plugin:
-        return f"{plugin} of the description should start it, see {place}; is the robot spawned?"
-    return "is it started, or did it end with an error?"
+        started = f"{plugin} of the description should start it, see {place}"
+        return caused(f"{started}; is the robot spawned?", place)
+    return Cause("is it started, or did it end with an error?")
 
 
-def _missing_robot(view: View, robot: PlannedRobot) -> GraphFinding:
-    message = f"none of the {len(robot.nodes)} nodes of {robot.name} is in the graph"
-    matches = [
-        (node, view.probable_matches[node]) for node in robot.nodes if node in view.probable_matches
-    ]
-    cause = "is the robot started, and with this ROS_DOMAIN_ID?"
-    if matches:
-        cause = why_other_name(view, *matches[0])
-        cause += f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
-    return GraphFinding("MG109", ERROR, robot.name, "", message, cause)
-
-
-def duplicate_node_names(view: View) -> Iterator[GraphFinding]:
-    """Two nodes with one name: half of the tools see only one of them."""
+@graph_rule(
+    "MG105",
+    "node-name-twice",
+    ERROR,
+    what="Two running nodes have the same name.",
+    why="Parameters and services work for only one of them, and tools show only one.",
+    fix="Give each node its namespace or its own name. A node that was killed stays visible for 20"
+    " s.",
+    bad="""\
+as planned: /robot1/driver
+running: /robot1/driver
+""",
+    good="as planned: /robot1/driver\n",
+    line=2,
+)
+def node_name_twice(view: View) -> Iterator[Finding]:
+    """Of planned nodes, and of those that are not ignored."""
     for node, times in view.seen.items():
         robot = view.robot_of.get(node, "")
         if times == 1 or (not robot and is_tool(node, view.plan.ignored_nodes)):
@@ -67,11 +98,31 @@ def duplicate_node_names(view: View) -> Iterator[GraphFinding]:
         )
         if len(missing) > 1:
             cause = f"{shorten(missing)} are missing: both were started without their robot's name"
-        yield GraphFinding("MG105", ERROR, robot, node, f"{times} nodes have this name", cause)
+        message = f"{times} nodes have this name"
+        yield node_name_twice.finding(message, cause, robot=robot, node=node)
 
 
-def unexpected_nodes(view: View) -> Iterator[GraphFinding]:
-    """A node that is not in the plan, although the plan has nodes of its robot."""
+@graph_rule(
+    "MG108",
+    "unplanned-node",
+    WARNING,
+    drawn="unexpected",
+    what="A running node is not in the plan.",
+    why="It may be a second copy, a node without its namespace, or just missing in the plan.",
+    fix="Add it to the plan, or to `shared_nodes` if it serves all robots. For tools that come and"
+    " go add a pattern to `ignored_nodes`.",
+    bad="""\
+as planned: /robot1/driver
+running: /robot1/gripper
+""",
+    good="""\
+as planned: /robot1/driver
+as planned: /robot1/gripper
+""",
+    line=2,
+)
+def unplanned_node(view: View) -> Iterator[Finding]:
+    """Only where the plan has nodes of its robot."""
     matches = set(view.probable_matches.values())
     planned = {robot.name for robot in view.plan.robots if robot.nodes}
     without_robot = view.ownership.without_robot
@@ -90,7 +141,7 @@ def unexpected_nodes(view: View) -> Iterator[GraphFinding]:
             cause = "add it there if it serves all robots; otherwise give it its robot's namespace"
         if node in originals:
             cause = f"{originals[node]} runs as well: is this a second one without a robot's name?"
-        yield GraphFinding("MG108", WARNING, robot, node, message, cause)
+        yield unplanned_node.finding(message, cause, robot=robot, node=node)
 
 
 def _foreign_names(view: View, node: str, robot: str) -> str:
@@ -99,3 +150,42 @@ def _foreign_names(view: View, node: str, robot: str) -> str:
     names = dict.fromkeys(e.name for e in view.by_node.get(node, ()) if "/_" not in e.name)
     foreign = [n for n in names if n not in shared and view.ownership.robot(n) != robot]
     return f"; it uses {shorten(foreign)}, without the name of {robot}" if foreign else ""
+
+
+@graph_rule(
+    "MG109",
+    "missing-robot",
+    ERROR,
+    absence=True,
+    drawn="missing",
+    what="No node of a robot is in the graph.",
+    why="The robot is off, in another domain, or its nodes run under other names.",
+    fix="Start it, in its namespace, and check `ROS_DOMAIN_ID` on both sides.",
+    bad="""\
+as planned: /robot1/driver
+planned: /robot2/driver
+""",
+    good="""\
+as planned: /robot1/driver
+as planned: /robot2/driver
+""",
+    line=2,
+)
+def missing_robot(view: View) -> Iterator[Finding]:
+    """One finding in place of one for each node."""
+    for robot in view.plan.robots:
+        if _is_absent(view, robot):
+            message = f"none of the {len(robot.nodes)} nodes of {robot.name} is in the graph"
+            cause = _why_absent(view, robot)
+            yield missing_robot.finding(message, **cause._asdict(), robot=robot.name)
+
+
+def _why_absent(view: View, robot: PlannedRobot) -> Cause:
+    matches = [
+        (node, view.probable_matches[node]) for node in robot.nodes if node in view.probable_matches
+    ]
+    if not matches:
+        return Cause("is the robot started, and with this ROS_DOMAIN_ID?")
+    cause = why_other_name(view, *matches[0])
+    same = f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
+    return cause._replace(hint=cause.hint + same)

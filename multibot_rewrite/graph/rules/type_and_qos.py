@@ -7,12 +7,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from math import inf
 
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.rules.causes import DOES
-from multibot_rewrite.graph.rules.comparison import GraphFinding, View
+from multibot_rewrite.graph.rules.comparison import View
+from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.model import ERROR
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # The words of each policy, the weakest first; any other word does not say what is in force.
@@ -24,8 +25,28 @@ HASH = "RIHS"
 STAMPED = "Stamped"
 
 
-def type_conflicts(view: View) -> Iterator[GraphFinding]:
-    """A topic, service or action with several types, or with another type than planned."""
+@graph_rule(
+    "MG106",
+    "type-mismatch",
+    ERROR,
+    all_ends=True,
+    what="A topic, service or action has two types, two versions of one type, or another type than"
+    " in the plan.",
+    why="No message arrives, and there is no error message.",
+    fix="Use the same type on both sides (stamped or not), and build both against one version. If"
+    " the running type is right, correct the plan.",
+    bad="""\
+as planned: /robot1/planner publishes /robot1/cmd_vel geometry_msgs/msg/TwistStamped
+as planned: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+as planned: /robot1/planner publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+as planned: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=2,
+)
+def type_mismatch(view: View) -> Iterator[Finding]:
+    """Each name once: between its two sides, else between graph and plan."""
     reported = set()
     for name, endpoints in view.by_name.items():
         for ends in () if _same_type(endpoints) else _by_kind(endpoints):
@@ -56,7 +77,7 @@ def _by_kind(ends: Sequence[GraphEndpoint]) -> Iterable[Sequence[GraphEndpoint]]
     return kinds.values()
 
 
-def _several_types(view: View, name: str, ends: Sequence[GraphEndpoint]) -> GraphFinding | None:
+def _several_types(view: View, name: str, ends: Sequence[GraphEndpoint]) -> Finding | None:
     types = Counter(end.type for end in ends if end.type)
     if len(types) < 2:
         return None
@@ -77,7 +98,7 @@ def _planned_types(view: View, end: GraphEndpoint) -> tuple[str, ...]:
     return (planned.type, *planned.also) if planned else ()
 
 
-def _several_versions(view: View, name: str, ends: Sequence[GraphEndpoint]) -> GraphFinding | None:
+def _several_versions(view: View, name: str, ends: Sequence[GraphEndpoint]) -> Finding | None:
     """One type in two versions: the names match, the messages do not."""
     by_hash: dict[str, list[GraphEndpoint]] = defaultdict(list)
     for end in ends:
@@ -102,21 +123,44 @@ def _who(ends: Sequence[GraphEndpoint]) -> str:
     return f"{ends[0].node}{others} {DOES[ends[0].role]}"
 
 
-def _finding(view: View, end: GraphEndpoint, message: str, cause: str) -> GraphFinding:
+def _finding(view: View, end: GraphEndpoint, message: str, cause: str) -> Finding:
     robot = view.robot_of.get(end.node) or view.ownership.robot(end.name)
-    return GraphFinding("MG106", ERROR, robot, end.node, message, cause, (end.name,))
+    return type_mismatch.finding(message, cause, robot=robot, node=end.node, names=(end.name,))
 
 
-def _not_as_planned(view: View, planned: PlannedEndpoint, seen: str) -> GraphFinding:
+def _not_as_planned(view: View, planned: PlannedEndpoint, seen: str) -> Finding:
     what = f"{DOES[planned.role]} {planned.kind} {planned.name}"
     message = f"{what} with type {seen}, but the plan has {planned.type}"
     cause = "another version or setting of the node? If this type is right, correct the plan"
-    robot = view.robot_of.get(planned.node, "")
-    return GraphFinding("MG106", ERROR, robot, planned.node, message, cause, (planned.name,))
+    return type_mismatch.finding(
+        message,
+        cause,
+        robot=view.robot_of.get(planned.node, ""),
+        node=planned.node,
+        names=(planned.name,),
+    )
 
 
-def incompatible_qos(view: View) -> Iterator[GraphFinding]:
-    """A publisher that offers less QoS than a subscription requests: no message ever arrives."""
+@graph_rule(
+    "MG107",
+    "qos-mismatch",
+    ERROR,
+    what="A publisher offers less QoS than a subscription requests: reliability, durability,"
+    " deadline, liveliness or lease.",
+    why="DDS does not connect them: both are in the graph, and no message arrives.",
+    fix="Let the publisher offer more, or the subscription request less.",
+    bad="""\
+as planned: /robot1/camera publishes /robot1/image sensor_msgs/msg/Image best_effort
+as planned: /robot1/viewer subscribes /robot1/image sensor_msgs/msg/Image reliable
+""",
+    good="""\
+as planned: /robot1/camera publishes /robot1/image sensor_msgs/msg/Image best_effort
+as planned: /robot1/viewer subscribes /robot1/image sensor_msgs/msg/Image best_effort
+""",
+    line=2,
+)
+def qos_mismatch(view: View) -> Iterator[Finding]:
+    """One finding for each subscription."""
     for name, ends in view.by_name.items():
         # The same QoS on both sides always connects.
         if all(end.qos == ends[0].qos for end in ends):
@@ -145,7 +189,7 @@ def _qos_finding(
     publishers: Sequence[str],
     subscriber: str,
     conflicts: tuple[tuple[str, str], ...],
-) -> GraphFinding:
+) -> Finding:
     offered = " and ".join(offer for offer, _ in conflicts)
     requested = " and ".join(request for _, request in conflicts)
     more = f" (and {len(publishers) - 1} more)" if len(publishers) > 1 else ""
@@ -158,7 +202,7 @@ def _qos_finding(
         f" request {offered}"
     )
     robot = view.robot_of.get(subscriber) or view.ownership.robot(subscriber)
-    return GraphFinding("MG107", ERROR, robot, subscriber, message, cause, (name,))
+    return qos_mismatch.finding(message, cause, robot=robot, node=subscriber, names=(name,))
 
 
 @lru_cache(maxsize=1024)

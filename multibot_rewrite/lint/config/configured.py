@@ -30,8 +30,8 @@ from multibot_rewrite.nearest import nearest
 __all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"
 MARKS = (b"urdf-lint", b"urdf_lint")
-NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics")
-DEFAULT_NAMING: Mapping[str, Any] = {"layout": "frames-per-robot"}
+NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics", "groups")
+DEFAULT_NAMING: Mapping[str, Any] = {}
 
 
 class Configured(NamedTuple):

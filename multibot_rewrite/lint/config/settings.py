@@ -46,7 +46,7 @@ class Settings(NamedTuple):
     per_file: tuple[tuple[str, tuple[str, ...]], ...] = ()
     arguments: tuple[ArgumentSet, ...] = ()
     robots: tuple[str, ...] = ()
-    naming: Naming = make_naming("frames-per-robot")
+    naming: Naming = make_naming()
     vocabulary: tuple[str, ...] = ()
     targets: tuple[str, ...] = ()
     roots: tuple[str, ...] = ()

@@ -11,7 +11,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
 from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, TWO
+from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
@@ -133,7 +133,7 @@ off_the_shared_tf = rule(
     "</gazebo>\n",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
     line=3,
-    options={"robots": TWO},
+    options={"robots": TWO, "naming": ONE_TF},
 )(partial(_if_robots, _by_naming(hazards.moved_tf)))
 
 

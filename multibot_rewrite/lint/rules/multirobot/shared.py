@@ -15,6 +15,7 @@ TWO = ("robot1", "robot2")
 # Frames, tf and topics are all per robot: what a rewrite inserts for that is shared by copies.
 APART = make_naming("both")
 AS_WRITTEN = make_naming("tf-per-robot")
+ONE_TF = make_naming("frames-per-robot")
 
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:

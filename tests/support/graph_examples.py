@@ -1,0 +1,125 @@
+"""Small plans and graphs as lines of text, in which the examples of graph rules are written.
+
+Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in the graph) or
+``as planned:`` (it is in both). Behind it comes one of:
+
+    NODE                                a node; a second such line is a second node of that name
+    NODE ROLE NAME [TYPE] [QOS ...]     the node publishes, subscribes, serves or calls NAME
+    frames of ROBOT on TOPIC: FRAMES    the frames of a robot's description, and its tf topic
+    shared topic NAME, shared frame NAME    what all robots use
+    transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
+
+QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
+every ``robot1``, ``robot2`` ... in the plan. In the code of its node a planned name has no robot:
+``/robot1/scan`` is ``/scan`` there. ``map`` is a shared frame.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+
+from graph_cases import environment, qos
+
+from multibot_rewrite.graph.expectation import ALWAYS, Expectation, PlannedEndpoint, PlannedRobot
+from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Qos, Snapshot
+from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
+
+LINE = re.compile(r"(planned|running|as planned): (.+)")
+NODE = re.compile(
+    r"(/\S+)(?: (publishes|subscribes|serves|calls) (\S+)(?: (\w+/\w+/\w+))?((?: \w+)*))?"
+)
+FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
+SHARED = re.compile(r"shared (topic|frame) (\S+)")
+TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
+ROBOT = re.compile(r"robot\d+")
+PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
+# Words of QOS -> the policy that they are of.
+POLICIES = {
+    "reliable": "reliability",
+    "best_effort": "reliability",
+    "volatile": "durability",
+    "transient_local": "durability",
+}
+
+
+def read_example(text: str) -> tuple[Expectation, Snapshot]:
+    """The plan and the graph of an example; AssertionError for a line that is not in the language."""
+    lines = [LINE.fullmatch(line) for line in text.splitlines()]
+    assert all(lines), f"a line does not begin with planned:, running: or as planned:\n{text}"
+    pairs = [(it[1], it[2]) for it in lines if it]
+    planned = [rest for where, rest in pairs if where in (PLANNED, BOTH)]
+    running = [rest for where, rest in pairs if where in (RUNNING, BOTH)]
+    for line in (*planned, *running):
+        assert _is_known(line), f"not in the language of examples: {line}"
+    return read_plan(planned), read_graph(running)
+
+
+def _is_known(line: str) -> bool:
+    return any(it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM))
+
+
+def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    """The words of the lines that are such a pattern; what is left out is empty."""
+    found = filter(None, map(pattern.fullmatch, lines))
+    return (it.groups(default="") for it in found)
+
+
+def read_plan(lines: list[str]) -> Expectation:
+    """What the lines plan."""
+    shared = defaultdict(list, {"topic": [*ALWAYS, "/clock"], "frame": ["map"]})
+    for kind, name in _words(SHARED, lines):
+        shared[kind].append(name)
+    nodes = list(dict.fromkeys(node for node, *_ in _words(NODE, lines)))
+    frames = {robot: (tf, names.split(", ")) for robot, tf, names in _words(FRAMES, lines)}
+    robots = []
+    for name in sorted({found for line in lines for found in ROBOT.findall(line)}):
+        tf, own = frames.get(name, ("/tf", []))
+        robots.append(PlannedRobot(name, tuple(it for it in nodes if name in it), tuple(own), tf))
+    return Expectation(
+        "an example",
+        tuple(robots),
+        tuple(it for it in nodes if not ROBOT.search(it)),
+        tuple(shared["topic"]),
+        tuple(shared["frame"]),
+        tuple(_planned_endpoint(*words[:4]) for words in _words(NODE, lines) if words[1]),
+    )
+
+
+def _planned_endpoint(node: str, role: str, name: str, type_: str) -> PlannedEndpoint:
+    return PlannedEndpoint(
+        node, _kind(role, type_), role, name, type_, re.sub("/robot\\d+", "", name)
+    )
+
+
+def _kind(role: str, type_: str) -> str:
+    if "/action/" in type_:
+        return ACTION
+    return TOPIC if role in (PUBLISHES, SUBSCRIBES) else SERVICE
+
+
+def read_graph(lines: list[str]) -> Snapshot:
+    """What the lines say is running."""
+    ends = [words for words in _words(NODE, lines) if words[1]]
+    alone = [node for node, role, *_ in _words(NODE, lines) if not role]
+    nodes = [*alone, *dict.fromkeys(node for node, *_ in ends if node not in alone)]
+    return Snapshot(
+        tuple(GraphNode(node, "") for node in nodes),
+        tuple(_endpoint(*words) for words in ends),
+        tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
+        environment(),
+    )
+
+
+def _endpoint(node: str, role: str, name: str, type_: str, words: str) -> GraphEndpoint:
+    return GraphEndpoint(_kind(role, type_), role, name, type_, "", node, _qos(words.split()), "")
+
+
+def _qos(words: list[str]) -> Qos | None:
+    return qos(**{POLICIES[word]: word.upper() for word in words}) if words else None
+
+
+def _transform(parent: str, child: str, topic: str, nodes: str) -> GraphFrame:
+    publishers = tuple(nodes.split(", ")) if nodes else ()
+    return GraphFrame(child, parent, topic, "tf_static" in topic, publishers)
