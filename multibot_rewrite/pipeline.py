@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
+from multibot_rewrite.checks.problem import to_findings
 from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -57,10 +59,14 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     """
     inventory, plan, values, *_ = prepared
     renames = plan.renames
-    found = checks.collisions(inventory, renames, robots)
-    found += checks.meeting(inventory, renames, overlap(prepared.naming, robots))
-    found += checks.already_rewritten(inventory, renames, robots, again)
-    _stop_on_errors(found)
+    document = inventory.document
+    taken = checks.taken_names(inventory, renames, robots)
+    whole = chain(
+        checks.meeting(inventory, renames, overlap(prepared.naming, robots)),
+        checks.already_rewritten(inventory, renames, robots, again),
+    )
+    at_start = to_findings(document, whole, ERROR, of_file=True)
+    _stop_on_errors([*to_findings(document, taken, ERROR), *at_start])
     for number, robot in enumerate(robots):
         output = fill(prepared.pieces, robot)
         if number == 0:
