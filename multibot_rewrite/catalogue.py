@@ -77,7 +77,7 @@ HOMES: tuple[Home, ...] = (
         "MoveIt",
         ("companions.moveit.checks", "companions.moveit.controller_manager"),
     ),
-    Home("MF4", "behavior trees and Lua", ("companions.behavior_tree", "companions.lua")),
+    Home("MF4", "behavior trees and Lua", ("companions.behavior_tree.checks", "companions.lua")),
     Home(
         "MG1",
         "nodes, topics and services",

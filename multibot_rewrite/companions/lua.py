@@ -152,10 +152,10 @@ FRAME_TO_EDIT = declare(
     "lua-frame-same-for-all",
     WARNING,
     what="A frame is the same for all robots, and the file is not rewritten.",
-    why="Cartographer publishes transforms between these frames. Two robots would send them under one name "
-    "to /tf, and tf2 would jump between the two.",
-    fix="Write the name that the hint has, with the robot's prefix or postfix, or give the file to the "
-    "build under lua.",
+    why="Cartographer publishes transforms between these frames. Two robots would send them under "
+    "one name to /tf, and tf2 would jump between the two.",
+    fix="Write the name that the hint has, with the robot's prefix or postfix, or give the file "
+    "to the build under lua.",
     bad="""\
 options = {
   tracking_frame = "base_link",
@@ -186,8 +186,8 @@ NOT_PLAIN = declare(
     "lua-frame-not-plain",
     WARNING,
     what="A frame of Cartographer is not a plain string, so it stays unchanged.",
-    why="Its value is known only when Lua runs the file. If it is the same for each robot, all robots "
-    "publish the same frame.",
+    why="Its value is known only when Lua runs the file. If it is the same for each robot, all "
+    "robots publish the same frame.",
     fix="Write the name in quotes, as for a single robot.",
     bad="""\
 options = {
@@ -207,8 +207,8 @@ UNDECLARED_FRAME = declare(
     "lua-undeclared-frame",
     WARNING,
     what="A frame of Cartographer is neither in the description nor published by a known node.",
-    why="Cartographer waits for the transform to tracking_frame and published_frame. It drops all sensor "
-    "data if nobody publishes it.",
+    why="Cartographer waits for the transform to tracking_frame and published_frame. It drops all "
+    "sensor data if nobody publishes it.",
     fix="Correct the name, or let a node publish the frame with the robot's name.",
     bad="""\
 options = {
@@ -242,8 +242,8 @@ INCLUDE = declare(
     "lua-include-not-checked",
     WARNING,
     what="A Lua file includes another one that is not a file of Cartographer itself.",
-    why="The included file is not checked and not rewritten with this one. If it sets frames, they are "
-    "the same for all robots.",
+    why="The included file is not checked and not rewritten with this one. If it sets frames, "
+    "they are the same for all robots.",
     fix="If it sets frames, list it under lua as well.",
     bad="""\
 include "my_frames.lua"
@@ -272,9 +272,12 @@ OTHER_STRING = declare(
     "MF454",
     "lua-name-in-other-string",
     WARNING,
-    what="A string in a Lua file is a name of the robot, but it is not assigned to a frame of Cartographer.",
-    why="It stays unchanged. If the file uses it as a frame later, that frame is the same for all robots.",
-    fix="Write the name where the frame is assigned, or rename it by hand if each robot needs its own.",
+    what="A string in a Lua file is a name of the robot, but it is not assigned to a frame of "
+    "Cartographer.",
+    why="It stays unchanged. If the file uses it as a frame later, that frame is the same for all "
+    "robots.",
+    fix="Write the name where the frame is assigned, or rename it by hand if each robot needs its "
+    "own.",
     bad="""\
 local base = "base_link"
 """,

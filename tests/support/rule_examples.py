@@ -103,7 +103,7 @@ def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     _write(folder, {file: example})
     named = rule.options.get("companions", {})
     assert isinstance(named, dict)
-    return _fleet(rule, {"companions": {**named, key: [file]}}, folder)
+    return _fleet(rule, {"companions": {**named, key: file}}, folder)
 
 
 def lua_by_hand_example(rule: Rule, example: str, folder: Path) -> list[Finding]:

@@ -45,8 +45,8 @@ REPEATED_KEY = declare(
     "moveit-repeated-key",
     WARNING,
     what="A key is set twice in one map.",
-    why="PyYAML, with which MoveItConfigsBuilder reads the file, keeps only the last value and says "
-    "nothing.",
+    why="PyYAML, with which MoveItConfigsBuilder reads the file, keeps only the last value and "
+    "says nothing.",
     fix="Remove one of them.",
     bad="""\
 joint_limits:
@@ -97,8 +97,9 @@ UNDECLARED = declare(
     "moveit-undeclared-name",
     WARNING,
     what="A joint, link, frame or group is neither in the URDF nor in the SRDF.",
-    why="It stays unchanged, and nothing has that name: move_group does not use the limits of such a joint "
-    "or the solver of such a group, and sends no trajectory to a controller of such joints.",
+    why="It stays unchanged, and nothing has that name: move_group does not use the limits of "
+    "such a joint or the solver of such a group, and sends no trajectory to a controller of such "
+    "joints.",
     fix="Correct the name; the message has the nearest one.",
     bad="""\
 joint_limits:
@@ -123,10 +124,12 @@ SUBSTITUTION_KEPT = declare(
     "MF304",
     "moveit-substitution-kept",
     WARNING,
-    what="A name has a substitution such as $(arg prefix) or ${prefix} in it, so it stays unchanged.",
-    why="A launch file or xacro replaces it later. The result is a name of the robot only if that adds the "
-    "same prefix or postfix as the fleet.",
-    fix="Make sure that it results in the robot's own name, or write the name without a substitution.",
+    what="A name has a substitution such as $(arg prefix) or ${prefix} in it, so it stays "
+    "unchanged.",
+    why="A launch file or xacro replaces it later. The result is a name of the robot only if that "
+    "adds the same prefix or postfix as the fleet.",
+    fix="Make sure that it results in the robot's own name, or write the name without a "
+    "substitution.",
     bad="""\
 joint_limits:
   $(arg prefix)wheel_joint: {max_velocity: 1.0}
@@ -159,8 +162,9 @@ GROUPS_WITHOUT_SRDF = declare(
     "moveit-groups-without-srdf",
     WARNING,
     what="The fleet renames planning groups (groups: rename), but no SRDF is given.",
-    why="Only the SRDF says which names are groups, so the groups in this file stay unchanged. move_group "
-    "gets an SRDF with other groups from elsewhere and finds no solver or planner for them.",
+    why="Only the SRDF says which names are groups, so the groups in this file stay unchanged. "
+    "move_group gets an SRDF with other groups from elsewhere and finds no solver or planner for "
+    "them.",
     fix="Name the SRDF under srdf: in the fleet file.",
     bad="""\
 groups: rename
@@ -174,7 +178,7 @@ companions: {moveit: kinematics.yaml}
     formats=("fleet",),
     beside={
         "kinematics.yaml": "arm: {kinematics_solver: kdl_kinematics_plugin/KDLKinematicsPlugin}\n",
-        "robot.srdf": '<robot name="rover"><group name="arm"><joint name="wheel_joint"/></group></robot>',
+        "robot.srdf": '<robot name="rover"><group name="arm"><link name="wheel"/></group></robot>',
     },
 )
 
@@ -192,9 +196,10 @@ PREFIX_ONLY = declare(
     "moveit-prefix-only",
     WARNING,
     what="The link_prefix of an IKFast solver can only add a prefix, but the fleet uses a postfix.",
-    why="IKFast puts link_prefix in front of the link names that it was generated with. It cannot make "
-    "base_link_robot1, so the solver does not find the links of the robot.",
-    fix="Write affix: prefix in the fleet file, or take a solver that reads its links from the SRDF.",
+    why="IKFast puts link_prefix in front of the link names that it was generated with. It cannot "
+    "make base_link_robot1, so the solver does not find the links of the robot.",
+    fix="Write affix: prefix in the fleet file, or take a solver that reads its links from the "
+    "SRDF.",
     bad="""\
 arm:
   kinematics_solver: my_arm_ikfast/IKFastKinematicsPlugin
@@ -222,7 +227,8 @@ TOPIC_INVALID = declare(
     "moveit-topic-invalid",
     WARNING,
     what="The value of a topic or service is not a valid ROS name.",
-    why="It stays unchanged. The node that reads it fails when it creates the subscription or client.",
+    why="It stays unchanged. The node that reads it fails when it creates the subscription or "
+    "client.",
     fix="Correct the name: letters, digits, _ and /, and no digit at the start of a part.",
     bad="""\
 sensors: [lidar]
@@ -257,8 +263,8 @@ UNKNOWN_USE = declare(
     "moveit-name-at-unknown-key",
     WARNING,
     what="A name of the robot or an absolute ROS name is at a key whose use is not known.",
-    why="It stays unchanged. If the plugin that reads it looks for a link, joint or topic, it finds that of "
-    "no robot, or all robots use the same one.",
+    why="It stays unchanged. If the plugin that reads it looks for a link, joint or topic, it "
+    "finds that of no robot, or all robots use the same one.",
     fix="If each robot needs its own, rename it by hand in the files of the robots.",
     bad="""\
 arm:

@@ -39,13 +39,13 @@ ONE_CONTROLLER_MANAGER = declare(
     "MF308",
     "moveit-one-controller-manager",
     WARNING,
-    what="A file selects Ros2ControlManager, but in this layout the controller manager of each robot has "
-    "another name.",
-    why="Ros2ControlManager looks for a node called controller_manager, at the root or in the namespace "
-    "ros_control_namespace. In a layout without namespaces there is controller_manager_robot1 only: "
-    "move_group finds no controllers and executes no trajectory.",
-    fix="Use moveit_simple_controller_manager, which calls the actions of the controllers, or a layout with "
-    "namespaces.",
+    what="A file selects Ros2ControlManager, but in this layout the controller manager of each "
+    "robot has another name.",
+    why="Ros2ControlManager looks for a node called controller_manager, at the root or in the "
+    "namespace ros_control_namespace. In a layout without namespaces there is "
+    "controller_manager_robot1 only: move_group finds no controllers and executes no trajectory.",
+    fix="Use moveit_simple_controller_manager, which calls the actions of the controllers, or a "
+    "layout with namespaces.",
     bad="""\
 moveit_controller_manager: moveit_ros_control_interface/Ros2ControlManager
 """,

@@ -40,8 +40,8 @@ UNKNOWN_DISPLAY = declare(
     "rviz-unknown-display",
     WARNING,
     what="The class of a display is not known, so only its Topic is renamed.",
-    why="Each plugin has its own keys for topics and frames. What is not renamed is a name that no robot "
-    "has any more, so that part of the display stays empty.",
+    why="Each plugin has its own keys for topics and frames. What is not renamed is a name that "
+    "no robot has any more, so that part of the display stays empty.",
     fix="Check the other topics and frames of the display for each robot.",
     bad="""\
 Visualization Manager:
@@ -71,8 +71,9 @@ TF_PREFIX_TWICE = declare(
     "rviz-tf-prefix-twice",
     WARNING,
     what="The TF Prefix of a RobotModel or Effort display is emptied.",
-    why="RViz looks up the transform of TF Prefix/link for each link of the description. The links of a "
-    "rewritten description have the robot's prefix already, and robot1/robot1/base_link does not exist.",
+    why="RViz looks up the transform of TF Prefix/link for each link of the description. The "
+    "links of a rewritten description have the robot's prefix already, and "
+    "robot1/robot1/base_link does not exist.",
     fix="Nothing has to be done.",
     bad="""\
 Visualization Manager:
@@ -106,13 +107,13 @@ NOT_RENAMED = declare(
     "MF208",
     "rviz-value-not-renamed",
     WARNING,
-    what="A value of a display cannot be renamed: a pattern for frames (the filters of TF), a description "
-    "file, or a namespace of topics in a layout that renames each topic.",
-    why="A pattern such as ^base_link$ matches no frame of a robot with a prefix, so the display is empty. "
-    "The links of a description file are those of a single robot; the fleet publishes no transforms for "
-    "them.",
-    fix="Make the pattern match the frames of the robots, set Description Source to Topic, or take a "
-    "layout with namespaces.",
+    what="A value of a display cannot be renamed: a pattern for frames (the filters of TF), a "
+    "description file, or a namespace of topics in a layout that renames each topic.",
+    why="A pattern such as ^base_link$ matches no frame of a robot with a prefix, so the display "
+    "is empty. The links of a description file are those of a single robot; the fleet publishes "
+    "no transforms for them.",
+    fix="Make the pattern match the frames of the robots, set Description Source to Topic, or "
+    "take a layout with namespaces.",
     bad="""\
 Visualization Manager:
   Displays:
@@ -163,9 +164,10 @@ ROS1_PROPERTY = declare(
     "MF209",
     "rviz-ros1-property",
     WARNING,
-    what="A display has a property of RViz for ROS 1: Image Topic, Marker Topic, Unreliable or Queue Size.",
-    why="rviz2 ignores properties that it does not know. The display subscribes to nothing and shows "
-    "nothing, without a message.",
+    what="A display has a property of RViz for ROS 1: Image Topic, Marker Topic, Unreliable or "
+    "Queue Size.",
+    why="rviz2 ignores properties that it does not know. The display subscribes to nothing and "
+    "shows nothing, without a message.",
     fix="Set the Topic of the display in rviz2 and save the file.",
     bad="""\
 Visualization Manager:
@@ -196,10 +198,10 @@ VISIBILITY_RESET = declare(
     "MF212",
     "rviz-camera-visibility-reset",
     WARNING,
-    what="The Visibility of a camera display is reset, because the displays are in groups for the robots "
-    "now.",
-    why="Visibility refers to displays by name and group. What was hidden in the picture of the camera is "
-    "drawn in it again.",
+    what="The Visibility of a camera display is reset, because the displays are in groups for the "
+    "robots now.",
+    why="Visibility refers to displays by name and group. What was hidden in the picture of the "
+    "camera is drawn in it again.",
     fix="Choose the displays again in rviz2 and save the file.",
     bad="""\
 Visualization Manager:
@@ -233,8 +235,8 @@ VOLATILE_DESCRIPTION = declare(
     "rviz-description-volatile",
     WARNING,
     what="A display subscribes to the description with Durability Policy: Volatile.",
-    why="robot_state_publisher publishes the description once. A volatile subscription misses it if "
-    "rviz2 starts later, so the RobotModel stays empty. The RViz file of Nav2 has this.",
+    why="robot_state_publisher publishes the description once. A volatile subscription misses it "
+    "if rviz2 starts later, so the RobotModel stays empty. The RViz file of Nav2 has this.",
     fix="Write Durability Policy: Transient Local below Description Topic.",
     bad="""\
 Visualization Manager:

@@ -42,8 +42,8 @@ ROBOT_IN_NAME = declare(
     "rviz-robot-in-name",
     WARNING,
     what="A name in an RViz config has the name of a robot already.",
-    why="The config was saved for one robot of the fleet. With the robot's name added once more, the "
-    "display subscribes to /robot1/robot1/plan, and that of robot2 to /robot2/robot1/plan.",
+    why="The config was saved for one robot of the fleet. With the robot's name added once more, "
+    "the display subscribes to /robot1/robot1/plan, and that of robot2 to /robot2/robot1/plan.",
     fix="Use a config for a single robot, without namespace and prefix.",
     bad="""\
 Visualization Manager:
@@ -82,8 +82,8 @@ PLACEHOLDER_KEPT = declare(
     "rviz-placeholder-kept",
     WARNING,
     what="A topic or frame has a placeholder such as <name>, which stays.",
-    why="A launch file replaces it before rviz2 starts. rviz2 itself takes it as it is, and <name>/plan is "
-    "not a valid topic name.",
+    why="A launch file replaces it before rviz2 starts. rviz2 itself takes it as it is, and "
+    "<name>/plan is not a valid topic name.",
     fix="Write the name as for a single robot.",
     bad="""\
 Visualization Manager:
@@ -169,9 +169,10 @@ UNKNOWN_USE = declare(
     "MF205",
     "rviz-name-in-unknown-property",
     WARNING,
-    what="A value of a display equals a link or joint of the description, but its use is not known.",
-    why="It stays unchanged. If it is a frame, RViz looks for the frame of a single robot, which no robot "
-    "of the fleet publishes.",
+    what="A value of a display equals a link or joint of the description, but its use is not "
+    "known.",
+    why="It stays unchanged. If it is a frame, RViz looks for the frame of a single robot, which "
+    "no robot of the fleet publishes.",
     fix="If it is a name, rename it by hand in the copy for each robot.",
     bad="""\
 Visualization Manager:

@@ -33,8 +33,8 @@ ONE_TF_TOPIC = declare(
     what="A config is for robots that each have their own tf topic. One rviz2 reads one tf topic.",
     why="rviz2 subscribes to /tf and /tf_static once for all displays. Robots on /robot1/tf and "
     "/robot2/tf never appear in one window: its displays say that there is no transform.",
-    fix="Start one rviz2 for each robot, with its own config and -r /tf:=/robot1/tf, as in commands.md. "
-    "Or take a layout with one tf topic, such as frames-per-robot.",
+    fix="Start one rviz2 for each robot, with its own config and -r /tf:=/robot1/tf, as in "
+    "commands.md. Or take a layout with one tf topic, such as frames-per-robot.",
     bad="""\
 layout: tf-per-robot
 companions: {rviz: show.rviz}
@@ -70,8 +70,8 @@ FIXED_FRAME_SLASH = declare(
     "rviz-fixed-frame-slash",
     WARNING,
     what="The Fixed Frame of an RViz config starts with a slash.",
-    why="tf2 rejects frames that start with a slash, which were usual in ROS 1: RViz finds no transform "
-    "to the Fixed Frame and shows nothing.",
+    why="tf2 rejects frames that start with a slash, which were usual in ROS 1: RViz finds no "
+    "transform to the Fixed Frame and shows nothing.",
     fix="Remove the slash.",
     bad="""\
 Visualization Manager:
@@ -99,12 +99,12 @@ OWN_FIXED_FRAME = declare(
     "MF201",
     "rviz-fixed-frame-of-one-robot",
     WARNING,
-    what="The Fixed Frame differs from robot to robot, and one window shows all robots. It becomes the "
-    "world frame of the fleet.",
-    why="RViz shows only what it can transform to the Fixed Frame. A robot that no transform connects to "
-    "the world frame stays invisible.",
-    fix="Publish a transform from the world frame to each robot (pose: in the fleet file does it), or set "
-    "world: to a frame that all robots share.",
+    what="The Fixed Frame differs from robot to robot, and one window shows all robots. It "
+    "becomes the world frame of the fleet.",
+    why="RViz shows only what it can transform to the Fixed Frame. A robot that no transform "
+    "connects to the world frame stays invisible.",
+    fix="Publish a transform from the world frame to each robot (pose: in the fleet file does "
+    "it), or set world: to a frame that all robots share.",
     bad="""\
 Visualization Manager:
   Global Options:
@@ -138,10 +138,12 @@ FIRST_ROBOT_VIEW = declare(
     "MF213",
     "rviz-view-follows-first-robot",
     WARNING,
-    what="The view follows a frame of the robot. In a window for all robots it follows the first one.",
-    why="A window has one current view with one Target Frame. The other robots drive out of the picture.",
-    fix="Nothing has to be done: the Views panel has a saved view for each robot. To see all robots, write "
-    "Target Frame: map.",
+    what="The view follows a frame of the robot. In a window for all robots it follows the first "
+    "one.",
+    why="A window has one current view with one Target Frame. The other robots drive out of the "
+    "picture.",
+    fix="Nothing has to be done: the Views panel has a saved view for each robot. To see all "
+    "robots, write Target Frame: map.",
     bad="""\
 Visualization Manager:
   Views:
@@ -175,12 +177,13 @@ LEFT_OUT = declare(
     "MF202",
     "rviz-panel-left-out",
     WARNING,
-    what="A display, tool or panel is left out, because it works only for the robot whose namespace rviz2 "
-    "runs in: the panels of Nav2, the displays of MoveIt, the panel of slam_toolbox.",
-    why="These plugins use the relative names or the parameters of the rviz2 node, or absolute names. In a "
-    "window for all robots, goals would go to no robot or to the wrong one.",
-    fix="For that robot start a second rviz2 in its namespace, with the original file. For absolute names "
-    "remap them there.",
+    what="A display, tool or panel is left out, because it works only for the robot whose "
+    "namespace rviz2 runs in: the panels of Nav2, the displays of MoveIt, the panel of "
+    "slam_toolbox.",
+    why="These plugins use the relative names or the parameters of the rviz2 node, or absolute "
+    "names. In a window for all robots, goals would go to no robot or to the wrong one.",
+    fix="For that robot start a second rviz2 in its namespace, with the original file. For "
+    "absolute names remap them there.",
     bad="""\
 Panels:
   - Class: nav2_rviz_plugins/Navigation 2
