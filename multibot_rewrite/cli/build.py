@@ -22,8 +22,7 @@ from multibot_rewrite.fleets.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleets.output_file import OutputFile
-from multibot_rewrite.model import ERROR, Finding, UsageError
-from multibot_rewrite.remap.records import Problem
+from multibot_rewrite.model import ERROR, UsageError
 from multibot_rewrite.sources.read import read_file
 
 MORE = """\
@@ -51,7 +50,7 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     plan = plan_fleet(read_fleet(options.fleet))
     made = make_outputs(plan)
-    findings = [*made.findings, *map(_as_finding, plan.fleet.table.problems)]
+    findings = [*made.findings, *plan.fleet.table.problems]
     print_findings(sorted(set(findings), key=lambda it: (it.file, it.line, it.column, it.code)))
     if any(it.level == ERROR or options.strict for it in findings):
         say("nothing was written", PROGRAM)
@@ -75,12 +74,6 @@ def _check_folder(folder: str) -> None:
         raise UsageError("--output is empty, give the name of a folder")
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise UsageError(f"{folder}: it is a file; name a folder")
-
-
-def _as_finding(problem: Problem) -> Finding:
-    """A problem of the remap table; its place is a node."""
-    where = f"{problem.robot}: {problem.node}" if problem.robot else problem.node
-    return Finding(problem.code, problem.level, problem.message, problem.hint, where, 1, 1)
 
 
 def _known(folder: str) -> dict[str, str]:

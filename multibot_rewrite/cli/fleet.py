@@ -11,9 +11,8 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
-from multibot_rewrite.model import ERROR, UsageError
+from multibot_rewrite.model import ERROR, Finding, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, SHARED_TOPICS, Policy
-from multibot_rewrite.remap.records import Problem
 
 FLEET_FILES = (".yaml", ".yml")
 USUAL = {"layout": DEFAULT_LAYOUT, "affix": "postfix", "shared_topics": ",".join(SHARED_TOPICS)}
@@ -106,8 +105,6 @@ def verdict(made: Fleet) -> int:
     return STOPPED if any(problem.level == ERROR for problem in made.table.problems) else DONE
 
 
-def _tell(problems: Iterable[Problem]) -> None:
+def _tell(problems: Iterable[Finding]) -> None:
     for problem in problems:
-        where = f"{problem.robot}: {problem.node}" if problem.robot else problem.node
-        hint = f" ({problem.hint})" if problem.hint else ""
-        say(f"{where}: {problem.level}: {problem.code} {problem.message}{hint}", PROGRAM)
+        say(str(problem), PROGRAM)
