@@ -213,7 +213,7 @@ UNKNOWN_PART = declare(
     "bridge-part-not-declared",
     WARNING,
     what="A gz topic names a link, joint or sensor that the description does not have.",
-    why="The name is not rewritten. Gazebo uses the topic of the rewritten name, so nothing is bridged.",
+    why="The name is not rewritten. Gazebo uses the rewritten name, so nothing is bridged.",
     fix="Correct the name; the message has the nearest one.",
     bad="""\
 - gz_topic_name: /model/rover/joint/weel_joint/cmd_vel
