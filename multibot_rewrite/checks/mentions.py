@@ -15,6 +15,8 @@ from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot
 
+# Kinds whose names are looked for in values without a site.
+MENTIONED = ("link", "joint")
 _BETWEEN = lazy_compile(r":=|::|[\s,;/]+")
 _NUMBERS = lazy_compile(r"[-+0-9.eE\s]*$")
 
