@@ -22,7 +22,7 @@ ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
 def _by_naming(hazard: ByNaming) -> Hazard:
-    """The same for what needs no spelled name."""
+    """The same for a check that needs only the naming."""
     return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
