@@ -129,7 +129,7 @@ def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host
 
 
 def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
-    """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
+    """A frame that an SRDF fixes its robot to, and that is renamed for each robot."""
     for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue

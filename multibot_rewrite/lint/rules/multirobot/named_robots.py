@@ -22,7 +22,7 @@ ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
 def _by_naming(hazard: ByNaming) -> Hazard:
-    """The same for what needs no spelled name."""
+    """The same for a check that needs only the naming."""
     return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
@@ -202,7 +202,7 @@ sensor_names_collide = rule(
     "names for all robots.",
     why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
     "none if two have it: the second robot reads the first one's data, or nothing.",
-    fix="Use the layout both, which spells sensors for each robot.",
+    fix="Use the layout both, which renames sensors for each robot.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
     '<ros2_control name="h" type="system">\n'

@@ -221,6 +221,6 @@ def _scales(subject: Subject) -> list[tuple[_Element, Vector]]:
 
 
 def _owner(shape: _Element) -> str:
-    """The name of the link that a shape stands in."""
+    """The name of the link that has a shape."""
     link = next(shape.iterancestors("link"), None)
     return "" if link is None else link.get("name", "")
