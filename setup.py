@@ -23,6 +23,13 @@ class FromHere(Distribution):
         super().parse_config_files(filenames or ["setup.cfg"], ignore_option_errors)
 
 
+def found(*patterns):
+    """The files of patterns, relative to this folder."""
+    here = Path(__file__).resolve().parent
+    paths = (path for pattern in patterns for path in here.glob(pattern))
+    return sorted(str(path.relative_to(here)) for path in paths)
+
+
 def options():
     """What colcon has to be told."""
     text = Path(__file__).resolve().with_name("pyproject.toml").read_text("utf-8")
@@ -46,6 +53,7 @@ def options():
         "data_files": [
             ("share/ament_index/resource_index/packages", [f"resource/{name}"]),
             (f"share/{name}", ["package.xml"]),
+            *((home, found(*patterns)) for home, patterns in packaging["data-files"].items()),
         ],
     }
 

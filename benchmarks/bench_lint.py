@@ -30,7 +30,7 @@ from robots import robot
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-lint.md"
 FILES = 1000

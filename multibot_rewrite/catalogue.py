@@ -50,6 +50,7 @@ class Home(NamedTuple):
 
 
 HOMES: tuple[Home, ...] = (
+    Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),
     Home(
         "MF1",
         "parameter files",

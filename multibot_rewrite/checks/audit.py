@@ -22,7 +22,7 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, finding
 from multibot_rewrite.steps.renames import RenameMap
 
-__all__ = ["audit", "is_unknown", "nearest", "unknown_hardware", "unknown_plugins"]
+__all__ = ["audit", "is_unknown", "unknown_hardware", "unknown_plugins"]
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:

@@ -6,9 +6,13 @@ import argparse
 import os
 from collections.abc import Iterable, Mapping, Sequence
 
+from multibot_rewrite.cli.findings import from_table
+from multibot_rewrite.cli.fleet import words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
-from multibot_rewrite.cli.output import print_findings, print_lines, say
+from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
@@ -22,38 +26,18 @@ from multibot_rewrite.fleets.manifest import (
     read_manifest,
 )
 from multibot_rewrite.fleets.output_file import OutputFile
-from multibot_rewrite.model import ERROR, Finding, UsageError
-from multibot_rewrite.remap.records import Problem
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
-
-MORE = """\
-examples:
-  multibot build fleet.yaml -o out/             everything, one folder a robot
-  multibot build fleet.yaml -o out/ --check     in CI: what is stale? writes nothing
-exit codes: 0 done; 1 findings that stop the job (any, with --strict), or with --check something is
-stale; 2 wrong use or unreadable input
-"""
-
-
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    parser.add_argument("fleet", metavar="FLEET", help="the fleet file, YAML")
-    parser.add_argument("-o", "--output", metavar="FOLDER", required=True, help="where it all goes")
-    parser.add_argument("--check", action="store_true", help="say what is stale, write nothing")
-    parser.add_argument("--force", action="store_true", help="overwrite what no build made")
-    parser.add_argument("--strict", action="store_true", help="warnings stop the job")
-    parser.add_argument("--quiet", action="store_true", help="no report, only findings")
 
 
 def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
+    check_report(options, printed=False)
     plan = plan_fleet(read_fleet(options.fleet))
     made = make_outputs(plan)
-    findings = [*made.findings, *map(_as_finding, plan.fleet.table.problems)]
-    print_findings(sorted(set(findings), key=lambda it: (it.file, it.line, it.column, it.code)))
-    if any(it.level == ERROR or options.strict for it in findings):
+    if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)
         return STOPPED
     files = [*made.files, manifest(made.files, _read(plan, made.files), options.output)]
@@ -61,7 +45,15 @@ def run(options: argparse.Namespace) -> int:
         known = _known(options.output)
         there = _there(options.output, {*known, *(it.path for it in files)})
         found = output_changes(files, known, there)
-        return _told(options, found) if options.check else _written(options, files, found)
+        return _stale(options, found) if options.check else _written(options, files, found)
+
+
+def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
+    """Report what is wrong with the files and the remap table; does it stop the build?"""
+    both = {*found, *map(from_table, plan.fleet.table.problems)}
+    ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
+    about = About([options.fleet], words_of(plan.fleet))
+    return report_beside(options, chosen(options, ordered), about)
 
 
 def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
@@ -71,16 +63,8 @@ def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
 
 
 def _check_folder(folder: str) -> None:
-    if not folder:
-        raise UsageError("--output is empty, give the name of a folder")
     if os.path.exists(folder) and not os.path.isdir(folder):
         raise UsageError(f"{folder}: it is a file; name a folder")
-
-
-def _as_finding(problem: Problem) -> Finding:
-    """A problem of the remap table; its place is a node."""
-    where = f"{problem.robot}: {problem.node}" if problem.robot else problem.node
-    return Finding(problem.code, problem.level, problem.message, problem.hint, where, 1, 1)
 
 
 def _known(folder: str) -> dict[str, str]:
@@ -104,15 +88,17 @@ def _there(folder: str, paths: Iterable[str]) -> Mapping[str, str]:
     return {path: hash_of(read_file(it)) for path, it in full.items() if os.path.isfile(it)}
 
 
-def _told(options: argparse.Namespace, found: OutputChanges) -> int:
-    stale = [f"{path}: stale" for path in found.write]
-    print_lines([*stale, *(f"{path}: left over" for path in found.remove)])
-    count = len(found.write) + len(found.remove)
-    if count:
-        say(f"{count} files of {options.output} are not what {options.fleet} makes", PROGRAM)
+def _stale(options: argparse.Namespace, found: OutputChanges) -> int:
+    lines = [
+        *(f"{path}: stale" for path in found.write),
+        *(f"{it}: left over" for it in found.remove),
+    ]
+    print_lines(lines)
+    if lines:
+        differ = f"{plural(len(lines), 'file')} of {options.output} differ from what"
+        say(f"{differ} {options.fleet} makes", PROGRAM)
         return STOPPED
-    if not options.quiet:
-        say(f"{options.output} is up to date", PROGRAM)
+    note(options, f"{options.output} is up to date")
     return DONE
 
 
@@ -124,11 +110,16 @@ def _written(options: argparse.Namespace, files: Sequence[OutputFile], found: Ou
     clear_leftovers(options.output)
     data = {it.path: it.data for it in files}
     if found.write or found.remove:
-        note = NOTE, data[MANIFEST]
-        change_folder(options.output, {it: data[it] for it in found.write}, found.remove, note)
-    if not options.quiet:
-        robots = len({it.path.partition("/")[0] for it in files if "/" in it.path})
-        say(f"{robots} robots, {len(files)} files, {len(found.write)} written", PROGRAM)
+        change_folder(
+            options.output,
+            {it: data[it] for it in found.write},
+            found.remove,
+            (NOTE, data[MANIFEST]),
+        )
+    for path in found.write:
+        detail(options, f"wrote {os.path.join(options.output, path)}")
+    robots = plural(len({it.path.partition("/")[0] for it in files if "/" in it.path}), "robot")
+    note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written")
     return DONE
 
 

@@ -7,53 +7,46 @@ from collections.abc import Sequence
 from math import inf
 
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.output import print_lines, say
+from multibot_rewrite.cli.output import note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
+from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import WORDS, follow
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import check, doubts
-from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
-from multibot_rewrite.graph.watching import Verdict, final, judge
+from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import read_file
 
-MORE = """\
-examples:
-  multibot check plan.yaml                         the graph that runs now
-  multibot check plan.yaml --watch                 show every change until Ctrl-C
-  multibot check plan.yaml --snapshot graph.json   one that was written before; needs no ROS
-exit codes: 0 as planned; 1 something is wrong; 2 wrong use or unreadable input; 3 inconclusive: the
-view may be incomplete; 4 rclpy or its RMW is missing or does not start. With --watch it is the
-worst that was seen; what was not there yet before everything was does not count
-"""
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
 
 
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    parser.add_argument("plan", metavar="PLAN", help="what multibot plan wrote, or a fleet file")
-    seen = parser.add_mutually_exclusive_group()
-    seen.add_argument("--snapshot", metavar="FILE", help="what multibot snapshot wrote")
-    seen.add_argument(
-        "--watch", action="store_true", help="show every change until Ctrl-C or --timeout"
-    )
-    live.options(parser)
-    pictures.options(parser)
-
-
 def run(options: argparse.Namespace) -> int:
-    """Compare, print a line for each finding, sum up; returns the exit code."""
-    pictures.check(options)
+    """Compare, report, sum up; returns the exit code."""
+    _check_use(options)
     plan = _plan(options.plan)
     try:
-        return _watch(options, plan) if options.watch else _check(options, plan)
+        return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+
+
+def _check_use(options: argparse.Namespace) -> None:
+    if options.watch and options.snapshot:
+        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    if options.watch and (options.select or options.ignore or options.format != TEXT):
+        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
 
 
 def _plan(path: str) -> Expectation:
@@ -70,24 +63,37 @@ def _plan(path: str) -> Expectation:
     return expected(with_start_pose_nodes(plan_fleet(read_fleet(path))))
 
 
-def _check(options: argparse.Namespace, plan: Expectation) -> int:
-    return conclude(options, plan, _graph(options))
+def conclude(
+    options: argparse.Namespace,
+    plan: Expectation,
+    graph: Snapshot,
+    before: Sequence[Finding] = (),
+) -> int:
+    """Compare, report the findings, draw what is asked for; the exit code.
 
-
-def conclude(options: argparse.Namespace, plan: Expectation, graph: Snapshot) -> int:
-    """Compare, print a line for each finding, draw what is asked for; the exit code."""
+    ``before`` are findings from before there was a graph.
+    """
     found = check(plan, graph)
-    print_lines(found)
-    for caveat in doubts(graph):
+    findings = [*before, *chosen(options, found)]
+    failed = report_first(options, findings, About([plan_name(options)], robot_words(plan)))
+    caveats = doubts(graph)
+    for caveat in caveats:
         say(f"incomplete: {caveat.message}", PROGRAM)
-    pictures.deliver(options, plan, graph, found)
-    return _sum_up(plan, found, judge(found, graph))
+    codes = {it.code for it in findings}
+    pictures.deliver(options, plan, graph, [it for it in found if it.code in codes])
+    inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    return _sum_up(options, plan, len(findings), Verdict.WRONG if failed else inconclusive)
 
 
-def _sum_up(plan: Expectation, found: Sequence[Finding], verdict: Verdict) -> int:
-    robots, findings = len(plan.robots), len(found)
-    counted = f"{robots} robot{'s' * (robots != 1)}, {findings} finding{'s' * (findings != 1)}"
-    say(f"{counted}: {WORDS[verdict]}", PROGRAM)
+def plan_name(options: argparse.Namespace) -> str:
+    """The file that the plan comes from."""
+    given = vars(options)
+    return str(given.get("plan") or given["input"])
+
+
+def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdict: Verdict) -> int:
+    counted = f"{plural(len(plan.robots), 'robot')}, {plural(findings, 'finding')}"
+    note(options, f"{counted}: {WORDS[verdict]}")
     return CODES[verdict]
 
 
@@ -101,7 +107,10 @@ def _graph(options: argparse.Namespace) -> Snapshot:
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     last = follow(plan, watch(Request(options.timeout or inf), live.environ(options.domain)))
     if last is None:
-        say("ended before anything was seen", PROGRAM)
+        note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
+    if options.output:
+        findings = list(last.findings)
+        report_first(options, findings, About([options.plan], robot_words(plan)))
     pictures.deliver(options, plan, last.graph, last.findings)
-    return _sum_up(plan, last.findings, final(last))
+    return _sum_up(options, plan, len(last.findings), final(last))

@@ -7,13 +7,15 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import print_bytes, say, watched
-from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED, UNUSABLE
-from multibot_rewrite.cli.tables import Grid, clip, json_bytes, print_report
+from multibot_rewrite.cli.output import deliver, say, watched
+from multibot_rewrite.cli.parser import UNUSABLE
+from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
+from multibot_rewrite.cli.tables import JSON, Grid, clip, deliver_report, json_bytes
+from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import InputError
+from multibot_rewrite.plural import plural
 from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
@@ -35,11 +37,6 @@ from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
 SUFFIXES = (".urdf", ".sdf")
-MORE = """\
-Folders are searched for *.urdf and *.sdf; a xacro file is read where it is named itself.
-exit codes: 0 done; 1 less is known than asked for, or (with --explained) a mention is unexplained;
-2 wrong use, or nothing could be read
-"""
 
 
 class Unreadable(NamedTuple):
@@ -57,60 +54,25 @@ class Report(NamedTuple):
     exact: Explained
 
 
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    parser.add_argument("paths", nargs="+", metavar="PATH", help="files and folders")
-    parser.add_argument(
-        "--json", metavar="FILE", help="write all of it as JSON (- is standard output)"
-    )
-    parser.add_argument(
-        "--vocabulary", action="append", default=[], metavar="FILE", help="more vocabulary"
-    )
-    parser.add_argument(
-        "--explained", metavar="FILE", help="mentions that are right: tag path, tab, reason a line"
-    )
-    parser.add_argument(
-        "--top", type=_count, default=20, metavar="N", help="rows a table (default: 20; 0 is all)"
-    )
-    parser.add_argument(
-        "--min-known", type=_percent, metavar="PERCENT", help="fail where fewer plugins are known"
-    )
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal():
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number of rows, give 0 or more")
-    return int(text)
-
-
-def _percent(text: str) -> float:
-    try:
-        value = float(text.removesuffix("%"))
-    except ValueError:
-        value = math.nan
-    if not 0 <= value <= 100:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a percentage, give 0 to 100")
-    return value
-
-
 def run(options: argparse.Namespace) -> int:
     """Read, add up, report; returns the exit code."""
-    paths = find_files(options.paths, SUFFIXES)
+    paths = find_files(plain_words(options), SUFFIXES)
+    check_xacro(options, paths)
     reasons = _reasons(options.explained)
-    if options.json not in (None, "-"):
+    if options.output:
         check_target(
-            options.json, [*paths, *options.vocabulary, *filter(None, [options.explained])]
+            options.output, [*paths, *options.vocabulary, *filter(None, [options.explained])]
         )
     tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
     unreadable: list[Unreadable] = []
-    total = add(_surveys(watched(paths, len(paths), "reading"), tree, unreadable))
+    arguments = xacro_args(options)
+    found = _surveys(watched(paths, len(paths), "reading"), tree, arguments, unreadable)
+    total = add(found)
     report = Report(total, unreadable, explain(total, reasons))
-    if options.json == "-":
-        print_bytes(json_bytes(as_json(report)))
+    if options.form == JSON:
+        deliver(options, json_bytes(as_json(report)))
     else:
-        write_all([(options.json, json_bytes(as_json(report)))] if options.json else [])
-        print_report(_parts(report, options.top or None))
+        deliver_report(options, _parts(report, options.top or None))
     return _verdict(report, options)
 
 
@@ -124,11 +86,13 @@ def _reasons(path: str | None) -> list[Reason]:
     return read_reasons(text, path)
 
 
-def _surveys(paths: Iterable[str], tree: Tree, unreadable: list[Unreadable]) -> Iterator[Survey]:
+def _surveys(
+    paths: Iterable[str], tree: Tree, arguments: dict[str, str], unreadable: list[Unreadable]
+) -> Iterator[Survey]:
     """One survey a file; what cannot be read is put into ``unreadable``."""
     for path in paths:
         try:
-            data, name = read_source(path, {})
+            data, name = read_source(path, arguments if path.endswith(".xacro") else {})
             yield survey(collect(read_document(data, name), tree), tree)
         except InputError as error:
             unreadable.append(Unreadable(path, str(error)))
@@ -147,7 +111,7 @@ def _verdict(report: Report, options: argparse.Namespace) -> int:
         failed = True
     left = sum(tally.times for _, tally in report.exact.left)
     if options.explained is not None and left:
-        say(f"{left} exact mentions are not explained in {options.explained}", PROGRAM)
+        say(f"{plural(left, 'exact mention')} not explained in {options.explained}", PROGRAM)
         failed = True
     return STOPPED if failed else DONE
 
@@ -158,7 +122,7 @@ def _percentage(count: int, known: int) -> float:
 
 
 def as_json(report: Report) -> dict[str, object]:
-    """The report as ``--json`` writes it; docs/coverage.md describes it."""
+    """The report as ``--form json`` writes it; docs/coverage.md describes it."""
     exact = report.exact
     return {
         "files": {
@@ -217,18 +181,18 @@ def _inside(report: Report) -> list[tuple[MentionPlace, Tally]]:
 def _parts(report: Report, top: int | None) -> Iterator[str | Grid]:
     """What is printed; ``top`` is how many rows a table has at most."""
     total, exact = report.total, report.exact
-    yield f"{total.files} files read, {len(report.unreadable)} cannot be read"
+    yield f"{plural(total.files, 'file')} read, {len(report.unreadable)} cannot be read"
     yield from (f"  {item.reason}" for item in report.unreadable)
     yield from _loaded_parts(total, "plugin", "plugins", top)
     yield from _loaded_parts(total, "hardware", "hardware classes", top)
     claims = sorted(total.claims.items(), key=lambda pair: (-pair[1], pair[0]))
-    yield f"\n{sum(total.claims.values())} values claimed"
+    yield f"\n{plural(sum(total.claims.values()), 'value')} claimed"
     if claims:
         yield "  " + ", ".join(f"{kind} {count}" for kind, count in claims)
     yield from _mention_parts("unclaimed and exactly a link or joint", ranked(exact.left), top)
     yield from _mention_parts("unclaimed with a link or joint inside", _inside(report), top)
     if exact.explained:
-        yield f"\n{_times(exact.explained)} exact mentions explained"
+        yield f"\n{plural(_times(exact.explained), 'exact mention')} explained"
         rows = [
             (str(t.times), str(t.files), m.path, reason.text) for m, t, reason in exact.explained
         ]
@@ -266,4 +230,4 @@ def _times(rows: Iterable[tuple[MentionPlace, Tally] | tuple[MentionPlace, Tally
 
 def _rest(rows: Sequence[object], top: int | None) -> Iterator[str]:
     if top is not None and len(rows) > top:
-        yield f"  and {len(rows) - top} more rows; --top 0 shows all"
+        yield f"  and {plural(len(rows) - top, 'more row')}; --top 0 shows all"

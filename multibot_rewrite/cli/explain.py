@@ -1,66 +1,51 @@
-"""``urdf-postfix --explain FILE:LINE``: which rewriter claims a value, and why."""
+"""``multibot explain CODE``, and ``--explain`` of other commands: what a finding is, why, the fix."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator
+from collections.abc import Mapping, Sequence
 
+from multibot_rewrite.catalogue import rules
+from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
-from multibot_rewrite.cli.usage import policy, xacro_args
-from multibot_rewrite.config import configured_vocabulary
-from multibot_rewrite.library import explain
+from multibot_rewrite.findings.codes import find_rules, no_rule
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.rule_docs import explained, listed
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.reports.explain import Explanation
 
-EXAMPLE_ROBOT = "robot1"
+LISTING = "multibot explain"
 
 
 def run(options: argparse.Namespace) -> int:
-    """Print an explanation of every value on the line."""
-    path, line = _place(options.explain)
-    # The file is in the option: what stands first is a robot or a xacro argument.
-    options.words[:0] = [options.input] if options.input else []
-    robot = next((word for word in options.words if ":=" not in word), EXAMPLE_ROBOT)
-    found = explain(
-        path,
-        line,
-        robot,
-        urdf=options.urdf,
-        xacro_args=xacro_args(options),
-        vocabulary=[*configured_vocabulary(path), *options.vocabulary],
-        **policy(options),
-    )
-    if not found:
-        raise UsageError(f"{options.explain}: no value starts on this line")
-    for item in found:
-        print("\n".join([f"{path}:{item.line}:{item.column}: {item.path}", *_lines(item, robot)]))
+    """Explain the codes that are given, or list all; returns the exit code."""
+    codes = [code for word in options.codes for code in word.split(",")]
+    return _explain(options, codes, LISTING) if codes else list_rules(options, rules())
+
+
+def of_option(options: argparse.Namespace) -> int:
+    """The same for the codes of an option ``--explain``."""
+    word = options.explain
+    if ":" in word:
+        raise UsageError(f"--explain {word}: give a code; for a line: urdf-postfix --why {word}")
+    return _explain(options, word.split(","), "--explain")
+
+
+def _explain(options: argparse.Namespace, codes: Sequence[str], where: str) -> int:
+    known = rules()
+    found = {it.code: it for code in codes for it in _asked(code, known, where)}
+    deliver(options, "\n".join(map(explained, found.values())).encode())
     return DONE
 
 
-def _place(text: str) -> tuple[str, int]:
-    path, colon, line = text.rpartition(":")
-    if not colon or not line.isdigit() or not path:
-        raise UsageError(f"--explain {text}: write FILE:LINE, for example rover.urdf:34")
-    return path, int(line)
+def _asked(word: str, known: Mapping[str, Rule], where: str) -> list[Rule]:
+    found = find_rules(word, known) if word else []
+    if not found:
+        raise UsageError(f"{where}: {no_rule(word, known, LISTING)}")
+    return found
 
 
-def _lines(item: Explanation, robot: str) -> Iterator[str]:
-    """The facts about one value, indented below its place."""
-    if item.inserted:
-        yield f"  [{item.value}] gets for {robot}: {item.reason}"
-        yield from (f"    {element}" for element in item.inserted)
-        return
-    site = item.site
-    yield f"  value: {item.value!r}"
-    if site is None:
-        yield f"  claimed by no rewriter: {item.reason}"
-        return
-    by = f"[{site.section}] {site.file}:{site.line}"
-    if site.role == "keep":
-        yield f"  kept by {by}: {item.reason}"
-        return
-    form = "" if site.form == "whole" else f" ({site.form})"
-    note = f"; {site.note}" if site.note else ""
-    yield f"  claimed by {by}: {site.path} {site.role} {' '.join(site.kinds)}{form}{note}"
-    yield f"  is: {item.reason}"
-    yield f"  for {robot}: {item.new!r}" if item.new != item.value else "  stays as it is"
+def list_rules(options: argparse.Namespace, known: Mapping[str, Rule]) -> int:
+    """A line for each rule: code, level, name, what it finds."""
+    rows = "".join(f"{' '.join(row)}\n" for row in listed(known.values()))
+    deliver(options, rows.encode())
+    return DONE

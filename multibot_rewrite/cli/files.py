@@ -10,19 +10,18 @@ from contextlib import contextmanager, suppress
 from multibot_rewrite.model import UsageError
 
 
-def write_all(items: Iterable[tuple[str, bytes]], folders: bool = False) -> None:
+def write_all(items: Iterable[tuple[str, bytes]]) -> None:
     """Write every (path, data) beside its target, then rename; on an error everything is as it was.
 
-    ``folders`` makes those that are missing. An existing file keeps its mode bits, a link stays a
-    link. Raises UsageError with path, cause and remedy.
+    Missing folders are made. An existing file keeps its mode bits, a link stays a link. Raises
+    UsageError with path, cause and remedy.
     """
     staged: dict[str, str] = {}
     made: list[str] = []
     try:
         for path, data in items:
             with explained(path):
-                if folders:
-                    make_folders(os.path.dirname(path), made)
+                make_folders(os.path.dirname(path), made)
                 _stage(path, data, staged)
         _commit(staged)
         made.clear()
@@ -124,11 +123,17 @@ def explained(path: str) -> Iterator[None]:
 
 
 def _reason(error: OSError, path: str) -> str:
-    folder = os.path.dirname(path) or "."
-    if not os.path.exists(folder):
-        return f"the folder {folder} does not exist, create it first"
-    if not os.path.isdir(folder):
-        return f"{folder} is a file, not a folder; choose another output"
+    above = existing_folder(path)
+    if not os.path.isdir(above):
+        return f"{above} is a file, not a folder; choose another output"
     if os.path.isdir(path):
         return "it is a folder, name a file in it"
     return f"{error.strerror or error}, choose another output"
+
+
+def existing_folder(path: str) -> str:
+    """The nearest of the folders above ``path`` that is there; it may turn out to be a file."""
+    above = os.path.dirname(path) or "."
+    while not os.path.lexists(above):
+        above = os.path.dirname(above) or "."
+    return above

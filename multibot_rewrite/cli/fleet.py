@@ -1,59 +1,50 @@
-"""What the commands about a fleet have in common: its options, its table, its problems."""
+"""What the commands about a fleet have in common: the robots, their table, its findings."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import print_bytes, say
-from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
-from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.findings import from_table
+from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
+from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
-from multibot_rewrite.model import ERROR, UsageError
-from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS, SHARED_TOPICS, Policy
-from multibot_rewrite.remap.records import Problem
+from multibot_rewrite.model import UsageError
 
 FLEET_FILES = (".yaml", ".yml")
-USUAL = {"layout": DEFAULT_LAYOUT, "affix": "postfix", "shared_topics": ",".join(SHARED_TOPICS)}
+# What a fleet file says itself, and how the option is written.
+OF_FLEET_FILE = {
+    "words": "ROBOT",
+    "robots": "--robots",
+    "stack": "--stack",
+    "nodes": "--nodes",
+    "layout": "--layout",
+    "affix": "--affix",
+    "topics": "--topics",
+    "separator": "--separator",
+    "shared_frames": "--shared-frames",
+    "shared_topics": "--shared-topics",
+    "groups": "--groups",
+    "vocabulary": "--vocabulary",
+}
 
 
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options that say which robots, nodes and layout."""
-    names = ", ".join(f"{layout.name} ({layout.short})" for layout in LAYOUTS)
-    shared = ",".join(SHARED_TOPICS)
-    help_ = "the robot's description, not rewritten; or a fleet file (*.yaml), which says the rest"
-    parser.add_argument("input", metavar="INPUT", help=help_)
-    parser.add_argument(
-        "robots", nargs="*", metavar="ROBOT", help="names of the robots; NAME:=VALUE is for xacro"
-    )
-    parser.add_argument(
-        "--stack", action="append", default=[], metavar="NAME", help="nodes that every robot runs"
-    )
-    parser.add_argument("--nodes", metavar="FILE", help="nodes and stacks of your own, as YAML")
-    parser.add_argument("--layout", default=DEFAULT_LAYOUT, metavar="NAME", help=f"one of {names}")
-    parser.add_argument("--affix", default="postfix", metavar="SIDE", help="postfix or prefix")
-    parser.add_argument("--topics", metavar="HOW", help="postfix, prefix or namespace")
-    parser.add_argument("-o", "--output", metavar="FILE", help="write it there")
-    parser.add_argument(
-        "--shared-topics", default=shared, metavar="A,B", help="default: %(default)s"
-    )
+def check_use(options: argparse.Namespace, printed: bool) -> None:
+    """Raise UsageError for what cannot be meant; ``printed`` is whether the result is."""
+    check_report(options, printed)
+    if options.output:
+        check_target(options.output, [options.input])
+        check_folder(options.output)
 
 
 def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
-    """Make the fleet that the options describe and say what is wrong with its table.
-
-    ``also`` are nodes that every robot runs, too.
-    """
-    if options.output:
-        check_target(options.output, [options.input], "--output")
+    """Make the fleet that the options describe; ``also`` are nodes that every robot runs, too."""
     if options.input.endswith(FLEET_FILES):
-        made = _from_file(options, also)
-    else:
-        made = _from_words(options, also)
-    _tell(made.table.problems)
-    return made
+        return _from_file(options, also)
+    return _from_words(options, also)
 
 
 def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
@@ -61,53 +52,44 @@ def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    given = [name for name in ("robots", "stack", "nodes", "topics") if getattr(options, name)]
-    given += [name for name, usual in USUAL.items() if getattr(options, name) != usual]
+    given = given_options(options, OF_FLEET_FILE)
     if given:
-        raise UsageError(f"{options.input} says which {given[0]} there are: leave that out")
+        raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
     return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also))
 
 
 def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
-    robots = [word for word in options.robots if ":=" not in word]
-    if not robots:
+    names = robots(options)
+    if not names:
         raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
-    arguments = [word for word in options.robots if ":=" in word]
+    check_xacro(options, [options.input])
     return make_fleet(
         options.input,
-        robots,
+        names,
         [*options.stack, *also],
-        _policy(options),
+        policy(options),
         nodes=options.nodes,
-        vocabulary=configured_vocabulary(options.input),
-        xacro_args=dict(word.split(":=", 1) for word in arguments),
+        vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
+        xacro_args=xacro_args(options),
     )
 
 
-def _policy(options: argparse.Namespace) -> Policy:
-    return {
-        "layout": options.layout,
-        "affix": options.affix,
-        "topics": options.topics,
-        "shared_topics": options.shared_topics.split(","),
-    }
+def about(options: argparse.Namespace, made: Fleet) -> About:
+    """What the findings of a fleet are about."""
+    return About([options.input], words_of(made))
 
 
-def deliver(options: argparse.Namespace, text: str) -> None:
-    """Write what was made where the options say."""
-    if options.output:
-        write_all([(options.output, text.encode())])
-    else:
-        print_bytes(text.encode())
+def words_of(made: Fleet) -> dict[str, str]:
+    """The words that stand for each robot of a fleet."""
+    prefixes = {tag: robot for robot, tag in made.tags.items()}
+    return {**{it: it for it in made.inventories}, **prefixes}
 
 
-def verdict(made: Fleet) -> int:
-    """The exit code: did the table have an error?"""
-    return STOPPED if any(problem.level == ERROR for problem in made.table.problems) else DONE
+def findings(options: argparse.Namespace, made: Fleet) -> list[Finding]:
+    """What is wrong with the table, as far as it is selected."""
+    return chosen(options, map(from_table, made.table.problems))
 
 
-def _tell(problems: Iterable[Problem]) -> None:
-    for problem in problems:
-        where = f"{problem.robot}: {problem.node}" if problem.robot else problem.node
-        hint = f" ({problem.hint})" if problem.hint else ""
-        say(f"{where}: {problem.level}: {problem.code} {problem.message}{hint}", PROGRAM)
+def report_table(options: argparse.Namespace, made: Fleet) -> bool:
+    """Report what is wrong with the table; does it fail the command?"""
+    return report_beside(options, findings(options, made), about(options, made))

@@ -230,8 +230,8 @@ def _one_by_one(
 ) -> None:
     path, data = note
     full = os.path.join(folder, path)
-    write_all([(full, data)], folders=True)
-    write_all(((os.path.join(folder, it), data) for it, data in write.items()), folders=True)
+    write_all([(full, data)])
+    write_all(((os.path.join(folder, it), data) for it, data in write.items()))
     for it in (*remove, path):
         with suppress(FileNotFoundError), explained(os.path.join(folder, it)):
             os.unlink(os.path.join(folder, it))

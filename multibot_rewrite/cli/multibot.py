@@ -1,68 +1,77 @@
-"""``multibot``: the commands around the rewrite, one module of ``cli`` each.
-
-A module has ``options(parser)``, which declares its options, and ``run(options)``, which gives the
-exit code. Only the one that is called is imported: all of them cost more than most runs.
-"""
+"""``multibot``: the commands around the rewrite. Only the one that is called is imported."""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from functools import partial
-from importlib import import_module
-from types import MappingProxyType
-from typing import Any
 
-from multibot_rewrite.cli.process import PROGRAM, Parser, guarded
+from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.output import print_bytes
+from multibot_rewrite.cli.parser import painted
+from multibot_rewrite.cli.process import DONE, PROGRAM, guarded, start
+from multibot_rewrite.cli.terminal import AUTO, is_coloured
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.version import __version__
 
-COMMANDS = MappingProxyType(
-    {
-        "build": "everything a fleet needs, from its fleet file",
-        "check": "is the running system what was planned?",
-        "coverage": "how much of a set of descriptions is known, and what is not",
-        "learn": "nodes and stacks for remap and plan, from nodes that are running now",
-        "plan": "what the graph of a fleet is to look like",
-        "rehearse": "try a fleet's plan on a real graph, without robot or simulator",
-        "remap": "what every node of every robot must be remapped to",
-        "snapshot": "what runs in the ROS graph now: nodes, endpoints, tf, environment",
-        "vocabulary": "what is known of a plugin, hardware class or element",
-    }
-)
+HELP, VERSION = ("-h", "--help"), ("-V", "--version")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit code."""
-    given = sys.argv[1:] if arguments is None else arguments
-    return guarded(PROGRAM, partial(_run, given), own_process=arguments is None)
+    words = sys.argv[1:] if arguments is None else arguments
+    return guarded(PROGRAM, partial(_run, words), own_process=arguments is None)
 
 
-def _run(arguments: Sequence[str]) -> int:
-    name = next((word for word in arguments if word in COMMANDS), "")
-    module: Any = import_module(f"{__package__}.{name}") if name else None
-    options = parser(name, module).parse_args(arguments)
-    code: int = module.run(options)
-    return code
+def _run(words: Sequence[str]) -> int:
+    if not words:
+        raise UsageError(f"no COMMAND given, use one of {', '.join(COMMANDS)}")
+    first, *others = words
+    if first in HELP:
+        print_bytes(overview(AUTO).encode())
+        return DONE
+    if first in VERSION:
+        print_bytes(f"{PROGRAM} {__version__}\n".encode())
+        return DONE
+    command = find_command(first)
+    return start(command, others, f"{PROGRAM} {command.name}")
 
 
-def parser(called: str, module: Any) -> argparse.ArgumentParser:
-    """The command line, with the options of the command that is ``called``; what it cannot read
-    ends the process with one line."""
-    result = Parser(prog=PROGRAM, description="Commands around urdf-postfix.", allow_abbrev=False)
-    result.add_argument("--version", action="version", version=f"%(prog)s {__version__}")
-    below = result.add_subparsers(metavar="COMMAND", dest="command", required=True)
-    for name, about in COMMANDS.items():
-        one = below.add_parser(
-            name,
-            help=about,
-            description=about,
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-            allow_abbrev=False,
+def find_command(word: str) -> Command:
+    """The command of that name; UsageError with the nearest one."""
+    if word in COMMANDS:
+        return COMMANDS[word]
+    if word.startswith("-"):
+        raise UsageError(f"{word}: write the command first, for example: multibot check {word}")
+    near = did_you_mean_one_of(word, COMMANDS)
+    raise UsageError(f"unknown command {word!r}; {near or 'see multibot --help'}")
+
+
+def overview(colour: str) -> str:
+    """The help of ``multibot`` itself."""
+    rows = [f"  {it.name:<12}{it.about}" for it in COMMANDS.values()]
+    text = "\n".join(
+        (
+            "usage: multibot COMMAND [options]",
+            "",
+            "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet.",
+            "",
+            "examples:",
+            "  multibot build fleet.yaml -o out/",
+            "  multibot remap rover.urdf robot1 robot2 --stack nav2",
+            "  multibot explain MG102",
+            "",
+            "commands:",
+            *rows,
+            "",
+            "multibot help COMMAND shows the options of each; urdf-postfix and urdf-lint are",
+            "commands of their own.",
+            "",
         )
-        if name == called:
-            module.options(one)
-    return result
+    )
+    return painted(text, is_coloured(colour, sys.stdout))
 
 
 if __name__ == "__main__":

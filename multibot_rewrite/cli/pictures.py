@@ -1,11 +1,11 @@
-"""Pictures of a checked graph as options of a command, and the files that are asked for."""
+"""Pictures of a checked graph: the files that the options ask for."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterator, Sequence
 
-from multibot_rewrite.cli.files import write_all
+from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
@@ -16,19 +16,13 @@ from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.model import UsageError
 
-PICTURES: dict[str, tuple[str, Callable[[Scene], bytes]]] = {
-    "report": ("a page to look at, one HTML file", to_html),
-    "mermaid": ("a flowchart for a page of Markdown", to_mermaid),
-    "dot": ("a graph for Graphviz", to_dot),
+DRAWN: dict[str, Callable[[Scene], bytes]] = {
+    "report": to_html,
+    "mermaid": to_mermaid,
+    "dot": to_dot,
 }
 # What a command may have read.
 _INPUTS = ("plan", "snapshot", "input")
-
-
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the pictures."""
-    for name, (about, _) in PICTURES.items():
-        parser.add_argument(f"--{name}", metavar="FILE", help=f"write {about}")
 
 
 def check(options: argparse.Namespace) -> None:
@@ -43,19 +37,19 @@ def deliver(
     wanted = list(_wanted(options))
     if wanted:
         scene = make_scene(plan, graph, found)
-        write_all([(target, PICTURES[name][1](scene)) for name, target in wanted])
+        write_files(options, [(target, DRAWN[name](scene)) for name, target in wanted])
 
 
 def _wanted(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
     """Which pictures go where."""
     given = vars(options)
     inputs = [given[name] for name in _INPUTS if given.get(name)]
-    for name in PICTURES:
+    for name in DRAWN:
         target = given.get(name)
         if target is None:
             continue
-        if target in ("", "-"):
-            raise UsageError(f"--{name} {target!r} is no file; standard output has the findings")
+        if target == STANDARD:
+            raise UsageError(f"--{name} {target} is not a file; standard output has the findings")
         check_target(target, inputs, f"--{name}")
         check_folder(target)
         yield name, target

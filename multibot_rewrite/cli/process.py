@@ -2,35 +2,64 @@
 
 from __future__ import annotations
 
+import argparse
 import io
 import signal
 import sys
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Sequence
+from importlib import import_module
 
-from multibot_rewrite.cli.output import print_findings, say
-from multibot_rewrite.cli.usage import UNUSABLE, Parser
+from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.output import detail, say
+from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
 from multibot_rewrite.model import MultibotError, ProofError, RewriteRefused
-
-__all__ = ["DONE", "INTERRUPTED", "PROGRAM", "STOPPED", "UNUSABLE", "Parser", "guarded"]
 
 DONE, STOPPED, INTERRUPTED = 0, 1, 130
 PROGRAM = "multibot"
 
 
-def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
-    """The exit code of ``run``; what it raises is told in the name of ``program``.
+def start(command: Command, words: Sequence[str], prog: str = "") -> int:
+    """Read the words of a command and run it; returns the exit code."""
+    begun = time.monotonic()
+    options = parsed(make_parser(command, prog), words)
+    try:
+        code: int = import_module(f"{__package__}.{command.module}").run(options)
+    except RewriteRefused as error:
+        code = _refused(options, error)
+    detail(options, f"{time.monotonic() - begun:.1f} s")
+    return code
 
-    ``own_process`` tells that nothing else runs here: SIGTERM then ends it as Ctrl-C does.
+
+def _refused(options: argparse.Namespace, error: RewriteRefused) -> int:
+    """Report why a rewrite is not possible, which no ``--ignore`` changes."""
+    from multibot_rewrite.cli.report import (
+        NO_ROBOTS,
+        About,
+        by_themselves,
+        report_beside,
+        report_first,
+    )
+    from multibot_rewrite.cli.usage import robots
+
+    given = vars(options)
+    read = given.get("input") or given.get("fleet") or given.get("plan") or ""
+    about = About([read], by_themselves(robots(options)) if "robots" in given else NO_ROBOTS)
+    (report_first if options.findings_first else report_beside)(options, error.findings, about)
+    return STOPPED
+
+
+def guarded(program: str, run: Callable[[], int], own_process: bool) -> int:
+    """The exit code of ``run``; its errors are reported in the name of ``program``.
+
+    With ``own_process`` SIGTERM ends it as Ctrl-C does: nothing else runs in this process.
     """
-    # Closed by the caller: nobody wants to hear anything.
+    # Closed by the caller: messages go nowhere.
     sys.stderr = sys.stderr or io.StringIO()
     if own_process:
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         return run()
-    except RewriteRefused as error:
-        print_findings(error.findings)
-        return STOPPED
     except ProofError as error:
         fault = "the proof failed, nothing was written; this is a fault of the tool"
         say(f"{fault}: {error}", program)

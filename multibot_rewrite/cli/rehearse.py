@@ -10,10 +10,9 @@ from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.cli import fleet, live, pictures
 from multibot_rewrite.cli.check import conclude
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import say
-from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.cli.walk import check_folder
+from multibot_rewrite.cli.output import note, say, write_files
+from multibot_rewrite.cli.process import PROGRAM
+from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.graph.live.child import RUN_STUBS, RosUnusable, observe, running
 from multibot_rewrite.graph.live.request import Request, to_text
@@ -27,53 +26,38 @@ from multibot_rewrite.graph.rehearsal import (
 from multibot_rewrite.graph.snapshot import Snapshot, to_json
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, with_odometry
 from multibot_rewrite.graph.wording import SEVERAL, shorten
+from multibot_rewrite.plural import plural
 
-MORE = """\
-Starts the nodes of each robot's plugins and stack with the names of their code and hands rcl the
-rules of multibot remap; then looks at the graph as multibot check does. A type that is not installed
-has a stand-in. robot_state_publisher is added where no stack has it. -o writes the snapshot.
-examples:
-  multibot rehearse rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot
-  multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html
-  multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules    what would happen otherwise
-exit codes: 0 as planned; 1 something leaks or is missing; 2 wrong use or unreadable input; 3
-inconclusive; 4 rclpy or its RMW is missing or does not start
-"""
 # Below the ports that a system gives away by itself.
 _DOMAINS = 100
 
 
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    fleet.options(parser)
-    live.options(parser)
-    pictures.options(parser)
-    parser.add_argument(
-        "--without-rules", action="store_true", help="give rcl no rules but namespace and node name"
-    )
-
-
 def run(options: argparse.Namespace) -> int:
-    """Play, look, compare, sum up; returns the exit code."""
-    pictures.check(options)
-    if options.output:
-        check_folder(options.output)
+    """Start the stubs, look, compare, sum up; returns the exit code."""
+    _check_use(options)
     made = fleet.build(options, also=[STATE_PUBLISHER])
-    nodes = list(stub_nodes(made.table, _edges(made), not options.without_rules))
+    table = fleet.findings(options, made)
+    nodes = list(stub_nodes(made.table, _edges(options, made), not options.without_rules))
     environ = stage(options.domain)
     try:
         with _running(split_over_processes(nodes), environ) as replaced:
-            say(f"{len(nodes)} nodes in domain {environ['ROS_DOMAIN_ID']}", PROGRAM)
+            note(options, f"{plural(len(nodes), 'node')} in domain {environ['ROS_DOMAIN_ID']}")
             graph = _look(Request(options.timeout or live.LOOK_SECONDS, substitutes=True), environ)
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
-    if options.output:
-        write_all([(options.output, to_json(graph))])
-    _report_substitutes(replaced)
-    code = conclude(options, with_substitutes(expected(made), replaced), graph)
-    return code if code != DONE else fleet.verdict(made)
+    if options.save_snapshot:
+        write_files(options, [(options.save_snapshot, to_json(graph))])
+    _note_substitutes(options, replaced)
+    return conclude(options, with_substitutes(expected(made), replaced), graph, table)
+
+
+def _check_use(options: argparse.Namespace) -> None:
+    fleet.check_use(options, printed=False)
+    pictures.check(options)
+    if options.save_snapshot:
+        check_target(options.save_snapshot, [options.input], "--save-snapshot")
+        check_folder(options.save_snapshot)
 
 
 def _look(request: Request, environ: dict[str, str]) -> Snapshot:
@@ -82,13 +66,13 @@ def _look(request: Request, environ: dict[str, str]) -> Snapshot:
     return graph if graph.nodes else observe(request, environ)
 
 
-def _edges(made: Fleet) -> Edges:
+def _edges(options: argparse.Namespace, made: Fleet) -> Edges:
     """What is sent, with the odometry of a driver that no stack names."""
     edges = made.edges
     for robot in made.inventories:
         edges, added = with_odometry(edges, robot, made.naming)
         if added:
-            say(f"note: no node of {robot} is known to send {added}; it is sent for it", PROGRAM)
+            note(options, f"note: no known node of {robot} sends {added}; it is sent in its place")
     return edges
 
 
@@ -116,9 +100,9 @@ def _running(processes: list[list[StubNode]], environ: dict[str, str]) -> Iterat
         yield replaced
 
 
-def _report_substitutes(replaced: dict[str, str]) -> None:
+def _note_substitutes(options: argparse.Namespace, replaced: dict[str, str]) -> None:
     if replaced:
         what = "type is" if len(replaced) == 1 else "types are"
         types = shorten(sorted(replaced), SEVERAL)
         text = f"{len(replaced)} {what} not installed here and replaced by others: {types}"
-        say(f"note: {text}; this does not change the names", PROGRAM)
+        note(options, f"note: {text}; this does not change the names")

@@ -6,51 +6,36 @@ import argparse
 from collections.abc import Iterator
 
 from multibot_rewrite.cli import fleet
-from multibot_rewrite.cli.output import say
-from multibot_rewrite.cli.process import PROGRAM
-from multibot_rewrite.cli.tables import Grid, print_report
+from multibot_rewrite.cli.output import deliver, goes_to_file, note
+from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.remap.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table_formats import EVERY_ROBOT, FORMS
 
-BRIDGE = "bridge"
-MORE = """\
-examples:
-  multibot remap rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot
-  multibot remap rover.urdf robot1 --stack nav2 --stack slam_toolbox --format ros-args
-  multibot remap rover.urdf robot1 robot2 --stack teleop --format launch -o remaps.py
-exit codes: 0 done; 1 a rule is wrong, or two robots would share a name; 2 wrong use or unreadable input
-"""
-
-
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    fleet.options(parser)
-    parser.add_argument(
-        "--format", metavar="FORM", choices=("table", *FORMS, BRIDGE), default="table",
-        help=f"table (default), {', '.join(FORMS)}, or {BRIDGE} (ros_gz_bridge)",
-    )  # fmt: skip
+TABLE, BRIDGE = "table", "bridge"
 
 
 def run(options: argparse.Namespace) -> int:
-    """Build the table, say what is wrong with it, print it."""
+    """Build the table, report what is wrong with it, write it; returns the exit code."""
+    fleet.check_use(options, printed=not goes_to_file(options))
     made = fleet.build(options)
-    if options.format == "table":
-        print_report(_parts(made.table))
-    elif options.format == BRIDGE:
-        fleet.deliver(options, _bridge(made))
+    failed = fleet.report_table(options, made)
+    if options.form == TABLE:
+        deliver_report(options, _parts(made.table))
+    elif options.form == BRIDGE:
+        deliver(options, _bridge(options, made).encode())
     else:
-        fleet.deliver(options, FORMS[options.format](made.table))
-    return fleet.verdict(made)
+        deliver(options, FORMS[options.form](made.table).encode())
+    return STOPPED if failed else DONE
 
 
-def _bridge(made: Fleet) -> str:
+def _bridge(options: argparse.Namespace, made: Fleet) -> str:
     carried, left = bridged_topics(made.inventories, made.naming)
     for item in left:
-        message = f"line {item.line}: {item.what} has no topic, its default hangs on the world"
-        say(f"{item.robot}: warning: {message} (write the element)", PROGRAM)
+        message = f"line {item.line}: {item.what} has no topic, its default depends on the world"
+        note(options, f"{item.robot}: warning: {message} (write the element)")
     return as_yaml(carried)
 
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite.cli.multibot import COMMANDS, main
+from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.version import __version__
 
 
@@ -23,8 +24,8 @@ class MultibotCommand:
         parser.add_argument("--version", action="version", version=f"multibot {__version__}")
         parser.add_argument("command", metavar="COMMAND", choices=tuple(COMMANDS), help="see below")
         parser.add_argument("words", metavar="...", nargs=argparse.REMAINDER, help="its arguments")
-        rows = [f"  {name:<12}{about}" for name, about in COMMANDS.items()]
-        more = f"\n\n{cli_name} COMMAND --help tells of each"
+        rows = [f"  {name:<12}{it.about}" for name, it in COMMANDS.items()]
+        more = f"\n\n{cli_name} COMMAND --help shows the options of each"
         parser.epilog = "commands:\n" + "\n".join(rows) + more
 
     def main(self, *, parser: argparse.ArgumentParser, args: argparse.Namespace) -> int:

@@ -7,13 +7,14 @@ from collections import Counter
 from collections.abc import Iterator
 
 from multibot_rewrite.cli import live
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import print_bytes, say
+from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.cli.tables import Grid, print_report
+from multibot_rewrite.cli.tables import Grid, deliver_report
+from multibot_rewrite.cli.walk import check_folder
 from multibot_rewrite.graph.live.child import RosUnusable, observe
 from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.snapshot import QUIET, Snapshot, incomplete, to_json
+from multibot_rewrite.graph.snapshot import QUIET, Caveat, Snapshot, incomplete, to_json
+from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -24,11 +25,6 @@ from multibot_rewrite.remap.records import (
     TOPIC,
 )
 
-MORE = """\
-The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.
-exit codes: 0 done; 2 wrong use; 3 something may be missing in the view, which is written all the
-same; 4 rclpy or its RMW is missing or does not start
-"""
 COLUMNS = (
     ("publishes", TOPIC, PUBLISHES),
     ("subscribes", TOPIC, SUBSCRIBES),
@@ -38,33 +34,10 @@ COLUMNS = (
 )
 
 
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    parser.add_argument(
-        "-o", dest="output", metavar="FILE", help="write JSON (- is standard output)"
-    )
-    parser.add_argument(
-        "--expect",
-        nargs="+",
-        type=live.full_name,
-        default=[],
-        metavar="NODE",
-        help="/robot1/node ...",
-    )
-    parser.add_argument(
-        "--topic",
-        nargs="+",
-        type=live.full_name,
-        default=[],
-        metavar="TOPIC",
-        help="tell its QoS too",
-    )
-    live.options(parser)
-
-
 def run(options: argparse.Namespace) -> int:
-    """Look, tell, say what is to be known about the view; returns the exit code."""
+    """Look, write what is seen and what may be missing; returns the exit code."""
+    if options.output not in (None, STANDARD):
+        check_folder(options.output)
     request = Request(
         options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
     )
@@ -73,20 +46,21 @@ def run(options: argparse.Namespace) -> int:
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
-    _deliver(snapshot, options.output)
+    if options.output is None:
+        deliver_report(options, report(snapshot))
+    else:
+        deliver(options, to_json(snapshot))
+        note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
-        say(f"{'incomplete' if caveat.incomplete else 'note'}: {caveat.message}", PROGRAM)
+        _remark(options, caveat)
     return live.INCONCLUSIVE if incomplete(snapshot) else DONE
 
 
-def _deliver(snapshot: Snapshot, output: str | None) -> None:
-    if output is None:
-        print_report(report(snapshot))
-    elif output == "-":
-        print_bytes(to_json(snapshot))
+def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
+    if caveat.incomplete:
+        say(f"incomplete: {caveat.message}", PROGRAM)
     else:
-        write_all([(output, to_json(snapshot))])
-        say(_headline(snapshot), PROGRAM)
+        note(options, f"note: {caveat.message}")
 
 
 def report(snapshot: Snapshot) -> Iterator[str | Grid]:
@@ -122,7 +96,7 @@ def _headline(snapshot: Snapshot) -> str:
     why = "no change any more" if around.settled == QUIET else around.settled
     peers = f", peers {' '.join(around.static_peers)}" if around.static_peers else ""
     return (
-        f"{nodes} node{'s' * (nodes != 1)} in {many} participant{'s' * (many != 1)}"
+        f"{plural(nodes, 'node')} in {plural(many, 'participant')}"
         f" after {around.seconds:.1f} s ({why});"
         f" domain {around.domain}, range {around.range}{peers}, {around.rmw}"
     )

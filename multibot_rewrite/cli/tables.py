@@ -1,69 +1,122 @@
-"""Reports for a person: lines and tables, in colour and folded on a terminal, else plain."""
+"""Reports for a person: lines and tables. A name is never cut in two: a table folds between names,
+and where even that does not fit, each row becomes lines of its own."""
 
 from __future__ import annotations
 
-import io
+import argparse
+import re
 import sys
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import zip_longest
+from typing import NamedTuple
 
-from multibot_rewrite.cli.output import print_bytes
+from multibot_rewrite.cli.output import deliver, goes_to_file, prints_colour
 
-if TYPE_CHECKING:
-    from rich.table import Table
-    from rich.text import Text
-
+JSON = "json"
+# Columns with these names are set to the right.
 NUMBERS = ("count", "files", "rows")
-# Wider than any line: what is read by a program or from a file is not folded.
-ENDLESS = 100_000
+GAP = "  "
 _LONGEST = 60
+# Where a cell may be folded: behind a blank, or behind a slash inside a name.
+_PIECE = re.compile(r"[^ /]*(?:/+|\s+|$)")
 
 
 class Grid(NamedTuple):
-    """A table; columns called like one of ``NUMBERS`` are set to the right."""
+    """A table."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
 
 
-def print_report(parts: Iterable[str | Grid]) -> None:
-    """Print lines and tables to standard output; raises as ``print_bytes`` does."""
-    terminal = sys.stdout is not None and sys.stdout.isatty()
-    text = render(parts, terminal)
-    print_bytes(text.encode("utf-8", "surrogateescape"), "--json")
+def deliver_report(options: argparse.Namespace, parts: Iterable[str | Grid]) -> None:
+    """Write lines and tables where ``-o`` says, as wide as the terminal that shows them."""
+    text = render(parts, _width(options), prints_colour(options))
+    deliver(options, text.encode("utf-8", "surrogateescape"))
 
 
-def render(parts: Iterable[str | Grid], terminal: bool, width: int | None = None) -> str:
-    """The report as text; ``width`` is for a terminal, whose own it is if not given."""
-    from rich.console import Console
+def _width(options: argparse.Namespace) -> int | None:
+    """The terminal's width; None where a program or a file gets the text."""
+    if goes_to_file(options) or sys.stdout is None or not sys.stdout.isatty():
+        return None
+    from shutil import get_terminal_size
 
-    console = Console(
-        file=io.StringIO(), force_terminal=terminal, width=width if terminal else ENDLESS
-    )
-    with console.capture() as capture:
-        for part in parts:
-            console.print(renderable(part))
-    return "".join(f"{line.rstrip()}\n" for line in capture.get().splitlines())
+    return get_terminal_size().columns
 
 
-def renderable(part: str | Grid) -> Table | Text:
-    """A part of a report as Rich prints it."""
-    from rich.text import Text
-
-    # Text, because brackets in a str would be read as markup.
-    return _table(part) if isinstance(part, Grid) else Text(part)
+def render(parts: Iterable[str | Grid], width: int | None = None, colour: bool = False) -> str:
+    """The report as text; without a ``width`` nothing is folded."""
+    return "".join(f"{line.rstrip()}\n" for part in parts for line in _lines(part, width, colour))
 
 
-def _table(grid: Grid) -> Table:
-    from rich.table import Table
-    from rich.text import Text
+def _lines(part: str | Grid, width: int | None, colour: bool) -> Iterable[str]:
+    return part.split("\n") if isinstance(part, str) else _table(part, width, colour)
 
-    table = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), header_style="bold")
-    for name in grid.columns:
-        table.add_column(name, justify="right" if name in NUMBERS else "left", overflow="fold")
+
+def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
+    widths = _fitted(grid, width)
+    if widths is None:
+        yield from _as_lines(grid)
+        return
+    head = next(_row(grid.columns, grid, widths))
+    yield f"\033[1m{head.rstrip()}\033[0m" if colour else head
     for row in grid.rows:
-        table.add_row(*(Text(cell) for cell in row))
-    return table
+        yield from _row(row, grid, widths)
+
+
+def _fitted(grid: Grid, width: int | None) -> list[int] | None:
+    """The width of each column; None where names would have to be cut."""
+    columns = [[name, *cells] for name, cells in zip(grid.columns, _transposed(grid), strict=True)]
+    natural = [max(map(len, cells)) for cells in columns]
+    least = [max(len(it) for cell in cells for it in _pieces(cell)) for cells in columns]
+    room = sum(natural) if width is None else width - len(GAP) * (len(columns) - 1)
+    if sum(least) > room:
+        return None
+    left = room - sum(least)
+    # The narrow columns first: what a long one lacks is folded.
+    for at in sorted(range(len(columns)), key=lambda it: natural[it]):
+        more = min(natural[at] - least[at], left)
+        least[at] += more
+        left -= more
+    return least
+
+
+def _transposed(grid: Grid) -> list[tuple[str, ...]]:
+    return list(zip(*grid.rows, strict=True)) if grid.rows else [() for _ in grid.columns]
+
+
+def _pieces(cell: str) -> list[str]:
+    """The parts of a cell between which it may be folded."""
+    return [it.rstrip() for it in _PIECE.findall(cell) if it] or [""]
+
+
+def _folded(cell: str, width: int) -> list[str]:
+    """A cell in lines of that width."""
+    lines = [""]
+    for piece in filter(None, _PIECE.findall(cell)):
+        if len(lines[-1]) + len(piece.rstrip()) > width:
+            lines.append("")
+        lines[-1] += piece
+    return lines
+
+
+def _row(row: Sequence[str], grid: Grid, widths: Sequence[int]) -> Iterator[str]:
+    """The lines of a row, one for most."""
+    folded = [_folded(cell, width) for cell, width in zip(row, widths, strict=True)]
+    for line in zip_longest(*folded, fillvalue=""):
+        cells = zip(line, grid.columns, widths, strict=True)
+        yield GAP.join(
+            text.rstrip().rjust(width) if name in NUMBERS else text.rstrip().ljust(width)
+            for text, name, width in cells
+        )
+
+
+def _as_lines(grid: Grid) -> Iterator[str]:
+    """A line for each cell, an empty one between rows."""
+    longest = max(map(len, grid.columns))
+    for number, row in enumerate(grid.rows):
+        yield from [""] * (number > 0)
+        cells = zip(grid.columns, row, strict=True)
+        yield from (f"{name.ljust(longest)}  {text}" for name, text in cells if text)
 
 
 def clip(text: str) -> str:

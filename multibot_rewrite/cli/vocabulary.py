@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.cli.files import write_all
-from multibot_rewrite.cli.output import print_bytes, say
-from multibot_rewrite.cli.process import DONE, PROGRAM
-from multibot_rewrite.cli.tables import Grid, json_bytes, print_report
+from multibot_rewrite.cli.output import deliver, note
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.tables import JSON, Grid, deliver_report, json_bytes
+from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import Site, UsageError
@@ -21,49 +21,29 @@ from multibot_rewrite.sources.read import read_source
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
-MORE = """\
-examples:
-  multibot vocabulary                                  all sections
-  multibot vocabulary libgazebo_ros_diff_drive.so      everything known of one
-  multibot vocabulary --suggest rover.urdf > acme.vocab
-exit codes: 0 done; 2 wrong use, an unknown name or unreadable input
-"""
-
-
-def options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of the command."""
-    parser.epilog = MORE
-    parser.add_argument(
-        "name", nargs="?", metavar="NAME", help="a library file, a class, an element, a sensor type"
-    )
-    parser.add_argument("--type", choices=TYPES, help="only sections of this type")
-    parser.add_argument("--json", metavar="FILE", help="write it as JSON (- is standard output)")
-    parser.add_argument(
-        "--vocabulary", action="append", default=[], metavar="FILE", help="more vocabulary"
-    )
-    parser.add_argument(
-        "--suggest",
-        metavar="FILE",
-        help="print a vocabulary file for what this description loads and nothing knows",
-    )
-
 
 def run(options: argparse.Namespace) -> int:
     """List, show or suggest; returns the exit code."""
     if options.suggest is not None:
         return _suggest(options)
+    name = _name(options)
     files = (*configured_vocabulary("-"), *options.vocabulary)
+    if options.output:
+        check_target(options.output, files)
     vocabulary = builtin_tree(files).vocabulary
     types = [options.type] if options.type else list(TYPES)
-    if options.name is None:
-        found = vocabulary.sections(*types)
+    found = vocabulary.sections(*types) if name is None else _found(vocabulary, name, types)
+    if options.form == JSON:
+        deliver(options, json_bytes({"sections": [as_json(it) for it in found]}))
     else:
-        found = _found(vocabulary, options.name, types)
-    if options.json is not None:
-        _write_json(options.json, {"sections": [as_json(it) for it in found]}, files)
-    if options.json != "-":
-        print_report(_list(found) if options.name is None else _details(found))
+        deliver_report(options, _list(found) if name is None else _details(found))
     return DONE
+
+
+def _name(options: argparse.Namespace) -> str | None:
+    if len(options.words) > 1:
+        raise UsageError(f"{' '.join(options.words)}: give one NAME")
+    return next(iter(options.words), None)
 
 
 def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[VocabularySection]:
@@ -74,14 +54,6 @@ def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Voca
     hint = f"the nearest known: {', '.join(near)}" if near else "multibot vocabulary lists all"
     what = types[0] if len(types) == 1 else "plugin, class, element, sensor type or block"
     raise UsageError(f"{name!r} is no {what} of the vocabulary; {hint}")
-
-
-def _write_json(path: str, value: object, inputs: Sequence[str]) -> None:
-    if path == "-":
-        print_bytes(json_bytes(value))
-        return
-    check_target(path, inputs)
-    write_all([(path, json_bytes(value))])
 
 
 def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
@@ -121,7 +93,7 @@ def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
 
 
 def as_json(section: VocabularySection) -> dict[str, object]:
-    """A section as ``--json`` writes it; docs/coverage.md describes it."""
+    """A section as ``--form json`` writes it; docs/coverage.md describes it."""
     return {
         "type": section.type,
         "names": section.names,
@@ -154,15 +126,18 @@ def _row_json(site: Site, section: VocabularySection) -> dict[str, object]:
 
 
 def _suggest(options: argparse.Namespace) -> int:
-    if options.name is not None or options.type or options.json is not None:
-        raise UsageError("--suggest goes with --vocabulary only: leave out NAME, --type and --json")
-    data, name = read_source(options.suggest, {})
+    if plain_words(options) or options.type or options.form == JSON:
+        raise UsageError("--suggest goes with --vocabulary only: leave out NAME, --type and --form")
+    check_xacro(options, [options.suggest])
+    if options.output:
+        check_target(options.output, [options.suggest, *options.vocabulary])
+    data, name = read_source(options.suggest, xacro_args(options))
     tree = builtin_tree((*configured_vocabulary(options.suggest), *options.vocabulary))
     sections = suggest(collect(read_document(data, name), tree))
     text = vocabulary_text(sections, options.suggest)
-    print_bytes(text.encode("utf-8", "backslashreplace"), "a shell's >")
+    deliver(options, text.encode("utf-8", "backslashreplace"))
     if not sections:
-        say(
-            f"{options.suggest}: everything it loads is known, there is nothing to suggest", PROGRAM
+        note(
+            options, f"{options.suggest}: everything it loads is known, there is nothing to suggest"
         )
     return DONE

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
+from multibot_rewrite.cli.files import existing_folder
 from multibot_rewrite.model import InputError, UsageError
 
 
@@ -56,7 +58,17 @@ def _named(files: Iterable[str], suffixes: tuple[str, ...]) -> Iterator[str]:
     return (name for name in files if name.lower().endswith(suffixes))
 
 
-def check_target(target: str, inputs: Iterable[str], option: str = "--json") -> None:
+def standard_input() -> bytes:
+    """All of standard input; raises InputError."""
+    if sys.stdin is None:
+        raise InputError("<stdin>: standard input is closed; name a file instead of -")
+    try:
+        return sys.stdin.buffer.read()
+    except OSError as error:
+        raise InputError(f"<stdin>: cannot be read: {error.strerror}") from None
+
+
+def check_target(target: str, inputs: Iterable[str], option: str = "--output") -> None:
     """Raise UsageError where writing ``target`` would replace one of the files that are read."""
     real = os.path.realpath(target)
     if any(os.path.realpath(path) == real for path in inputs):
@@ -64,8 +76,7 @@ def check_target(target: str, inputs: Iterable[str], option: str = "--json") -> 
 
 
 def check_folder(target: str) -> None:
-    """Raise UsageError where ``target`` is in no folder, before the work that makes it."""
-    folder = os.path.dirname(target) or "."
-    if not os.path.exists(folder):
-        reason = f"the folder {folder} does not exist, create it first"
-        raise UsageError(f"{target}: cannot be written: {reason}")
+    """Raise UsageError where the folder of ``target`` cannot be made, before the work."""
+    above = existing_folder(target)
+    if not os.path.isdir(above):
+        raise UsageError(f"{target}: cannot be written: {above} is a file, not a folder")

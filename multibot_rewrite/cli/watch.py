@@ -7,11 +7,12 @@ from collections.abc import Callable, Generator, Iterator
 from contextlib import ExitStack, closing, contextmanager
 
 from multibot_rewrite.cli.output import print_lines
-from multibot_rewrite.cli.tables import Grid, renderable
+from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
 from multibot_rewrite.graph.watching import Verdict, WatchState, next_state
+from multibot_rewrite.plural import plural
 
 WORDS = {
     Verdict.PLANNED: "as planned",
@@ -50,11 +51,13 @@ def _print_lines(state: WatchState) -> None:
 @contextmanager
 def _screen() -> Iterator[Show]:
     """A screen that is drawn anew at every change."""
-    from rich.console import Group
     from rich.live import Live
+    from rich.text import Text
 
     with Live(auto_refresh=False) as live:
-        yield lambda state: live.update(Group(*map(renderable, _parts(state))), refresh=True)
+        yield lambda state: live.update(
+            Text.from_ansi(render(_parts(state), live.console.width, colour=True)), refresh=True
+        )
 
 
 def _parts(state: WatchState) -> Iterator[str | Grid]:
@@ -89,9 +92,9 @@ def _headline(state: WatchState) -> str:
     nodes = _of(_sum(it.nodes for it in state.robots))
     names = _of(_sum(it.names for it in state.robots))
     moving = state.graph.environment.settled == CHANGING
-    found = len(state.findings)
     said = "still changing" if moving else WORDS[state.verdict]
-    return f"{nodes} nodes, {names} names, {found} finding{'s' * (found != 1)}: {said}"
+    found = plural(len(state.findings), "finding")
+    return f"{nodes} nodes, {names} names, {found}: {said}"
 
 
 def _sum(pairs: Iterator[tuple[int, int]]) -> tuple[int, int]:

@@ -58,5 +58,6 @@ def _section(rule: Rule) -> str:
 
 
 def _examples(rule: Rule) -> list[tuple[str, str]]:
-    texts = (("Bad", rule.bad), ("Fixed", rule.fixed), ("Good", rule.good))
+    good = "" if rule.good == rule.fixed else rule.good
+    texts = (("Bad", rule.bad), ("Fixed by --fix", rule.fixed), ("Good", good))
     return [(title, text) for title, text in texts if text]

@@ -11,9 +11,9 @@ HEAD = """\
 # Rules of urdf-lint
 
 Made by `python -m multibot_rewrite.lint > docs/lint-rules.md`; `urdf-lint --explain CODE` prints one.
-An *error* is refused by some loader or cannot work, a *warning* is very probably wrong, a *note* never
-makes the lint fail. Examples are tested: the first is found, the second is not; a fragment stands
-inside `<robot name="r">`.
+An *error* is rejected by some parser or cannot work, a *warning* is very probably wrong, a *note* never
+makes the lint fail. The examples are tests: the bad one has the finding, the good one does not. A
+fragment belongs inside `<robot name="r">`.
 """
 
 

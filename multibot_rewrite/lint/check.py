@@ -1,4 +1,4 @@
-"""One file -> its findings. Nothing that a file holds ends in a traceback or without an end."""
+"""One file -> its findings. Whatever a file contains, there is no traceback and no endless run."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.places import numbered, placed
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import active_rules
-from multibot_rewrite.lint.settings import Settings
-from multibot_rewrite.lint.suppress import unsuppressed
 from multibot_rewrite.model import InputError, VocabularyError
 from multibot_rewrite.sources.read import read_file
 
@@ -27,7 +27,7 @@ AGAIN = 0.5
 
 
 class _TooLongError(BaseException):
-    """The time of a file is over; no ``except Exception`` on the way may swallow it."""
+    """The time of a file is over; not an Exception, so that nothing on the way catches it."""
 
 
 def lint_file(path: str, settings: Settings) -> list[Finding]:
@@ -36,7 +36,7 @@ def lint_file(path: str, settings: Settings) -> list[Finding]:
 
 
 def lint_data(path: str, data: bytes, settings: Settings) -> list[Finding]:
-    """The same for text that is at hand; ``path`` is its name, and where its xacro is."""
+    """The same for given text; ``path`` is its name, and xacro resolves includes from there."""
     return _linted(path, lambda: data, settings)
 
 
@@ -59,20 +59,20 @@ def _linted(path: str, read: Callable[[], bytes], settings: Settings) -> list[Fi
         found.append(too_long(path, settings.seconds))
     except VocabularyError:
         raise
-    except Exception as error:  # the other files are linted all the same
+    except Exception as error:  # the other files are still linted
         found.append(breakdown(path, error))
     return sorted(unsuppressed(_merged(found), sources, settings), key=by_place)
 
 
 def lint_subject(subject: Subject) -> list[Finding]:
-    """What the rules that are on find in one document."""
+    """What the active rules find in one document."""
     settings = subject.settings
     found: list[tuple[Rule, list[Problem]]] = []
     crashes: list[Finding] = []
     for rule in active_rules(settings, subject.format):
         try:
             problems = list(rule.check(subject)) if rule.check else []
-        except Exception as error:  # told as a finding, and the other rules are asked all the same
+        except Exception as error:  # reported as a finding, and the other rules still run
             crashes.append(crash(rule, subject, error))
             continue
         if problems:
@@ -85,7 +85,7 @@ def lint_subject(subject: Subject) -> list[Finding]:
 
 
 def _merged(found: Iterable[Finding]) -> list[Finding]:
-    """What several expansions have in common is told once, of the first of them."""
+    """A finding that several expansions have is reported once, for the first of them."""
     first: dict[Finding, Finding] = {}
     for finding in found:
         first.setdefault(finding._replace(arguments=""), finding)
@@ -93,7 +93,7 @@ def _merged(found: Iterable[Finding]) -> list[Finding]:
 
 
 def by_place(finding: Finding) -> tuple[str, int, int, str, str, str]:
-    """What findings are sorted by: file, line, column, and what is told there."""
+    """What findings are sorted by: file, line, column, code and text."""
     it = finding
     return it.file, it.line, it.column, it.code, it.message, it.arguments
 
@@ -105,7 +105,7 @@ def _limited(seconds: float) -> Iterator[None]:
         yield
         return
     before = signal.signal(signal.SIGALRM, _stop)
-    # Again and again: where it is raised in a destructor or callback it is lost.
+    # Repeated: an exception that is raised in a destructor or callback is lost.
     signal.setitimer(signal.ITIMER_REAL, seconds, AGAIN)
     try:
         yield

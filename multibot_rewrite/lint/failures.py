@@ -1,4 +1,4 @@
-"""Findings for files that no rule can look at."""
+"""Findings for files that no rule can check."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR
 
-_PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<said>.*)", re.DOTALL)
-# What a reader says -> the rule that this is.
+_PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
+# A part of a reader's message -> the rule that reports it.
 _CODES = (
     ("No such file", "MB102"),
     ("cannot be read", "MB102"),
@@ -27,35 +27,35 @@ _CODES = (
 
 def failure(path: str, message: str, settings: Settings) -> Finding:
     """The finding for a file that cannot be read; ``message`` is that of its InputError."""
-    code = next((code for said, code in _CODES if said in message), "MB101")
+    code = next((code for part, code in _CODES if part in message), "MB101")
     level = level_of(settings, code, RULES[code].level)
     it = _PLACE.fullmatch(message)
     assert it is not None, "an InputError names its file"
     line, column = int(it["line"] or 1), int(it["column"] or 1)
-    what, _, hint = it["said"].rpartition("; ")
+    what, _, hint = it["text"].rpartition("; ")
     file = it["file"].removesuffix(" (expanded)") or path
     return Finding(code, level, what or hint, hint if what else "", file, line, column)
 
 
 def crash(rule: Rule, subject: Subject, error: Exception) -> Finding:
-    """The finding for a rule that fell over a document: the rule did not look at all of it."""
+    """The finding for a rule that crashed: it did not check all of the document."""
     file = subject.document.file.removesuffix(" (expanded)")
-    hint = "this is a fault of urdf-lint; --ignore it to go on"
+    hint = "this is a bug in urdf-lint; use --ignore to go on"
     return _crashed(file, f"{rule.code} crashed: {_words(error)}", hint)
 
 
 def breakdown(path: str, error: Exception) -> Finding:
-    """The finding for a file over which the lint itself fell: nobody looked at all of it."""
+    """The finding for a file on which the lint itself crashed: it was not checked completely."""
     if isinstance(error, MemoryError):
-        return _crashed(path, "it needs more memory than there is", "do its macros grow?")
-    return _crashed(path, f"the lint crashed: {_words(error)}", "this is a fault of urdf-lint")
+        return _crashed(path, "there is not enough memory for it", "does a macro call itself?")
+    return _crashed(path, f"the lint crashed: {_words(error)}", "this is a bug in urdf-lint")
 
 
 def lost(path: str, died_of: int) -> Finding:
     """The finding for a file whose process was ended by a signal, or by itself for 0."""
     how = f"by {signal.Signals(died_of).name}" if died_of else "before it was done"
     hint = "too little memory may be the reason: try fewer --jobs"
-    return _crashed(path, f"the process that linted it was ended {how}", hint)
+    return _crashed(path, f"the process that linted it ended {how}", hint)
 
 
 def _crashed(path: str, message: str, hint: str) -> Finding:
@@ -67,7 +67,7 @@ def _words(error: Exception) -> str:
 
 
 def too_long(path: str, seconds: float) -> Finding:
-    """The finding for a file that was left before its end."""
-    message = f"it took more than {seconds:g} s and was left"
-    endless = "is there a loop in its macros?" if path.endswith(".xacro") else ""
+    """The finding for a file that took too long."""
+    message = f"it took more than {seconds:g} s, the rest was not checked"
+    endless = "does a macro call itself?" if path.endswith(".xacro") else ""
     return Finding("MB004", ERROR, message, endless, path, 1, 1)

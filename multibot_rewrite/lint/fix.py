@@ -1,4 +1,4 @@
-"""Safe edits -> the fixed text, and the proof that nothing else changed and the findings are gone."""
+"""Safe edits -> the fixed text, and the proof that nothing else changed and no finding is new."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_data
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.document import Document, read_document
@@ -24,7 +24,7 @@ _LINE = re.compile(r"\bline \d+")
 def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Finding]]:
     """The text with every safe fix applied, and the findings that are left.
 
-    Raises InputError where the file cannot be read, ProofError where the result does not hold.
+    Raises InputError where the file cannot be read, ProofError where the proof fails.
     """
     findings = lint_data(path, source, settings)
     for _ in range(ROUNDS):
@@ -35,7 +35,7 @@ def fix(path: str, source: bytes, settings: Settings) -> tuple[bytes, list[Findi
         after = lint_data(path, fixed, settings)
         _prove(path, (source, findings), (fixed, after), edits)
         source, findings = fixed, after
-    raise ProofError(f"{path}: fixes come back after {ROUNDS} rounds")
+    raise ProofError(f"{path}: there is still something to fix after {ROUNDS} rounds")
 
 
 def _edits(path: str, findings: Iterable[Finding]) -> set[Edit]:
@@ -63,10 +63,10 @@ def _prove(
     pairs = zip(before.root.iter("*"), after.root.iter("*"), touched, strict=False)
     same = len(before.starts) == len(after.starts)
     if not same or not all(_same(old, new, there) for old, new, there in pairs):
-        raise ProofError(f"{path}: a fix changes more than it may")
+        raise ProofError(f"{path}: a fix would change more than it may")
     more = _counted(new[1]) - _counted(old[1])
     if more:
-        raise ProofError(f"{path}: a fix makes a new finding: {next(iter(more))}")
+        raise ProofError(f"{path}: a fix would cause a new finding: {next(iter(more))}")
 
 
 def _touched(document: Document, edits: Sequence[Edit]) -> list[bool]:

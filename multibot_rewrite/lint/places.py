@@ -45,7 +45,7 @@ def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> 
         it.file,
         line,
         column,
-        tuple(_told(subject, call) for call in it.calls),
+        tuple(_call_text(subject, call) for call in it.calls),
         subject.arguments,
         () if subject.origins else problem.edits,
     )
@@ -82,7 +82,7 @@ def _locate(source: bytes, offset: int) -> tuple[int, int]:
 
 
 def _within(source: bytes, start: int, attribute: str | None) -> int:
-    """How far behind the start of its tag a value stands; an attribute that is not there: 0."""
+    """The offset of a value from the start of its tag; 0 for an attribute that is missing."""
     if attribute is None:
         return 0
     if not attribute:
@@ -95,12 +95,12 @@ def _within(source: bytes, start: int, attribute: str | None) -> int:
 
 @lru_cache(maxsize=64)
 def _attributes(source: bytes, start: int) -> dict[bytes, int]:
-    """Where the names of a tag's attributes stand, with their prefixes and without."""
+    """The offsets of the names of a tag's attributes, with their prefixes and without."""
     found = list(_ATTRIBUTE.finditer(source, start, tag_end(source, start)))
     bare = {it[2]: it.start(2) for it in found}
     return bare | {it[1]: it.start(1) for it in found}
 
 
-def _told(subject: Subject, call: Call) -> str:
+def _call_text(subject: Subject, call: Call) -> str:
     line, _ = _locate(subject.sources[call.file], call.start)
     return f"{call.file}:{line}: {call.macro}"

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.findings.finding import Edit
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.schema.faults import Fault
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document
@@ -24,9 +24,9 @@ class Subject(NamedTuple):
     """One document to lint.
 
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
-    robot that an SRDF belongs to, if it was found. Where the document was expanded, ``origins``
+    robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
-    ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's shape.
+    ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's structure.
     ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
     """
 

@@ -1,4 +1,4 @@
-"""All rules, by code; which of them a lint asks."""
+"""All rules, by code; which of them are active."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from types import ModuleType
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.rules import (
     files,
     meshes,
@@ -19,7 +20,6 @@ from multibot_rewrite.lint.rules import (
     srdf,
     structure,
 )
-from multibot_rewrite.lint.settings import Settings
 
 GROUPS: tuple[tuple[str, str, ModuleType], ...] = (
     ("MB0", "the lint itself", meta),
@@ -47,7 +47,7 @@ assert len(RULES) == len(_FOUND), "two rules have one code"
 
 
 def active_rules(settings: Settings, format_: str) -> tuple[Rule, ...]:
-    """The rules that are asked about a subject of that format."""
+    """The rules that are on and check a subject of that format."""
     levels = tuple(settings.levels.items())
     return _active(settings.select, settings.ignore, levels, format_)
 

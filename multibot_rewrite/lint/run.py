@@ -1,4 +1,4 @@
-"""Many files -> their findings, side by side; the same whatever the number of workers."""
+"""Many files -> their findings, in parallel; the result does not depend on the number of workers."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from collections.abc import Callable, Iterable, Sequence
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import by_place, lint_file
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.failures import lost, too_long
 from multibot_rewrite.lint.files.included import included
 from multibot_rewrite.lint.files.pairing import named_urdfs
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.rewriters.builtin import builtin_tree
 
 # A worker costs more to start than a few files to lint.
 FEW = 12
 EACH = 4
-# What a worker may compute beyond the time of a file before it is ended.
+# CPU seconds beyond the time of a file, after which a worker is ended.
 GRACE = 1.0
 Watch = Callable[[Iterable[list[Finding]]], Iterable[list[Finding]]]
 
@@ -27,11 +27,11 @@ def lint_files(
 ) -> list[Finding]:
     """Every finding of the files, each once, in the order of files and lines.
 
-    ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` sees the
-    files' findings pass, for a progress bar.
+    ``jobs`` is the number of processes, 0 for as many as there are processors; ``watch`` wraps the
+    iteration over the files' findings, for a progress bar.
     """
     settings = among(paths, settings)
-    # What is wrong with a vocabulary is told before anything is linted.
+    # A faulty vocabulary is reported before anything is linted.
     builtin_tree(settings.vocabulary)
     found = _linted(paths, settings, jobs or os.cpu_count() or 1, watch)
     return _in_order(_once(it for its in found for it in its), paths)
@@ -46,11 +46,11 @@ def among(paths: Sequence[str], settings: Settings) -> Settings:
 def _linted(
     paths: Sequence[str], settings: Settings, jobs: int, watch: Watch
 ) -> Iterable[list[Finding]]:
-    # xacro runs what a file says, which only the end of a process stops for certain.
-    alone = not any(path.endswith(".xacro") for path in paths)
-    if alone and (jobs == 1 or len(paths) <= FEW):
+    # xacro evaluates expressions of the file; only the end of the process stops these for certain.
+    in_this_process = not any(path.endswith(".xacro") for path in paths)
+    if in_this_process and (jobs == 1 or len(paths) <= FEW):
         return list(watch(lint_file(path, settings) for path in paths))
-    from multibot_rewrite.lint.workers import crew, limit_time
+    from multibot_rewrite.lint.workers import limit_time, worker_pool
 
     def lint(path: str) -> list[Finding]:
         limit_time(settings.seconds + GRACE)
@@ -61,7 +61,7 @@ def _linted(
             return [too_long(path, settings.seconds)]
         return [lost(path, died_of)]
 
-    with crew(lint, paths, unfinished, min(jobs, -(-len(paths) // EACH))) as workers:
+    with worker_pool(lint, paths, unfinished, min(jobs, -(-len(paths) // EACH))) as workers:
         return list(watch(workers.results()))
 
 
@@ -78,7 +78,7 @@ def _once(found: Iterable[Finding]) -> list[Finding]:
 def _with_others(first: Finding, *others: Finding) -> Finding:
     if not others:
         return first
-    also = f"and {len(others)} more like it, by other calls of the macro"
+    also = f"and {len(others)} more from other calls of the macro"
     return first._replace(hint=f"{first.hint}; {also}" if first.hint else also)
 
 

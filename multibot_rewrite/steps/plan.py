@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from operator import itemgetter
 from typing import NamedTuple
 
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import ERROR, Claim, Edit, Finding
 from multibot_rewrite.naming import Affix, Naming
 from multibot_rewrite.rewriters.contact import respell_collisions
@@ -21,6 +22,24 @@ from multibot_rewrite.steps.renames import RenameMap, make_renames, respeller
 
 _START = itemgetter(0)
 LAST = "~"
+
+not_editable = declare(
+    "MB104",
+    "not-editable",
+    ERROR,
+    what="A name cannot be edited in place: it is in a CDATA section, or there are escapes or "
+    "comments in it.",
+    why="A rewrite replaces the bytes of a name and leaves everything else as it is; here the bytes "
+    "are not those of the name.",
+    fix="Write the name as plain text.",
+    bad='<link name="base"/>\n'
+    "<gazebo>\n"
+    "  <canonicalBody><![CDATA[base]]></canonicalBody>\n"
+    "</gazebo>\n",
+    good='<link name="base"/>\n<gazebo>\n  <canonicalBody>base</canonicalBody>\n</gazebo>\n',
+    line=3,
+    formats=("rewrite",),
+)
 
 
 class Plan(NamedTuple):
@@ -123,8 +142,8 @@ def _not_editable(inventory: Inventory, claim: Claim) -> Finding:
     return finding(
         inventory.document,
         claim.start,
-        "MB104",
-        ERROR,
+        not_editable.code,
+        not_editable.level,
         f"{claim.value.strip()!r} cannot be edited in place",
         hint,
     )

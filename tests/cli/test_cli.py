@@ -276,10 +276,16 @@ def test_quiet_leaves_only_findings(folder: Path) -> None:
     ("words", "code"),
     [
         pytest.param(("rover.urdf", "robot1"), 0, id="done"),
-        pytest.param(("rover.urdf", "robot1", "--strict"), 0, id="strict-nothing-found"),
+        pytest.param(
+            ("rover.urdf", "robot1", "--fail-on", "warning"), 0, id="fail-on-nothing-found"
+        ),
         pytest.param(("siblings.urdf", "robot1"), 0, id="warning"),
-        pytest.param(("siblings.urdf", "robot1", "--strict"), 1, id="strict-warning"),
-        pytest.param(("siblings.urdf", "robot1", "--affix", "prefix", "--strict"), 0, id="mended"),
+        pytest.param(("siblings.urdf", "robot1", "--fail-on", "warning"), 1, id="fail-on-warning"),
+        pytest.param(
+            ("siblings.urdf", "robot1", "--affix", "prefix", "--fail-on", "warning"),
+            0,
+            id="no-warning-left",
+        ),
         pytest.param(("rover.urdf", "robot1", "--strip"), 1, id="not-rewritten"),
         pytest.param(("nothing.urdf", "robot1"), 2, id="unreadable"),
         pytest.param(("rover.urdf", "robot-1"), 2, id="wrong-use"),
@@ -295,13 +301,13 @@ def test_exit_codes_mean_what_the_help_says(
     assert bool(result.out) == (code == 0)
 
 
-def test_strict_writes_nothing(folder: Path) -> None:
-    words = ("--strict", "-o", "out.urdf", "--changes", "changes.json")
+def test_a_finding_at_the_level_of_fail_on_writes_nothing(folder: Path) -> None:
+    words = ("--fail-on", "warning", "-o", "out.urdf", "--changes", "changes.json")
     before = contents(folder)
     result = run(folder, "-", "robot1", *words, stdin=(folder / "siblings.urdf").read_bytes())
     assert result.code == 1
     assert result.err.startswith("<stdin>:")
-    assert result.err.endswith("--strict: nothing was written\n")
+    assert result.err.endswith("--fail-on warning: nothing was written\n")
     assert contents(folder) == before
 
 

@@ -264,6 +264,7 @@ PORTS = st.sampled_from(["server_name", "robot_frame", "value", "topic_name", "n
 FRAMES, TOPICS = {"base_link", "odom"}, {"/a/b"}
 
 
+@pytest.mark.slow
 @given(st.lists(st.dictionaries(PORTS, VALUES), max_size=4), st.sampled_from(LAYOUTS))
 def test_only_known_ports_change(nodes: list[dict[str, str]], layout: str) -> None:
     body = "".join(

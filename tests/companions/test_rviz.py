@@ -569,6 +569,7 @@ def test_a_block_of_text_ends_with_its_display() -> None:
 TOKEN = st.from_regex(r"[a-z][a-z0-9]{0,5}", fullmatch=True)
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.tuples(TOKEN, st.sampled_from(["Path", "Axes", "Grid", "Image"])), max_size=6),
     st.sampled_from(["L1", "L2", "L3", "L4"]),

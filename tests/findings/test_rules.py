@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 from paths import ROOT
-from rule_examples import GRAPH, found
+from rule_examples import GRAPH, found, whole
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.lint.fix import fix
 
 RULES = catalogue.rules()
 # No text makes them: a fault of the lint, and a file that takes too long. Other tests raise them.
@@ -36,6 +38,27 @@ def test_the_bad_example_is_found_once(code: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("code", EXAMPLES)
 def test_the_good_example_is_left_alone(code: str, tmp_path: Path) -> None:
     assert found(RULES[code], RULES[code].good, tmp_path) == []
+
+
+@pytest.mark.parametrize("code", EXAMPLES)
+def test_the_bad_example_has_edits_where_its_fix_is_shown(code: str, tmp_path: Path) -> None:
+    (finding,) = found(RULES[code], RULES[code].bad, tmp_path)
+    assert bool(finding.edits) == bool(RULES[code].fixed)
+
+
+@pytest.mark.parametrize("code", [code for code in EXAMPLES if RULES[code].fixed])
+def test_the_fix_makes_just_what_is_shown(code: str, tmp_path: Path) -> None:
+    rule = RULES[code]
+    (finding,) = found(rule, rule.bad, tmp_path)
+    bad = Path(finding.file).read_bytes()
+    text, left = fix(finding.file, bad, Settings(select=(code,)))
+    assert text.decode() == whole(rule.fixed)
+    assert left == []
+
+
+def test_the_codes_with_a_fix() -> None:
+    fixed = {code for code, it in RULES.items() if it.fixed}
+    assert fixed == {"MB002", "MB140", "MB141", "MB142", "MB301"}
 
 
 @pytest.mark.parametrize("rule", RULES.values(), ids=RULES)

@@ -258,7 +258,7 @@ def test_errors_stop_the_job_and_strict_makes_errors(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     fleet_folder(tmp_path)
-    assert build(tmp_path, "--strict") == 1
+    assert build(tmp_path, "--fail-on", "warning") == 1
     assert "nothing was written" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
 
@@ -627,6 +627,7 @@ WORD = st.text(st.characters(codec="utf-8", exclude_categories=("Cs",)), min_siz
 ODD = st.one_of(WORD, st.sampled_from(["yes", "y", "~", "null", "1e3", "0x1", "a: b", "- a", "#"]))
 
 
+@pytest.mark.slow
 @given(ODD, ODD, st.lists(ODD, max_size=3))
 def test_any_words_in_a_plan_read_back(word: str, other: str, frames: list[str]) -> None:
     robot = PlannedRobot(word, (f"/{other}",), tuple(frames), "/tf", frame_tag=other)

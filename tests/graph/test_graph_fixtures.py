@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
+import guides
 import pytest
 from graph_cases import CASES, FLEET, FOLDERS, GRAPHS, Case, healthy, read_plan
 from paths import ROOT
@@ -47,7 +51,7 @@ def test_the_plan_is_what_the_command_makes(layout: str, tmp_path: Path) -> None
 
 
 def same(path: str, graph: Snapshot) -> None:
-    """The file is this graph: if not, tests/graph_cases.py writes it anew."""
+    """The file is this graph: if not, tests/support/graph_cases.py writes it anew."""
     data = (ROOT / path).read_bytes()
     assert data == to_json(graph)
     assert from_json(data, path) == graph
@@ -65,9 +69,33 @@ def test_a_healthy_graph_is_silent(layout: str, capsys: CaptureFixture[str]) -> 
 def test_a_broken_graph_gives_exactly_its_lines(case: Case, capsys: CaptureFixture[str]) -> None:
     same(f"{case.stem}.json", case.broken(healthy(case.layout)))
     plan = f"{FOLDERS[case.layout]}/plan.yaml"
-    code = main(["check", plan, "--snapshot", f"{case.stem}.json"])
+    code = main(["check", plan, "--snapshot", f"{case.stem}.json", "--verbose"])
     out = capsys.readouterr().out
     assert out == (ROOT / f"{case.stem}.txt").read_text()
     assert tuple(re.findall(r": (MG\d{3}) ", out)) == case.found
     assert case.code in case.found
     assert code == (1 if ": error: " in out else 0)
+
+
+@pytest.mark.slow
+def test_making_the_files_anew_changes_none_of_them(tmp_path: Path) -> None:
+    """Whoever adds a case gets no other file into the change."""
+    guides.copy_repository(tmp_path)
+    before = contents(tmp_path)
+    for path in (tmp_path / GRAPHS).rglob("*.txt"):
+        path.unlink()
+    subprocess.run(
+        [sys.executable, "tests/support/graph_cases.py"],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        check=True,
+    )
+    after = contents(tmp_path)
+    assert sorted(path for path in before | after if before.get(path) != after.get(path)) == []
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Every file of the fixtures."""
+    files = (path for path in (folder / "fixtures").rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}

@@ -126,13 +126,13 @@ def own(topic: str, robot: str, naming: Naming) -> str:
     return there.spell(topic, robot) if there else f"/{robot}{topic}"
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(fleets())
 def test_a_fleet_as_planned_is_silent(fleet: Fleet) -> None:
     assert check(fleet.plan, fleet.graph) == []
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(fleets(), st.data())
 def test_a_name_that_was_moved_is_found_at_its_node(fleet: Fleet, data: st.DataObject) -> None:
     planned = [(w.node, w.kind, w.role, w.name) for w in fleet.plan.endpoints]
@@ -249,7 +249,7 @@ def anything(draw: st.DrawFn) -> Fleet:
     return Fleet(plan, graph)
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=150, deadline=None)
 @given(anything())
 def test_each_finding_is_reported_once_for_any_graph(fleet: Fleet) -> None:
     found = check(fleet.plan, fleet.graph)

@@ -201,7 +201,7 @@ def stacks() -> dict[str, list[NodeFacts]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("affix", ["postfix", "prefix"])
 @pytest.mark.parametrize("layout", LAYOUTS)
-@pytest.mark.parametrize("base", ["", "/old"])
+@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
 def test_every_known_stack_is_learned_as_it_is_described(
     base: str, layout: str, affix: str
 ) -> None:
@@ -216,7 +216,7 @@ LITERAL = {"nav2_slam", "slam_toolbox"}
 
 @pytest.mark.slow
 @pytest.mark.parametrize("layout", LAYOUTS)
-@pytest.mark.parametrize("base", ["", "/old"])
+@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
 def test_every_stack_is_learned_where_nothing_is_known(base: str, layout: str) -> None:
     for name, nodes in stacks().items():
         if name not in LITERAL or layout != "L4":
@@ -452,7 +452,7 @@ def test_what_every_node_has_is_a_part_where_it_is_whole() -> None:
     assert found.own[1].when == "use_sim_time"
 
 
-@pytest.mark.parametrize("base", ["", "/old"])
+@pytest.mark.parametrize("base", ["", pytest.param("/old", marks=pytest.mark.deep)])
 @pytest.mark.parametrize(
     "part", ["lifecycle", "bond", "tf_listener", "tf_broadcaster", "diagnostics", "tf_buffer"]
 )
@@ -764,12 +764,13 @@ def test_helpers_without_a_node_are_reported(
         (["--namespace", "old"], "'old' is not a full name"),
         (["--namespace", "/a-b"], "namespace '/a-b': character 3, '-', is not a letter"),
         (["--namespace", "/none"], "there is no node to learn below /none"),
-        (["--stack", ""], "'' is no name of a stack, give one word"),
-        (["--stack", "a\nb"], "is no name of a stack, give one word"),
+        (["--stack", ""], "'' is not a name of a stack, give one word"),
+        (["--stack", "a\nb"], "is not a name of a stack, give one word"),
         (["--timeout", "5"], "--timeout and --domain are for the live graph"),
         (["--domain", "5"], "--timeout and --domain are for the live graph"),
-        (["--node"], "argument --node: expected at least one argument"),
-        (["-o", "no/where.yaml"], "no/where.yaml: cannot be written: the folder no does not exist"),
+        (["--node"], "argument --node: expected one argument"),
+        (["--node", "/driver", "/eye"], "unexpected /eye; a list is written A,B"),
+        (["-o", "/dev/null/mine.yaml"], "/dev/null is a file, not a folder"),
     ],
 )
 def test_wrong_use_is_one_line(

@@ -173,6 +173,7 @@ def one_robot_killed(plan: Path, offset: int) -> Iterator[IO[str]]:
         yield lines
 
 
+@pytest.mark.deep
 def test_a_killed_node_stays_visible_to_who_saw_it_alive(ros: None, plan: Path) -> None:
     """Who looks later does not see it."""
     with one_robot_killed(plan, 82) as lines:

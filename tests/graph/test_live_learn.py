@@ -74,9 +74,7 @@ def files(
     found = {name: folder / f"{name}.yaml" for name in ("root", "below")}
     shot, stack = str(folder / "graph.json"), ["--stack", "mine", "-o"]
     with live_fleet.running(domain(0), code, below, **tf2):
-        live = multibot(
-            0, "learn", "--node", "/driver", "/pilot", *stack, str(found["root"]), **tf2
-        )
+        live = multibot(0, "learn", "--node", "/driver,/pilot", *stack, str(found["root"]), **tf2)
         seen = multibot(0, "snapshot", "-o", shot, **tf2)
     words = ("--snapshot", shot, "--namespace", "/old", *stack, str(found["below"]))
     later = multibot(0, "learn", *words)
@@ -111,7 +109,7 @@ def test_names_are_written_as_they_were_seen(files: dict[str, Path]) -> None:
         pytest.param("root", "tf-per-robot", marks=pytest.mark.deep),
         pytest.param("root", "frames-per-robot", marks=pytest.mark.deep),
         ("root", "postfix"),
-        ("below", "frames-per-robot"),
+        pytest.param("below", "frames-per-robot", marks=pytest.mark.deep),
     ],
 )
 def test_started_with_the_rules_nothing_leaks(

@@ -50,7 +50,8 @@ def layouts(
     folder = tmp_path_factory.mktemp("rehearsals")
 
     def run(at: int, layout: str) -> subprocess.CompletedProcess[str]:
-        words = ["--stack", "nav2", "--layout", layout, "-o", str(folder / layout)]
+        words = ["--stack", "nav2", "--layout", layout]
+        words += ["--save-snapshot", str(folder / layout)]
         words += ["--report", str(folder / f"{layout}.html")]
         return rehearse(at, *PAIR, *words)
 

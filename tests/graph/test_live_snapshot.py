@@ -189,7 +189,7 @@ def test_actions_are_in_the_snapshot(seen: Snapshot, has_tf: bool) -> None:
 def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
     if not fleet:
         pytest.skip("tf2_msgs was not built for this run, so it cannot be taken away")
-    result = multibot(0, "--expect", "/robot1/state", "/robot2/state")
+    result = multibot(0, "--expect", "/robot1/state,/robot2/state")
     assert "the frames on /robot1/tf, /robot2/tf, /tf_static were not read" in result.stderr
     assert result.stdout.splitlines()[2].split()[:3] == ["node", "process", "publishes"]
     assert "/robot2/state" in result.stdout
@@ -197,7 +197,7 @@ def test_frames_that_could_not_be_read_are_a_caveat(fleet: Build) -> None:
 
 def test_expected_nodes_end_the_observation_and_a_topic_is_queried(fleet: Build) -> None:
     names = ["/robot1/drive", "/robot2/drive"]
-    result = multibot(0, "-o", "-", "--expect", *names, "--topic", "/heartbeat", **fleet)
+    result = multibot(0, "-o", "-", "--expect", ",".join(names), "--topic", "/heartbeat", **fleet)
     assert result.returncode == 0, result.stderr
     view = from_json(result.stdout.encode(), "stdout")
     assert view.environment.settled == EXPECTED
@@ -279,3 +279,25 @@ def test_no_child_is_left(number: signal.Signals) -> None:
     finally:
         command.kill()
         command.wait()
+
+
+GONE = """
+import rclpy
+from multibot_rewrite.graph.live import ros
+rclpy.init()
+node = rclpy.create_node("looks")
+for query in (ros.action_servers, ros.action_clients):
+    assert query(node, "looks", "/") == []
+    try:
+        query(node, "left", "/robot1")
+    except ros.node_gone_error() as error:
+        print(error)
+"""
+
+
+def test_a_node_that_left_between_two_queries_is_no_failure() -> None:
+    """Where several look at once, each sees the others come and go."""
+    command = [sys.executable, "-c", GONE]
+    env = live_fleet.environ(domain(49))
+    done = subprocess.run(command, env=env, capture_output=True, text=True, check=False)
+    assert done.stdout == "/robot1/left left the graph\n" * 2, done.stderr

@@ -19,11 +19,19 @@ ROVER = str(FIXTURES / "robots" / "rover.urdf")
 FLEET = (ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", "both")
 
 
-@pytest.fixture
-def plan(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def nav2_plan(tmp_path_factory: pytest.TempPathFactory) -> bytes:
     """The plan of two rovers with Nav2."""
-    path = tmp_path / "plan.yaml"
+    path = tmp_path_factory.mktemp("plan") / "plan.yaml"
     assert main(["plan", *FLEET, "-o", str(path)]) == 0
+    return path.read_bytes()
+
+
+@pytest.fixture
+def plan(tmp_path: Path, nav2_plan: bytes) -> Path:
+    """The same as a file that a test may edit."""
+    path = tmp_path / "plan.yaml"
+    path.write_bytes(nav2_plan)
     return path
 
 

@@ -95,6 +95,7 @@ NAME = TEXT.map("/{}".format)
 TIME = st.floats(0, 1e6) | st.just(math.inf)
 
 
+@pytest.mark.slow
 @given(
     st.builds(GraphNode, NAME, TEXT),
     st.builds(Qos, TEXT, st.integers(), TEXT, TEXT, TIME, TIME, TEXT, TIME),

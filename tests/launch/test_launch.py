@@ -291,6 +291,7 @@ def test_files_go_with_the_launch(fleet: str, context: Any) -> None:
     assert not folder.exists()
 
 
+@pytest.mark.slow
 def test_files_go_with_a_launch_that_is_never_shut_down(fleet: str, context: Any) -> None:
     own = importlib.import_module("launch").LaunchContext()
     path = Path(launch.perform(own, launch.params_file("params.yaml", "robot1", fleet)))

@@ -1,4 +1,4 @@
-"""Known findings: written, read, held against new ones; files that are no baseline."""
+"""Known findings: written, read, held against new ones; files that are not a baseline."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from multibot_rewrite.lint.config.baseline import (
     beyond,
     read_baseline,
 )
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 
 def finding(
@@ -156,8 +156,8 @@ BROKEN = [
     ("[]", '"urdf-lint-baseline": 1 is not in it'),
     ("{}", '"urdf-lint-baseline": 1 is not in it'),
     ('{"urdf-lint-baseline": 2, "findings": []}', "1 is not in it"),
-    ('{"urdf-lint-baseline": 1}', '"findings" is no list'),
-    ('{"urdf-lint-baseline": 1, "findings": {}}', '"findings" is no list'),
+    ('{"urdf-lint-baseline": 1}', '"findings" is not a list'),
+    ('{"urdf-lint-baseline": 1, "findings": {}}', '"findings" is not a list'),
     ('{"urdf-lint-baseline": 1, "findings": [1]}', "finding 1 does not have just code, file"),
     (entry(line=3), "finding 1 does not have just"),
     (entry(code=501), "'code' of finding 1 is 501"),
@@ -173,12 +173,12 @@ BROKEN = [
 
 
 @pytest.mark.parametrize(("text", "words"), BROKEN)
-def test_what_is_no_baseline_is_one_line(text: str | bytes, words: str) -> None:
+def test_what_is_not_a_baseline_is_one_line(text: str | bytes, words: str) -> None:
     Path("b.json").write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(UsageError) as caught:
         read_baseline("b.json")
     message = str(caught.value)
-    assert message.startswith("b.json: it is no baseline of urdf-lint: ")
+    assert message.startswith("b.json: not a baseline of urdf-lint: ")
     assert message.endswith("; write one with --write-baseline b.json")
     assert words in message
     assert "\n" not in message

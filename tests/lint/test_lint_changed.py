@@ -280,10 +280,10 @@ def test_what_cannot_be_read_is_left_to_the_lint(repo: Path) -> None:
 
 REVISIONS = [
     ("nowhere", "git knows no revision 'nowhere' here"),
-    ("", "'' is no revision"),
-    ("-x", "'-x' is no revision"),
-    ("--output=x", "'--output=x' is no revision"),
-    ("a\0b", "is no revision"),
+    ("", "'' is not a revision"),
+    ("-x", "'-x' is not a revision"),
+    ("--output=x", "'--output=x' is not a revision"),
+    ("a\0b", "is not a revision"),
     ("main..HEAD", "git knows no revision 'main..HEAD' here"),
     ("main:a.urdf", "git knows no revision"),
     ("two\nlines", "git knows no revision 'two\\nlines'"),

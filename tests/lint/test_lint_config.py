@@ -12,16 +12,16 @@ from paths import ROOT
 from multibot_rewrite import UsageError
 from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.configured import (
+from multibot_rewrite.lint.config.configured import (
     Configured,
     check_codes,
     configured,
     is_excluded,
     with_options,
 )
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, is_silent, matches
+from multibot_rewrite.lint.config.values import READERS
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import ArgumentSet, Settings, is_silent, matches
-from multibot_rewrite.lint.values import READERS
 from multibot_rewrite.naming import make_naming
 
 PAGE = (ROOT / "docs" / "lint-config.md").read_text()
@@ -133,13 +133,15 @@ def test_the_naming_is_that_of_the_options_of_urdf_postfix(project: Path) -> Non
         layout = "L4"
         affix = "prefix"
         topics = "namespace"
+        groups = "rename"
         separators = {link = "_", sensor = "__"}
         shared-frames = ["map"]
         shared-topics = []
     """
-    wanted = make_naming("L4", "prefix", "namespace", {"link": "_", "sensor": "__"}, ["map"], [])
+    marks = {"link": "_", "sensor": "__"}
+    wanted = make_naming("L4", "prefix", "namespace", marks, ["map"], [], "rename")
     assert read(project, text).settings.naming == wanted
-    assert read(project, 'affix = "prefix"').settings.naming == make_naming("L2", "prefix")
+    assert read(project, 'affix = "prefix"').settings.naming == make_naming(affix="prefix")
 
 
 ON = [
@@ -477,5 +479,5 @@ def test_every_key_has_an_example_on_the_page() -> None:
         if not re.search(rf"^(\[*|\[tool.urdf-lint\.){key}\b", whole, re.MULTILINE)
     ]
     assert missing == []
-    told = re.findall(r"^\| `([a-z-]+)` \|", PAGE, re.MULTILINE)
-    assert sorted(told) == sorted(READERS)
+    reported = re.findall(r"^\| `([a-z-]+)` \|", PAGE, re.MULTILINE)
+    assert sorted(reported) == sorted(READERS)

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_data, lint_file
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 ONE = Settings(select=("MB1",))
@@ -88,7 +88,7 @@ ROBOT = b'<robot name="r"><link name="a"/></robot>'
         (b'\xef\xbb\xbf<?xml version="1.1"?>' + ROBOT, ["MB140", "MB141"]),
         (b'<robot name="r" xmlns:a="u" xmlns:b="v"><b:x/></robot>', ["MB142"]),
         (b'<robot name="r" xmlns:a="u"><link name="l" a:ignore="1"/></robot>', []),
-        # A declaration further down, or of the default namespace, is no prefix of the root.
+        # A declaration further down, or of the default namespace, is not a prefix of the root.
         (b'<robot name="r"><gazebo xmlns:a="u"/></robot>', []),
         (b"<robot name='r' note='xmlns:a=\"u\"'/>", ["MB114"]),
         (b"", ["MB101"]),
@@ -102,7 +102,7 @@ def test_encodings(source: bytes, expected: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("source", "mended"),
+    ("source", "fixed"),
     [
         (b"\xef\xbb\xbf" + ROBOT, ROBOT),
         (
@@ -117,8 +117,8 @@ def test_encodings(source: bytes, expected: list[str]) -> None:
         (b'<robot xmlns:xacro="x" name="r"/>', b'<robot name="r"/>'),
     ],
 )
-def test_fixes_take_away_what_is_not_used(source: bytes, mended: bytes) -> None:
-    assert fix("robot.urdf", source, ONE)[0] == mended
+def test_fixes_take_away_what_is_not_used(source: bytes, fixed: bytes) -> None:
+    assert fix("robot.urdf", source, ONE)[0] == fixed
 
 
 @pytest.mark.parametrize(

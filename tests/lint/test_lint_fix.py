@@ -12,21 +12,21 @@ from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import Edit, ProofError
 
 SAMPLE = 60
 BOM = b"\xef\xbb\xbf"
-# A byte order mark, a prefix nobody uses, a version XML has not, a comment that silences nothing.
-MENDABLE = (
+# A prefix that is not used, twice, and a comment that suppresses nothing.
+FIXABLE = (
     b'<?xml version="1.0"?>\r\n'
     b"<robot name='r' xmlns:x=\"urn:x\"\txmlns:y = 'urn:y'>\r\n"
     b"  <!-- urdf-lint: ignore MB501, MB201 - nobody knows -->\r\n"
     b"  <link  name='a' /><!-- kept -->\r\n"
     b"</robot>"
 )
-MENDED = (
+FIXED = (
     b"<?xml version=\"1.0\"?>\r\n<robot name='r'>\r\n  <link  name='a' /><!-- kept -->\r\n</robot>"
 )
 
@@ -55,46 +55,46 @@ def counted(found: list[Finding]) -> Counter[str]:
 
 
 def check(path: str, data: bytes) -> bool:
-    """Fix a text; was there anything to mend?"""
+    """Fix a text; was there anything to fix?"""
     before = lint_data(path, data, Settings())
-    mendable = Counter(it.code for it in before if it.edits)
-    mended, left = fix(path, data, Settings())
-    assert (mended != data) == bool(mendable)
-    assert mended == by_hand(path, data)
-    assert fix(path, mended, Settings()) == (mended, left)
+    fixable = Counter(it.code for it in before if it.edits)
+    fixed, left = fix(path, data, Settings())
+    assert (fixed != data) == bool(fixable)
+    assert fixed == by_hand(path, data)
+    assert fix(path, fixed, Settings()) == (fixed, left)
     assert not any(it.edits for it in left)
     assert not counted(left) - counted(before)
-    assert counted(before) - counted(left) >= mendable
-    return bool(mendable)
+    assert counted(before) - counted(left) >= fixable
+    return bool(fixable)
 
 
-def test_what_is_mended_and_nothing_else() -> None:
-    assert fix("r.urdf", MENDABLE, Settings())[0] == MENDED
-    assert check("r.urdf", MENDABLE)
-    assert not check("r.urdf", MENDED)
+def test_what_is_fixed_and_nothing_else() -> None:
+    assert fix("r.urdf", FIXABLE, Settings())[0] == FIXED
+    assert check("r.urdf", FIXABLE)
+    assert not check("r.urdf", FIXED)
 
 
 @pytest.mark.parametrize(
-    "data", [MENDABLE, MENDABLE.replace(b"\r\n", b"\n"), BOM + MENDABLE, MENDABLE + b"\n\n"]
+    "data", [FIXABLE, FIXABLE.replace(b"\r\n", b"\n"), BOM + FIXABLE, FIXABLE + b"\n\n"]
 )
 def test_marks_and_line_ends_around_it_stay(data: bytes) -> None:
     assert check("r.urdf", data)
-    mended = fix("r.urdf", data, Settings())[0]
-    assert mended.removeprefix(BOM).count(b"\r") == data.count(b"\r") - (1 if b"\r" in data else 0)
+    fixed = fix("r.urdf", data, Settings())[0]
+    assert fixed.removeprefix(BOM).count(b"\r") == data.count(b"\r") - (1 if b"\r" in data else 0)
 
 
 def test_files_of_the_corpus(corpus: dict[str, Path]) -> None:
-    # Most of what is mended are prefixes that nothing uses.
+    # Most of what is fixed are prefixes that nothing uses.
     likely = {name: path for name, path in corpus.items() if b" xmlns:" in path.read_bytes()}
     assert sum(check(str(it), it.read_bytes()) for it in spread(likely, SAMPLE).values()) > 5
 
 
 @pytest.mark.deep
 def test_every_file_of_the_corpus(corpus: dict[str, Path]) -> None:
-    mended = 0
+    fixed = 0
     for path in corpus.values():
-        mended += check(str(path), path.read_bytes())
-    assert mended > 50
+        fixed += check(str(path), path.read_bytes())
+    assert fixed > 50
 
 
 def with_edits(monkeypatch: pytest.MonkeyPatch, *edits: Edit) -> None:
@@ -112,9 +112,9 @@ ONE = b'<robot name="r"><link name="a"/><link name="b"/></robot>'
 @pytest.mark.parametrize(
     ("edit", "said"),
     [
-        (Edit(16, 32, b"", None), "changes more"),
-        (Edit(17, 21, b"limb", None), "changes more"),
-        (Edit(16, 16 + 16, b'<link name="a"/><link name="c"/>', None), "changes more"),
+        (Edit(16, 32, b"", None), "would change more"),
+        (Edit(17, 21, b"limb", None), "would change more"),
+        (Edit(16, 16 + 16, b'<link name="a"/><link name="c"/>', None), "would change more"),
         (Edit(56, 56, b"", None), ""),
     ],
 )
@@ -131,7 +131,7 @@ def test_a_fix_that_goes_too_far_is_refused(
 
 def test_fixes_that_come_back_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     with_edits(monkeypatch, Edit(28, 29, b"a", None))
-    with pytest.raises(ProofError, match="come back"):
+    with pytest.raises(ProofError, match="still something to fix"):
         fix("r.urdf", ONE, Settings())
 
 
@@ -140,10 +140,10 @@ def test_fixes_that_come_back_are_refused(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_diff_shows_and_writes_nothing(tmp_path: Path, capsysbinary: object) -> None:
     file = tmp_path / "r.urdf"
-    file.write_bytes(MENDABLE)
+    file.write_bytes(FIXABLE)
     assert main([str(file), "--fix", "--diff"]) == 1
     out, err = capsysbinary.readouterr()  # type: ignore[attr-defined]
-    assert file.read_bytes() == MENDABLE
+    assert file.read_bytes() == FIXABLE
     assert b"-<robot name='r' xmlns:x" in out
     assert b"+<robot name='r'>\r\n" in out
     assert err.endswith(b"\n") and b"mended" not in err
@@ -153,21 +153,21 @@ def test_fix_writes_and_tells_what_is_left(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     file, other = tmp_path / "r.urdf", tmp_path / "other.urdf"
-    file.write_bytes(MENDABLE.replace(b"<!-- kept -->", b"<link name='b'/>"))
-    other.write_bytes(MENDED)
+    file.write_bytes(FIXABLE.replace(b"<!-- kept -->", b"<link name='b'/>"))
+    other.write_bytes(FIXED)
     file.chmod(0o640)
     assert main([str(tmp_path), "--fix"]) == 1
     out, err = capsys.readouterr()
     assert file.read_bytes().count(b"xmlns") == 0
-    assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, MENDED)
+    assert (file.stat().st_mode & 0o777, other.read_bytes()) == (0o640, FIXED)
     assert [line.split()[2] for line in out.splitlines() if "note:" not in line] == ["MB501"]
-    assert f"mended {file}" in err and "other.urdf" not in err
+    assert f"fixed {file}" in err and "other.urdf" not in err
 
 
 def test_what_is_found_through_another_file_is_not_lost(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """The whole is mended; what its part does to it is found through it, and still is."""
+    """The whole is fixed; what its part does to it is found through it, and still is."""
     space = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     (tmp_path / "part.xacro").write_text(f'<robot {space}><link name="b"/></robot>')
     comment = "<!-- urdf-lint: ignore MB201 -->\n"
@@ -182,7 +182,7 @@ def test_what_is_found_through_another_file_is_not_lost(
 
 def test_a_second_run_has_nothing_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "r.urdf"
-    file.write_bytes(MENDABLE)
+    file.write_bytes(FIXABLE)
     assert main([str(file), "--fix", "--quiet"]) == 0
     written = file.stat().st_mtime_ns
     capsys.readouterr()

@@ -12,7 +12,7 @@ from multibot_rewrite import rewrite
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint import fix as fixing
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import Edit
 
 # What is replaced in ``fixing``: how it lints a text.
@@ -102,8 +102,8 @@ def levels_in(printed: object) -> list[tuple[str, str]]:
 def test_a_level_of_the_configuration_is_the_findings(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], code: str, level: str, exit_code: int
 ) -> None:
-    """The exit code follows it, too: warnings and worse make it 1. (MB511 is what the comment of
-    the second text silences: it is idle only where that is asked.)"""
+    """The exit code follows it, too: warnings and worse make it 1. (The comment of the
+    second text suppresses MB511, so it is unused only if MB511 is on.)"""
     assert (
         linted(tmp_path, f'{code} = "{level}"', TEXTS[code], "--select", f"{code},MB511")
         == exit_code

@@ -26,9 +26,9 @@ from multibot_rewrite.findings.finding import LEVELS, NOTE, Finding
 from multibot_rewrite.findings.formats import FORMATS, Report, text
 from multibot_rewrite.findings.formats.markdown import ROOM
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.model import ERROR, WARNING, Edit
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -42,7 +42,7 @@ FILES = (
     "日本😀\u2028.urdf",
     os.fsdecode(b"b\xff\xfe.urdf"),
 )
-# What hangs on the base, so that the base is no finding.
+# A part below the base, so that the base is not a finding.
 HAND = (
     '<link name="hand"/><joint name="wrist" type="fixed">'
     '<parent link="base"/><child link="hand"/></joint>'
@@ -77,7 +77,7 @@ class Linted(NamedTuple):
 
 
 def pieces(*names: str) -> str:
-    """A robot with a base and links that hang on nothing: each of them is a finding."""
+    """A robot with a base and links without a joint: each of them is a finding."""
     links = [f'<link name="{name.translate(SPECIAL)}"/>' for name in names]
     return "\n  ".join(['<robot name="r">', f'<link name="base"/>{HAND}', *links, "</robot>"])
 
@@ -109,7 +109,9 @@ def thousand(here: Path) -> Linted:
     return Linted(lint_files(["many.urdf"], SETTINGS, jobs=1), ["many.urdf"])
 
 
-@pytest.fixture(params=["nasty", "thousand", "none", "nothing"])
+@pytest.fixture(
+    params=["nasty", pytest.param("thousand", marks=pytest.mark.slow), "none", "nothing"]
+)
 def linted(request: pytest.FixtureRequest, here: Path) -> Linted:
     if request.param == "none":
         return Linted([], ["a.urdf", "b.urdf"])
@@ -253,11 +255,11 @@ JSON = object_of(
 
 
 def test_json_is_the_documented_object(linted: Linted) -> None:
-    told = report("json", linted)
-    jsonschema.validate(told, JSON)
-    assert told["files"] == len(linted.files)
-    assert sum(told["counts"].values()) == len(told["findings"]) == len(linted.findings)
-    for it, finding in zip(told["findings"], linted.findings, strict=True):
+    reported = report("json", linted)
+    jsonschema.validate(reported, JSON)
+    assert reported["files"] == len(linted.files)
+    assert sum(reported["counts"].values()) == len(reported["findings"]) == len(linted.findings)
+    for it, finding in zip(reported["findings"], linted.findings, strict=True):
         assert (it["code"], it["line"], it["column"]) == (
             finding.code,
             finding.line,
@@ -269,9 +271,9 @@ def test_json_is_the_documented_object(linted: Linted) -> None:
 def test_json_tells_of_macros_and_edits(nasty: Linted) -> None:
     at = next(at for at, it in enumerate(nasty.findings) if it.calls)
     nasty.findings[at] = nasty.findings[at]._replace(edits=(Edit(3, 5, "é".encode(), None),))
-    told = report("json", nasty)["findings"][at]
-    assert told["edits"] == [{"start": 3, "end": 5, "text": "é"}]
-    assert told["calls"] == [
+    reported = report("json", nasty)["findings"][at]
+    assert reported["edits"] == [{"start": 3, "end": 5, "text": "é"}]
+    assert reported["calls"] == [
         {"file": "arm.urdf.xacro", "line": 5, "macro": "wheel"},
         {"file": "arm.urdf.xacro", "line": 8, "macro": "axle"},
     ]
@@ -327,8 +329,8 @@ def from_archive(path: Path, name: str) -> bytes:
 def with_fixes(linted: Linted) -> Linted:
     """Every finding in a plain file with an edit of its own."""
     edit = Edit(1, 3, "é".encode(), None)
-    mended = [it._replace(edits=(edit,)) if it.file == FILES[0] else it for it in linted.findings]
-    return linted._replace(findings=mended)
+    fixed = [it._replace(edits=(edit,)) if it.file == FILES[0] else it for it in linted.findings]
+    return linted._replace(findings=fixed)
 
 
 @pytest.mark.deep
@@ -366,8 +368,8 @@ def test_sarif_has_every_rule_with_its_words(nasty: Linted) -> None:
         assert it["defaultConfiguration"]["level"] == rule.level
         assert all(len(it[key]["text"]) <= 1024 for key in ("shortDescription", "fullDescription"))
         words = (rule.what, rule.why, rule.fix, rule.bad, rule.good)
-        for told in it["help"].values():
-            assert all(word in told for word in words)
+        for reported in it["help"].values():
+            assert all(word in reported for word in words)
 
 
 def test_sarif_results_say_what_and_where(nasty: Linted) -> None:
@@ -419,8 +421,8 @@ def test_a_sarif_fix_mends_as_the_edit_does(here: Path) -> None:
     (replacement,) = change["replacements"]
     lines = source.decode().splitlines(keepends=True)
     inserted = replacement["insertedContent"]["text"]
-    mended = replaced(lines, replacement["deletedRegion"], inserted)
-    assert mended.encode() == source[: edit.start] + edit.before + source[edit.end :]
+    fixed = replaced(lines, replacement["deletedRegion"], inserted)
+    assert fixed.encode() == source[: edit.start] + edit.before + source[edit.end :]
 
 
 @pytest.mark.parametrize(
@@ -511,8 +513,8 @@ def parsed(line: str) -> tuple[str, dict[str, str], str]:
     line = line.lstrip()
     assert line.startswith("::")
     head, _, message = line[2:].partition("::")
-    name, _, told = head.partition(" ")
-    pairs = [pair.split("=", 1) for pair in told.strip().split(",") if pair]
+    name, _, reported = head.partition(" ")
+    pairs = [pair.split("=", 1) for pair in reported.strip().split(",") if pair]
     properties = {key: unescaped(value, "\r\n:,%") for key, value in pairs}
     return name, properties, unescaped(message, "\r\n%")
 
@@ -552,9 +554,9 @@ GITLAB = list_of(
 
 
 def test_gitlab_is_a_code_quality_report(linted: Linted) -> None:
-    told = report("gitlab", linted)
-    jsonschema.validate(told, GITLAB)
-    for it, finding in zip(told, linted.findings, strict=True):
+    reported = report("gitlab", linted)
+    jsonschema.validate(reported, GITLAB)
+    for it, finding in zip(reported, linted.findings, strict=True):
         assert it["severity"] == {ERROR: "critical", WARNING: "major", NOTE: "info"}[finding.level]
         assert it["description"].startswith(f"{finding.code}: {finding.message}")
         assert it["location"]["lines"]["begin"] == finding.line
@@ -589,8 +591,8 @@ def test_junit_counts_are_those_of_its_cases(linted: Linted) -> None:
 
 def test_junit_cases_hold_the_whole_text(nasty: Linted) -> None:
     root = etree.fromstring(rendered("junit", *nasty).encode())
-    told = [it.text for it in root.iter("failure", "system-out")]
-    assert sorted(told) == sorted("\n".join(text.lines(it)) for it in nasty.findings)
+    reported = [it.text for it in root.iter("failure", "system-out")]
+    assert sorted(reported) == sorted("\n".join(text.lines(it)) for it in nasty.findings)
     kinds = Counter(it.get("type") for it in root.iter("failure"))
     assert kinds == Counter(it.level for it in nasty.findings if it.level != NOTE)
 
@@ -613,14 +615,14 @@ def cells(markdown: str) -> list[list[str]]:
         if token.type == "tr_open":
             rows.append([])
         if token.type == "td_open":
-            told = tokens[at + 1].children or []
-            assert {it.type for it in told} <= {"text", "html_inline"}
-            rows[-1].append("".join(it.content for it in told))
+            reported = tokens[at + 1].children or []
+            assert {it.type for it in reported} <= {"text", "html_inline"}
+            rows[-1].append("".join(it.content for it in reported))
     return [row for row in rows if row]
 
 
 def test_markdown_shows_what_was_found(nasty: Linted) -> None:
-    told = Counter(tuple(row) for row in cells(rendered("markdown", *nasty)))
+    reported = Counter(tuple(row) for row in cells(rendered("markdown", *nasty)))
     expected = Counter()
     for it in nasty.findings:
         _, *calls = text.lines(it)
@@ -629,7 +631,7 @@ def test_markdown_shows_what_was_found(nasty: Linted) -> None:
         first = text.one_line(f"{it.message}{hint}{given}")
         what = "<br>".join([first, *(line.strip() for line in calls)])
         expected[(str(it.line), it.level, f"{it.code} {RULES[it.code].name}", what)] += 1
-    assert told == expected
+    assert reported == expected
 
 
 def test_markdown_has_a_heading_a_file_with_findings(nasty: Linted) -> None:

@@ -7,11 +7,11 @@ from pkgutil import walk_packages
 
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.lint import rules
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.subjects import read_subjects
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import GROUPS, RULES, rules_of
 from multibot_rewrite.lint.rules.meshes.shared import used_files
-from multibot_rewrite.lint.settings import Settings
 
 MESHES = b"""<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl"/></geometry>
 </visual></link></robot>"""

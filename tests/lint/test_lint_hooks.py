@@ -18,7 +18,9 @@ import yaml
 from junitparser import JUnitXml
 from paths import ROOT
 
-from multibot_rewrite.cli.lint_usage import check_use, parser
+from multibot_rewrite.cli.declared.description import LINT
+from multibot_rewrite.cli.lint_use import check_use
+from multibot_rewrite.cli.parser import make_parser, parsed
 from multibot_rewrite.cli.urdf_lint import main
 
 pytestmark = pytest.mark.slow
@@ -130,7 +132,7 @@ def test_the_page_shows_commands() -> None:
 
 @pytest.mark.parametrize("line", shown_commands())
 def test_a_command_of_the_page_is_a_right_one(line: str) -> None:
-    check_use(parser().parse_intermixed_args(shlex.split(line)))
+    check_use(parsed(make_parser(LINT), shlex.split(line)))
 
 
 def lint(line: str) -> int:

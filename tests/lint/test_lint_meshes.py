@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files import packages
-from multibot_rewrite.lint.settings import Settings
 
 
 def manifest(folder: Path, name: str) -> Path:

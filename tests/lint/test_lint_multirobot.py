@@ -1,4 +1,4 @@
-"""MB4: what is told of a second robot, and what is not."""
+"""MB4: what is reported for a second robot, and what is not."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.naming import make_naming
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
@@ -19,6 +19,7 @@ HARDWARE = """<ros2_control name="h" type="system"><hardware><plugin>x/Y</plugin
 </ros2_control>"""
 TWO = ("robot1", "robot2")
 BOTH, BARE = make_naming("both"), make_naming("tf-per-robot")
+ONE_TF = make_naming("frames-per-robot")
 
 
 def codes(folder: Path, text: str, select: str = "MB4", **options: Any) -> list[str]:
@@ -43,7 +44,7 @@ def remapped(rule: str) -> str:
         (DRIVE.format(remapped("odom:=/")), []),
         (DRIVE.format(remapped("nonsense")), []),
         (DRIVE.format(remapped("")), []),
-        # The process-wide rule is told once, and under the stronger code.
+        # The process-wide rule is reported once, and under the stronger code.
         (CONTROL.format(remapped("odom:=/odom")), ["MB426"]),
         (CONTROL.format(remapped("odom:=odom")), []),
         (SENSOR.format("<topic>/imu</topic>"), ["MB402"]),
@@ -79,7 +80,7 @@ def test_gz_topics(text: str, expected: list[str], tmp_path: Path) -> None:
 def test_namespaces(namespace: str, expected: list[str], tmp_path: Path) -> None:
     text = DRIVE.format(f"<ros><namespace>{namespace}</namespace></ros>")
     assert codes(tmp_path, text, "MB403") == expected
-    assert codes(tmp_path, text + text, "MB403") == expected  # a namespace is told once
+    assert codes(tmp_path, text + text, "MB403") == expected  # a namespace is reported once
 
 
 FRAME = '<link name="base"/><link name="x/laser"/><gazebo reference="base">{}</gazebo>'
@@ -142,8 +143,9 @@ def test_tf_that_is_on_unless_switched_off(tmp_path: Path) -> None:
 
 def test_where_robots_share_tf_no_rule_is_missing(tmp_path: Path) -> None:
     text = DRIVE.format("<publish_odom_tf>true</publish_odom_tf>")
-    assert codes(tmp_path, text, "MB408", robots=TWO) == []
+    assert codes(tmp_path, text, "MB408", robots=TWO, naming=ONE_TF) == []
     assert codes(tmp_path, text, "MB408", robots=TWO, naming=BOTH) == ["MB408"]
+    assert codes(tmp_path, text, "MB408", robots=TWO) == ["MB408"]
 
 
 @pytest.mark.parametrize(
@@ -225,7 +227,7 @@ LINKS = '<link name="${prefix}a"/><link name="${prefix}b"/>'
         ("tf_prefix", LINKS.replace("prefix", "tf_prefix") + '<link name="c"/>', ["MB417"]),
         ("prefix", LINKS, []),
         ("prefix", LINKS + '<link name="world"/>', []),
-        # What stands in for a name may hold the prefix: nobody can see.
+        # A value in place of a name may hold the prefix: unknown.
         ("prefix name", LINKS + '<link name="${name}"/>', []),
         # Most are bare: it is meant so.
         ("prefix", '<link name="${prefix}a"/><link name="b"/><link name="c"/>', []),

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.settings import Settings
 
 MB3 = ("MB3",)
 
@@ -40,7 +40,7 @@ def plugin(inside: str, library: str = "libgazebo_ros_imu_sensor.so") -> str:
         (linked("", "b", "j"), ["MB302"]),
         (linked("a", " ", ""), ["MB302", "MB302"]),
         (linked("a b", " b", "cover to body"), ["MB303"] * 3),
-        # A name that is not there at all is told by another rule.
+        # A name that is missing is reported by another rule.
         ("<link/>", []),
         ('<link name="${prefix} a"/><link name="$(arg x)::b"/>', []),
         (linked("a::x", "b", "j"), ["MB305"]),
@@ -199,27 +199,27 @@ def test_names_for_other_formats(body: str, targets: tuple[str, ...], expected: 
 def test_a_usd_name_that_is_taken_is_told() -> None:
     text = f'<robot name="r">{linked("a-b", "a_b", "j")}</robot>'
     (found,) = lint_data("r.urdf", text.encode(), Settings(("MB320",), targets=("usd",)))
-    assert "there already" in found.message
+    assert "already exists" in found.message
 
 
 @pytest.mark.parametrize(
-    ("body", "mended"),
+    ("body", "fixed"),
     [
         # The frame without its slash is a link: the slash goes.
         ('<link name="a"/>' + plugin("<frame_name>/a</frame_name>"), True),
         ('<link name="a"/>' + plugin("<frame_name>\n /a\n</frame_name>"), True),
-        # It is none: a person must look.
+        # Not a link: a person must check.
         ('<link name="a"/>' + plugin("<frame_name>/b</frame_name>"), False),
         ('<link name="/a"/>', False),
     ],
 )
-def test_a_slash_in_front_goes_where_that_is_safe(body: str, mended: bool) -> None:
+def test_a_slash_in_front_goes_where_that_is_safe(body: str, fixed: bool) -> None:
     text = f'<robot name="r">{body}</robot>'
     settings = Settings(("MB301",))
     assert [it.code for it in lint_data("r.urdf", text.encode(), settings)] == ["MB301"]
     source, left = fix("r.urdf", text.encode(), settings)
-    assert source.decode() == (text.replace("/a", "a", 1) if mended else text)
-    assert bool(left) is not mended
+    assert source.decode() == (text.replace("/a", "a", 1) if fixed else text)
+    assert bool(left) is not fixed
 
 
 def test_shared_frames_keep_their_slash() -> None:

@@ -9,9 +9,9 @@ import pytest
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.rules.physics.moments import eigenvalues
-from multibot_rewrite.lint.settings import Settings
 
 GROUP = Settings(select=("MB6",), ignore=("MB609", "MB610", "MB611"))
 WHOLE = Settings(select=("MB609", "MB610", "MB611"))
@@ -55,7 +55,7 @@ def found(body: str, folder: Path, settings: Settings = GROUP) -> list[Finding]:
     return lint_file(str(file), settings)
 
 
-def told(findings: list[Finding]) -> str:
+def reported(findings: list[Finding]) -> str:
     return " ".join(sorted(f"{it.code}:{it.line}" for it in findings))
 
 
@@ -66,7 +66,7 @@ CASES = [
     pytest.param(
         robot(f"<inertial><mass/>{inertia(1, 1, 1)}</inertial>"), "MB601:1", id="mass without value"
     ),
-    pytest.param(robot(weighs("x")), "", id="no number is told elsewhere"),
+    pytest.param(robot(weighs("x")), "", id="not a number: another rule"),
     pytest.param(robot(weighs("nan")), "", id="nan, too"),
     pytest.param(robot(weighs(-1)), "MB602:1", id="negative mass of the root"),
     pytest.param(robot(GOOD, HOLDS, weighs(-1)), "MB602:2", id="negative mass on a fixed joint"),
@@ -104,11 +104,11 @@ CASES = [
     pytest.param(robot(GOOD, HOLDS, weighs(1, -1, 1, 1)), "MB619:2", id="merged negative"),
     pytest.param(robot(weighs(1, 1, 1, 3), HOLDS, GOOD), "MB619:1", id="others are merged into it"),
     pytest.param(robot(weighs(1, 1, 1, 3), HOLDS, ""), "MB607:1", id="nothing of mass is"),
-    pytest.param(robot(weighs(1, 1, 1, 3), name="world"), "MB619:1", id="world is no body"),
+    pytest.param(robot(weighs(1, 1, 1, 3), name="world"), "MB619:1", id="world is not a body"),
     # scale
     pytest.param(robot(weighs(3, 100, 100, 100)), "MB608:1", id="six metres"),
     pytest.param(robot(weighs(2000, 1e5, 1e5, 1e5)), "", id="a boat"),
-    pytest.param(robot(weighs(0.001, 1, 1, 1)), "", id="a stand-in"),
+    pytest.param(robot(weighs(0.001, 1, 1, 1)), "", id="a placeholder"),
     pytest.param(robot(weighs(1, "1e-9", "1e-9", "1e-9")), "MB608:1", id="a needle's point"),
     pytest.param(
         robot(weighs(1, 36, 36, 36) + HARD), "MB608:1", id="six metres in ten centimetres"
@@ -120,7 +120,9 @@ CASES = [
         id="15 kg in the middle of two metres",
     ),
     pytest.param(
-        robot(weighs(1, 1, 1, 1) + HARD.replace("box", "mesh")), "", id="nobody knows a mesh's size"
+        robot(weighs(1, 1, 1, 1) + HARD.replace("box", "mesh")),
+        "",
+        id="the size of a mesh is not known",
     ),
     # shapes
     pytest.param(robot(HARD.replace("0.1 0.1 0.1", "1 -1 1")), "MB613:1", id="negative side"),
@@ -129,9 +131,7 @@ CASES = [
         "MB613:2",
         id="a line",
     ),
-    pytest.param(
-        robot(HARD.replace("0.1 0.1 0.1", "1 1")), "", id="two numbers are told elsewhere"
-    ),
+    pytest.param(robot(HARD.replace("0.1 0.1 0.1", "1 1")), "", id="two numbers: another rule"),
     pytest.param(robot(HARD.replace("0.1 0.1 0.1", "100 100 0.1")), "", id="a floor"),
     pytest.param(robot(HARD.replace("0.1 0.1 0.1", "30 0.1 0.1")), "", id="a rail"),
     pytest.param(robot(HARD.replace("0.1 0.1 0.1", "80 60 40")), "MB614:1", id="millimetres"),
@@ -175,7 +175,7 @@ CASES = [
 
 @pytest.mark.parametrize(("body", "expected"), CASES)
 def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path) -> None:
-    assert told(found(body, tmp_path)) == expected
+    assert reported(found(body, tmp_path)) == expected
 
 
 @pytest.mark.parametrize(
@@ -193,7 +193,7 @@ def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path)
     ],
 )
 def test_the_robot_as_a_whole(body: str, expected: str, tmp_path: Path) -> None:
-    assert told(found(body, tmp_path, WHOLE)) == expected
+    assert reported(found(body, tmp_path, WHOLE)) == expected
 
 
 @pytest.mark.parametrize(("version", "expected"), [("1.0", "MB615:1"), ("1.2", "")])
@@ -204,7 +204,7 @@ def test_a_capsule_is_known_from_version_1_1_on(
     shape = '<capsule radius="1" length="1"/>'
     link = f'<link name="a"><visual><geometry>{shape}</geometry></visual></link>'
     file.write_text(f'<robot name="r" version="{version}">{link}</robot>')
-    assert told(lint_file(str(file), GROUP)) == expected
+    assert reported(lint_file(str(file), GROUP)) == expected
 
 
 def test_how_much_gazebo_leaves_out_is_told(tmp_path: Path) -> None:

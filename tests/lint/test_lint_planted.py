@@ -1,6 +1,6 @@
 """Defects of the kinds other linters were measured with, one a file: each is found at its line.
 
-What follows from a defect (a link that is called otherwise leaves its joint without a child) is told
+What follows from a defect (renaming a link leaves its joint without a child) is reported
 as well, and nothing else.
 """
 
@@ -11,7 +11,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 PLANTED = FIXTURES / "lint" / "planted"
 # File -> (code, line) of the defect, then of what follows from it.
@@ -56,5 +56,5 @@ def test_there_are_28_defects_and_a_robot_without() -> None:
 @pytest.mark.parametrize("name", [*FOUND, "healthy"])
 def test_a_defect_is_found_at_its_line_and_nothing_else(name: str) -> None:
     found = lint_file(str(PLANTED / f"{name}.urdf"), Settings())
-    told = sorted((it.code, it.line) for it in found if it.level != NOTE)
-    assert told == sorted(FOUND.get(name, []))
+    reported = sorted((it.code, it.line) for it in found if it.level != NOTE)
+    assert reported == sorted(FOUND.get(name, []))

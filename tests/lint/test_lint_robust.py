@@ -1,4 +1,4 @@
-"""urdf-lint among bad files and bad luck: never a traceback, never a hang, the others are linted."""
+"""urdf-lint with bad files and dying processes: no traceback, no hang, other files are linted."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.formats import FORMATS, Report, rendered
 from multibot_rewrite.lint import run
 from multibot_rewrite.lint.check import lint_data, lint_file
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import FEW, lint_files
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 from multibot_rewrite.naming import make_naming
 
 pytestmark = pytest.mark.slow
@@ -169,17 +169,17 @@ def test_endless_files_are_ended(found: list[Finding]) -> None:
 
 @pytest.mark.parametrize("name", BAD)
 def test_a_bad_file_is_told(found: list[Finding], name: str) -> None:
-    told = codes(found).get(name, set())
-    assert told >= BAD[name][1]
-    assert told & UNFINISHED <= BAD[name][1]
+    reported = codes(found).get(name, set())
+    assert reported >= BAD[name][1]
+    assert reported & UNFINISHED <= BAD[name][1]
 
 
 def test_what_is_no_file_is_told_and_the_others_are_linted(
     found: list[Finding],
 ) -> None:
-    told = codes(found)
-    assert [told[name] for name in LINKS] == [{"MB102"}] * len(LINKS)
-    assert "MB501" in told["in.urdf"] & told["zz.urdf"]
+    reported = codes(found)
+    assert [reported[name] for name in LINKS] == [{"MB102"}] * len(LINKS)
+    assert "MB501" in reported["in.urdf"] & reported["zz.urdf"]
 
 
 @pytest.mark.parametrize("form", FORMATS)
@@ -191,8 +191,8 @@ def test_every_format_tells_all_of_it(found: list[Finding], form: str, bad: Path
 
 @pytest.mark.parametrize("name", ["pipe.urdf", "pipe.xacro"])
 def test_a_pipe_that_nobody_writes_to(bad: Path, name: str) -> None:
-    (told,) = lint_files([str(bad / name)], Settings(seconds=SECONDS))
-    assert told.code == "MB004"
+    (reported,) = lint_files([str(bad / name)], Settings(seconds=SECONDS))
+    assert reported.code == "MB004"
 
 
 def test_a_pipe_that_somebody_writes_to(tmp_path: Path) -> None:
@@ -200,19 +200,19 @@ def test_a_pipe_that_somebody_writes_to(tmp_path: Path) -> None:
     os.mkfifo(pipe)
     writer = threading.Thread(target=pipe.write_bytes, args=(TWO_ROOTS,))
     writer.start()
-    (told,) = lint_files([str(pipe)], Settings(select=("MB501",)))
+    (reported,) = lint_files([str(pipe)], Settings(select=("MB501",)))
     writer.join()
-    assert (told.code, told.line) == ("MB501", 3)
+    assert (reported.code, reported.line) == ("MB501", 3)
 
 
 def test_a_device_without_end() -> None:
-    (told,) = lint_files(["/dev/zero"], Settings())
-    assert told.code == "MB101"
+    (reported,) = lint_files(["/dev/zero"], Settings())
+    assert reported.code == "MB101"
 
 
 def test_a_file_that_is_gone_before_it_is_read(tmp_path: Path) -> None:
-    (told,) = lint_files([str(tmp_path / "gone.urdf")], Settings())
-    assert told.code == "MB102"
+    (reported,) = lint_files([str(tmp_path / "gone.urdf")], Settings())
+    assert reported.code == "MB102"
 
 
 def test_a_file_that_changes_while_it_is_read(tmp_path: Path) -> None:
@@ -230,8 +230,8 @@ def test_a_file_that_changes_while_it_is_read(tmp_path: Path) -> None:
     writer.start()
     try:
         for _ in range(60):
-            told = lint_file(str(whole), Settings())
-            assert {it.code for it in told}.isdisjoint(UNFINISHED)
+            reported = lint_file(str(whole), Settings())
+            assert {it.code for it in reported}.isdisjoint(UNFINISHED)
     finally:
         stop.set()
         writer.join()

@@ -1,4 +1,4 @@
-"""The shape of a URDF against its schema: what is a fault, and what real files hold that is none."""
+"""The structure of a URDF against its schema: what is a fault, and what is allowed in real files."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ NO_FAULT = {
     "empty": "",
     "blanks around numbers of a vector": shape('<box size="  1   2 3 "/>'),
     "a blank in front of a number": shape('<sphere radius=" 1"/>'),
-    "spellings of numbers": shape('<box size="1. .5 +1e-3"/>'),
+    "forms of numbers": shape('<box size="1. .5 +1e-3"/>'),
     "too small for a double": shape('<sphere radius="1e-400"/>'),
     "many digits": shape(f'<sphere radius="0.{"1" * 300}"/>'),
     "capsule": shape('<capsule radius="1" length="1"/>'),
@@ -144,10 +144,10 @@ FAULTS = (
     (shape('<mesh filename="a" scale="1"/>'), "wrong-count", "mesh", "scale"),
     (shape('<sphere radius="1 1"/>'), "wrong-count", "sphere", "radius"),
     (joint('<axis xyz="0 1"/>'), "wrong-count", "axis", "xyz"),
-    (shape('<sphere radius="1 "/>'), "blank-behind-number", "sphere", "radius"),
-    (shape('<box size="1\t1 1"/>'), "blank-behind-number", "box", "size"),
-    (shape('<box size="1 1\n   1"/>'), "blank-behind-number", "box", "size"),
-    (shape('<box size="1 1 1\r\n"/>'), "blank-behind-number", "box", "size"),
+    (shape('<sphere radius="1 "/>'), "space-after-number", "sphere", "radius"),
+    (shape('<box size="1\t1 1"/>'), "space-after-number", "box", "size"),
+    (shape('<box size="1 1\n   1"/>'), "space-after-number", "box", "size"),
+    (shape('<box size="1 1 1\r\n"/>'), "space-after-number", "box", "size"),
     ('<robot name="r" version="1"/>', "bad-choice", "robot", "version"),
     (control("").replace("system", "System"), "bad-choice", "ros2_control", "type"),
     ('<material name="m"><color rgba="0 0 0"/></material>', "bad-colour", "color", "rgba"),
@@ -167,7 +167,7 @@ def test_one_fault_is_told_once(body: str, kind: str, tag: str, attribute: str |
     [
         # A line end behind a number of an element's text, and in a comment, are none of a value.
         ('<gazebo><pose>1\n2</pose></gazebo><!-- xyz="1\n2" -->', 0),
-        # Between attributes there is nothing to tell.
+        # Between attributes there is nothing to report.
         ('<link name="a1"\n/>', 0),
         # urdfdom takes white space in front of a number.
         (shape('<box size="\n 1 \t1 1"/>'), 0),
@@ -178,12 +178,12 @@ def test_one_fault_is_told_once(body: str, kind: str, tag: str, attribute: str |
     ],
 )
 def test_line_ends_and_tabs_count_in_numbers_alone(text: str, found: int) -> None:
-    assert len([it for it in faults(text) if it.kind == "blank-behind-number"]) == found
+    assert len([it for it in faults(text) if it.kind == "space-after-number"]) == found
 
 
 def test_the_same_wrong_value_is_told_at_every_place() -> None:
     assert len(faults(shape('<sphere radius="x"/>') * 3)) == 3
-    # An axis that nobody reads does not hide the same value where it is read.
+    # An axis that is not read does not hide the same value where it is read.
     wrong = '<axis xyz="0 1"/>'
     fixed = f'<joint name="j" type="fixed">{ENDS}{wrong}</joint>'
     moving = f'<joint name="k" type="revolute">{ENDS}{wrong}</joint>'
@@ -194,7 +194,7 @@ def test_the_same_wrong_value_is_told_at_every_place() -> None:
     ("value", "hint"),
     [
         ("0,5", "point"),
-        ("1, 2, 3", "blanks"),
+        ("1, 2, 3", "spaces"),
         ("0.5m", "unit"),
         ("90°", "unit"),
         ("${x}", "xacro"),

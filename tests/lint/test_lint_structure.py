@@ -11,10 +11,10 @@ from lxml import etree
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.facts.numbers import number, vector
 from multibot_rewrite.lint.facts.robot import loops, read_robot
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings
 
 GROUP = Settings(select=("MB5",))
 LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
@@ -86,7 +86,7 @@ CASES = [
     pytest.param(limited("fixed", 'effort="1"'), "MB510:2 MB522:2", id="limit of a fixed joint"),
     pytest.param(limited("continuous", 'effort="1" velocity="1"'), "", id="wheel"),
     pytest.param(limited("revolute", reach("0.1", "0.0")), "MB511:2", id="inverted"),
-    pytest.param(limited("revolute", reach("abc", "0")), "", id="no number is told elsewhere"),
+    pytest.param(limited("revolute", reach("abc", "0")), "", id="not a number: another rule"),
     pytest.param(limited("revolute", reach("nan", "1e400")), "", id="not finite"),
     pytest.param(limited("revolute", reach("0", "-0.0")), "MB512:2", id="zero and minus zero"),
     pytest.param(limited("continuous", reach("0", "0")), "", id="zeros of a wheel"),
@@ -104,7 +104,7 @@ CASES = [
     pytest.param(limited("prismatic", reach("0", "85")), "MB517:2", id="a gripper in mm"),
     pytest.param(limited("revolute", reach("-9.42", "9.42")), "", id="one and a half turns"),
     pytest.param(limited("revolute", reach("-12.566", "12.566")), "", id="two turns"),
-    pytest.param(limited("revolute", reach("-100", "100")), "", id="a hundred is no limit"),
+    pytest.param(limited("revolute", reach("-100", "100")), "", id="a hundred means no limit"),
     pytest.param(limited("revolute", reach("-1e16", "1e16")), "", id="endless"),
     pytest.param(limited("revolute", reach("-31.4", "31.4")), "", id="ten pi"),
     pytest.param(limited("revolute", reach("0", "180")), "MB518:2", id="degrees"),
@@ -220,7 +220,7 @@ def test_a_root_that_a_misspelt_child_makes_is_left_to_mb202(tmp_path: Path) -> 
     )
     assert found(body, tmp_path) == []
     (other,) = found(body.replace("wheel_lnik", "castor"), tmp_path)
-    assert (other.code, other.hint) == ("MB501", "add the joint that it hangs on")
+    assert (other.code, other.hint) == ("MB501", "add a joint that connects it")
 
 
 def test_a_type_is_proposed(tmp_path: Path) -> None:
@@ -308,6 +308,6 @@ def test_vectors() -> None:
 
 
 def test_every_rule_of_the_group_is_in_a_case() -> None:
-    told = {it for case in CASES for it in str(case.values[1]).split()}
+    reported = {it for case in CASES for it in str(case.values[1]).split()}
     examples = {"MB525", "MB531", "MB533", "MB534"}  # their examples say all there is
-    assert {it[:5] for it in told} | examples == {it for it in RULES if it.startswith("MB5")}
+    assert {it[:5] for it in reported} | examples == {it for it in RULES if it.startswith("MB5")}

@@ -1,4 +1,4 @@
-"""Comments that silence: what they reach, what is wrong with them, when one is not needed."""
+"""Comments that suppress findings: what they reach, their faults, and when one is not needed."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.config.directives import ALWAYS_TOLD, read_directives
+from multibot_rewrite.lint.config.directives import ALWAYS_REPORTED, read_directives
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
+from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.fix import fix
 from multibot_rewrite.lint.records import Problem, Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
-from multibot_rewrite.lint.suppress import unsuppressed
 
 PAGE = (ROOT / "docs" / "lint-config.md").read_text()
 XACRO = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="r">'
@@ -35,15 +35,15 @@ def links(subject: Subject) -> Iterator[Problem]:
             yield Problem(link.element, f"link {link.name!r}")
 
 
-def asked(settings: Settings, format_: str) -> list[Rule]:
+def active(settings: Settings, format_: str) -> list[Rule]:
     """As the registry has it, of the rules there are at this moment."""
     return [it for it in RULES.values() if format_ in it.formats and is_on(settings, it.code)]
 
 
 @pytest.fixture(autouse=True)
 def simple_rule(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What is found is told by this file alone."""
-    monkeypatch.setattr("multibot_rewrite.lint.check.active_rules", asked)
+    """Only the rules of this file."""
+    monkeypatch.setattr("multibot_rewrite.lint.check.active_rules", active)
     monkeypatch.setitem(RULES, "MB501", REAL._replace(check=links, options={}))
     for code in QUIET:
         monkeypatch.setitem(RULES, code, RULES[code]._replace(check=lambda _: (), options={}))
@@ -55,7 +55,7 @@ def linted(folder: Path, text: str, name: str = "a.urdf", **options: Any) -> lis
     return lint_file(str(path), Settings(**{"select": ON, **options}))
 
 
-def told(found: list[Finding]) -> list[str]:
+def reported(found: list[Finding]) -> list[str]:
     return [f"{it.code}:{it.line}" for it in found]
 
 
@@ -111,7 +111,7 @@ REACH = [
 @pytest.mark.parametrize("end", ["\n", "\r\n"], ids=["lf", "crlf"])
 @pytest.mark.parametrize(("body", "wanted"), REACH)
 def test_what_a_comment_reaches(tmp_path: Path, body: str, wanted: list[str], end: str) -> None:
-    assert told(linted(tmp_path, robot(body).replace("\n", end))) == wanted
+    assert reported(linted(tmp_path, robot(body).replace("\n", end))) == wanted
 
 
 def test_children_and_the_end_tag_are_reached(tmp_path: Path) -> None:
@@ -151,10 +151,10 @@ WHOLE = [
 
 @pytest.mark.parametrize(("text", "wanted"), WHOLE)
 def test_a_comment_for_the_whole_file(tmp_path: Path, text: str, wanted: list[str]) -> None:
-    assert told(linted(tmp_path, text)) == wanted
+    assert reported(linted(tmp_path, text)) == wanted
 
 
-# What stands in the comment -> None where it silences MB501, else words of the message and hint.
+# The comment -> None where it suppresses MB501, else words of the message and hint.
 GRAMMAR: list[tuple[str, str | None]] = [
     ("urdf-lint: ignore MB501", None),
     ("urdf-lint:ignore MB501", None),
@@ -169,28 +169,31 @@ GRAMMAR: list[tuple[str, str | None]] = [
     ("urdf-lint: ignore MB501:", None),
     ("urdf-lint: ignore ,MB501,", None),
     ("urdf-lint: ignore MB501, MB501", None),
-    ("urdf-lint: disable MB501", "'disable' is no word of urdf-lint (write"),
-    ("urdf-lint: ignored MB501", "'ignored' is no word of urdf-lint (did you mean 'ignore'?)"),
+    ("urdf-lint: disable MB501", "unknown word 'disable' (write"),
+    ("urdf-lint: ignored MB501", "unknown word 'ignored' (did you mean 'ignore'?)"),
     (
         "urdf-lint: ignore_file MB501",
-        "'ignore_file' is no word of urdf-lint (did you mean 'ignore-",
+        "unknown word 'ignore_file' (did you mean 'ignore-",
     ),
     ("urdf-lint: Ignore MB501", "did you mean 'ignore'?"),
-    ("urdf-lint: ignore[MB501]", "'ignore[MB501]' is no word of urdf-lint"),
-    ("urdf-lint: MB501", "'MB501' is no word"),
-    ("urdf-lint:", "it says nothing"),
-    ("urdf-lint: ignore", "it names no code"),
-    ("urdf-lint: ignore - MB501", "it names no code"),
-    ("urdf-lint: ignore: MB501", "it names no code"),
-    ("urdf-lint ignore MB501", "there is no colon behind 'urdf-lint'"),
+    ("urdf-lint: ignore[MB501]", "unknown word 'ignore[MB501]'"),
+    ("urdf-lint: MB501", "unknown word 'MB501'"),
+    ("urdf-lint:", "the comment is empty"),
+    ("urdf-lint: ignore", "there is no code in it"),
+    ("urdf-lint: ignore - MB501", "there is no code in it"),
+    ("urdf-lint: ignore: MB501", "there is no code in it"),
+    ("urdf-lint ignore MB501", "there is no colon after 'urdf-lint'"),
     ("urdf-lint: ignore MB9999", "no rule has the code 'MB9999'"),
     ("urdf-lint: ignore mb501", "no rule has the code 'mb501' (did you mean MB501?)"),
-    ("urdf-lint: ignore MB5", "'MB5' is only the beginning of codes (write whole codes)"),
-    ("urdf-lint: ignore several-roots", "'several-roots' is no code"),
-    ("urdf-lint: ignore MB501-MB503", "'MB501-MB503' is no code"),
-    ("urdf-lint: ignore MB502:MB501", "'MB502:MB501' is no code"),
-    ("urdf-lint: ignore because I say so", "'because' is no code (put a dash before a reason"),
-    *((f"urdf-lint: ignore {code}", f"no comment silences {code}") for code in sorted(ALWAYS_TOLD)),
+    ("urdf-lint: ignore MB5", "'MB5' is not a whole code (write whole codes)"),
+    ("urdf-lint: ignore several-roots", "'several-roots' is not a code"),
+    ("urdf-lint: ignore MB501-MB503", "'MB501-MB503' is not a code"),
+    ("urdf-lint: ignore MB502:MB501", "'MB502:MB501' is not a code"),
+    ("urdf-lint: ignore because I say so", "'because' is not a code (put a dash before a reason"),
+    *(
+        (f"urdf-lint: ignore {code}", f"no comment can suppress {code}")
+        for code in sorted(ALWAYS_REPORTED)
+    ),
 ]
 
 
@@ -215,8 +218,8 @@ def test_the_codes_that_are_right_hold_beside_a_wrong_one(tmp_path: Path) -> Non
 
 def test_the_rules_about_comments_can_be_off(tmp_path: Path) -> None:
     text = robot(f"<!-- urdf-lint: disable -->\n{HERE}")
-    assert told(linted(tmp_path, text)) == ["MB003:2", "MB002:3"]
-    assert told(linted(tmp_path, text, ignore=("MB003",))) == ["MB002:3"]
+    assert reported(linted(tmp_path, text)) == ["MB003:2", "MB002:3"]
+    assert reported(linted(tmp_path, text, ignore=("MB003",))) == ["MB002:3"]
     assert linted(tmp_path, text, per_file=(("*.urdf", ("MB0",)),)) == []
     levels = {"MB002": "note", "MB003": "warning"}
     assert [it.level for it in linted(tmp_path, text, levels=levels)] == ["warning", "note"]
@@ -238,7 +241,7 @@ def test_unused_is_told_only_of_rules_that_are_asked(
     tmp_path: Path, options: dict[str, Any], spared: bool
 ) -> None:
     text = f'<robot name="r">\n{HERE}\n<link name="base"/></robot>'
-    assert told(linted(tmp_path, text, **options)) == ([] if spared else ["MB002:2"])
+    assert reported(linted(tmp_path, text, **options)) == ([] if spared else ["MB002:2"])
 
 
 @pytest.mark.parametrize(
@@ -255,7 +258,7 @@ def test_where_nothing_can_be_found_it_is_told_of_every_rule(
     tmp_path: Path, body: str, wanted: list[str]
 ) -> None:
     found = linted(tmp_path, robot(body), select=("MB0",))
-    assert told(found) == wanted
+    assert reported(found) == wanted
     assert {it.hint for it in found} <= {"put it on the line above the element"}
 
 
@@ -263,17 +266,17 @@ def test_a_rule_without_its_settings_is_not_asked(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = f'<robot name="r">\n{HERE}\n<link name="base"/></robot>'
-    hangs = RULES["MB501"]._replace(options={"robots": ("r1",), "layout": "L4"})
-    monkeypatch.setitem(RULES, "MB501", hangs)
+    dependent = RULES["MB501"]._replace(options={"robots": ("r1",), "layout": "L4"})
+    monkeypatch.setitem(RULES, "MB501", dependent)
     assert linted(tmp_path, text) == []
-    assert told(linted(tmp_path, text, robots=("r1",))) == ["MB002:2"]
+    assert reported(linted(tmp_path, text, robots=("r1",))) == ["MB002:2"]
 
 
 def test_a_rule_that_asks_for_other_files_is_not_judged(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = robot(f"{HERE}\n<gazebo/>")
-    assert told(linted(tmp_path, text)) == ["MB002:2"]
+    assert reported(linted(tmp_path, text)) == ["MB002:2"]
     monkeypatch.setitem(RULES, "MB501", RULES["MB501"]._replace(beside={"m.stl": ""}))
     assert linted(tmp_path, text) == []
 
@@ -313,7 +316,7 @@ FIXES = [
 @pytest.mark.parametrize("end", ["\n", "\r\n"], ids=["lf", "crlf"])
 @pytest.mark.parametrize(("before", "after"), FIXES)
 def test_an_unused_code_is_taken_out(before: str, after: str | None, end: str) -> None:
-    """Where the comment stands behind a second root, of which it silences MB501."""
+    """A comment after a second root suppresses its MB501."""
     one = "MB501" in (after or "")
     frame = '<robot name="r"><link name="base"/>\n{}<link name="z"/>\n</robot>\n'
     if not one:
@@ -358,7 +361,7 @@ IN_XACRO = [
 @pytest.mark.parametrize(("body", "wanted"), IN_XACRO)
 def test_in_xacro_it_stands_in_the_source(tmp_path: Path, body: str, wanted: list[str]) -> None:
     text = f'{XACRO}<link name="base"/>\n{body}\n</robot>'
-    assert told(linted(tmp_path, text, "a.urdf.xacro")) == wanted
+    assert reported(linted(tmp_path, text, "a.urdf.xacro")) == wanted
 
 
 def test_in_an_included_file_it_holds_for_that_file(tmp_path: Path) -> None:
@@ -375,7 +378,7 @@ def test_in_an_included_file_it_holds_for_that_file(tmp_path: Path) -> None:
 
 def test_a_part_of_some_robot_is_not_judged(tmp_path: Path) -> None:
     part = f"{XACRO}\n{HERE}\n<gazebo/></robot>"
-    assert told(linted(tmp_path, part, "a.xacro")) == ["MB002:2"]
+    assert reported(linted(tmp_path, part, "a.xacro")) == ["MB002:2"]
     assert linted(tmp_path, part.replace(' name="r"', ""), "a.xacro") == []
     path = str(tmp_path / "a.xacro")
     (tmp_path / "a.xacro").write_text(part)
@@ -387,7 +390,7 @@ def test_a_comment_that_one_of_the_expansions_needs_is_used(tmp_path: Path) -> N
         f'{XACRO}<xacro:arg name="two" default="base"/>\n<link name="base"/>\n'
         f'{HERE}\n<link name="$(arg two)"/></robot>'
     )
-    assert told(linted(tmp_path, text, "a.xacro")) == ["MB002:3"]
+    assert reported(linted(tmp_path, text, "a.xacro")) == ["MB002:3"]
     two = ArgumentSet("*", (("two", "b"),))
     assert linted(tmp_path, text, "a.xacro", arguments=(two,)) == []
 
@@ -396,7 +399,7 @@ def test_files_without_the_word_are_not_read_for_it(monkeypatch: pytest.MonkeyPa
     def never(_: bytes) -> list[object]:
         raise AssertionError
 
-    monkeypatch.setattr("multibot_rewrite.lint.suppress.read_directives", never)
+    monkeypatch.setattr("multibot_rewrite.lint.config.suppress.read_directives", never)
     finding = Finding("MB501", "error", "m", "", "f", 1, 1)
     assert unsuppressed([finding], {"f": b"<robot/>"}, Settings()) == [finding]
 
@@ -424,9 +427,9 @@ def test_hundreds_of_comments_take_no_time(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", re.findall(r"```xml\n(.*?)```", PAGE, re.DOTALL))
-def test_an_example_of_the_page_silences(
+def test_an_example_of_the_page_suppresses(
     tmp_path: Path, text: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(RULES, "MB501", REAL)
     assert linted(tmp_path, text) == []
-    assert told(linted(tmp_path, re.sub("<!--.*?-->", "", text))) != []
+    assert reported(linted(tmp_path, re.sub("<!--.*?-->", "", text))) != []

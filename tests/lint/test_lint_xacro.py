@@ -10,8 +10,8 @@ import pytest
 
 from multibot_rewrite.cli.urdf_lint import main
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.lint.settings import ArgumentSet, Settings
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 LOST = '<joint name="j" type="fixed"><parent link="gone"/><child link="a"/></joint>'
@@ -115,7 +115,7 @@ def test_one_place_in_a_macro_is_one_finding(tmp_path: Path) -> None:
     files = {"one.xacro": robot, "two.xacro": robot, "arm.xacro": xacro(MACRO, "")}
     found = one(tmp_path, files, select=("MB501",))
     assert found.message.startswith("link 'left_arm'")
-    assert found.hint.endswith("and 2 more like it, by other calls of the macro")
+    assert found.hint.endswith("and 2 more from other calls of the macro")
     assert found.calls == ("one.xacro:3: arm",)
 
 
@@ -126,7 +126,7 @@ def test_what_a_second_call_repeats_is_one_finding(tmp_path: Path) -> None:
     body = f'{macro}\n<xacro:m/>\n<xacro:m/>\n<link name="x"/><link name="x"/>'
     write(tmp_path, {"r.xacro": xacro(body)})
     first, other = linted(tmp_path, "r.xacro", select=("MB201",))
-    assert first.message == "link 'a' is declared twice, and so are 2 more that the same call makes"
+    assert first.message == "link 'a' is declared twice, and so are 2 more from the same call"
     assert (first.line, first.calls) == (2, ("r.xacro:6: m",))
     assert (other.message, other.line) == ("link 'x' is declared twice", 7)
 
@@ -138,10 +138,10 @@ def test_inner_calls_are_the_cause_where_the_outer_one_is_the_same(tmp_path: Pat
         '<xacro:wheel n="2"/>\n<xacro:wheel n="2"/></xacro:macro>'
     )
     write(tmp_path, {"r.xacro": xacro(f"{macros}\n<xacro:base/>")})
-    # Two causes, in one place of the macro: told once, with both counted.
+    # Two causes, in one place of the macro: reported once, with both counted.
     (found,) = linted(tmp_path, "r.xacro", select=("MB201",))
     assert found.calls[0] == "r.xacro:4: wheel"
-    assert "and so are 1 more" in found.message and "and 1 more like it" in found.hint
+    assert "and so is 1 more" in found.message and "and 1 more from other calls" in found.hint
 
 
 # ---------------------------------------------------------------- arguments
@@ -242,7 +242,7 @@ def test_a_urdf_that_is_a_part_is_judged_where_it_is_included(tmp_path: Path) ->
 
 
 def packages(tmp_path: Path) -> None:
-    """Two packages of one repository, one in another folder, one that nobody has."""
+    """Two packages of one repository, one in another folder, one that does not exist."""
     part = xacro(f"<link name='a'/>{LOST}", "")
     write(
         tmp_path,

@@ -55,7 +55,7 @@ def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
 def test_the_help_lists_a_fifth_layout(command: tuple[str, ...]) -> None:
     done = python(FIFTH, *command, "--help")
     assert done.returncode == 0, done.stderr
-    assert "bare (L5)" in re.sub(r"\s+", " ", done.stdout)
+    assert "bare (L5" in re.sub(r"\s+", " ", done.stdout)
 
 
 def test_the_default_layout_is_a_row() -> None:

@@ -322,8 +322,8 @@ WRONG_USE = {
         ("in.urdf", "a", "--changes", "{robot}.json"),
         ("--changes", "{robot}", "all robots"),
     ),
-    "output-empty": (("in.urdf", "a", "-o", ""), ("--output is empty",)),
-    "changes-empty": (("in.urdf", "a", "--changes", ""), ("--changes is empty",)),
+    "output-empty": (("in.urdf", "a", "-o", ""), ("-o/--output: the name is empty",)),
+    "changes-empty": (("in.urdf", "a", "--changes", ""), ("--changes: the name is empty",)),
     "output-and-in-place": (
         ("in.urdf", "a", "-o", "x", "--in-place"),
         ("--output", "--in-place", "exclude"),
@@ -373,10 +373,6 @@ def test_a_mistake_in_a_vocabulary_file(tmp_path: Path, row: str, said: tuple[st
 # ---------------------------------------------------------------- outputs that cannot be written
 
 
-def _missing(folder: Path) -> str:
-    return str(folder / "missing" / "{robot}.urdf")
-
-
 def _below_a_file(folder: Path) -> str:
     (folder / "file").write_text("")
     return str(folder / "file" / "{robot}.urdf")
@@ -396,7 +392,6 @@ def _read_only(folder: Path) -> str:
 @pytest.mark.parametrize(
     ("target", "said"),
     [
-        pytest.param(_missing, ("missing does not exist", "create it first"), id="missing"),
         pytest.param(_below_a_file, ("not a folder", "choose another"), id="below-a-file"),
         pytest.param(_a_folder, ("it is a folder", "name a file"), id="is-a-folder"),
         pytest.param(_read_only, ("choose another output",), id="read-only"),

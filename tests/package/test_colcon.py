@@ -26,7 +26,22 @@ except ModuleNotFoundError:
 
 COLCON = ("colcon-core", "colcon-ros", "colcon-python-setup-py", "colcon-recursive-crawl")
 # What a build takes; the rest of the repository is large, and no business of it.
-SOURCES = ("package.xml", "setup.py", "setup.cfg", "pyproject.toml", "resource", "multibot_rewrite")
+SOURCES = (
+    "package.xml",
+    "setup.py",
+    "setup.cfg",
+    "pyproject.toml",
+    "resource",
+    "share",
+    "multibot_rewrite",
+)
+# Where a shell and man look, below share/.
+SHELL_FILES = (
+    "bash-completion/completions/multibot",
+    "zsh/site-functions/_urdf-lint",
+    "man/man1/multibot-remap.1",
+    "man/man1/urdf-postfix.1",
+)
 NAMES = ("multibot_rewrite", "multibot_example")
 TOML = tomllib.loads((ROOT / "pyproject.toml").read_text())
 PROGRAMS = sorted(TOML["project"]["scripts"])
@@ -158,6 +173,12 @@ def test_data_files_are_there(workspace: Path) -> None:
     assert "robot2/bridge.yaml" in python(workspace, LOAD, fleet).split()
 
 
+def test_completions_and_manual_pages_are_installed(workspace: Path) -> None:
+    share = workspace / "install" / "multibot_rewrite" / "share"
+    for name in SHELL_FILES:
+        assert (share / name).read_bytes() == (ROOT / "share" / name).read_bytes()
+
+
 def test_the_example_is_installed_whole(workspace: Path) -> None:
     share = workspace / "install" / "multibot_example" / "share" / "multibot_example"
     example = ROOT / "examples" / "multibot_example"
@@ -196,4 +217,5 @@ def test_pip_goes_by_pyproject_alone(tmp_path: Path) -> None:
     assert any(it.startswith("lxml") for it in needed)
     assert not any(it.startswith("yourdfpy") for it in needed)
     assert sorted(it.name for it in (target / "bin").iterdir()) == PROGRAMS
-    assert not (target / "share").exists()
+    for name in SHELL_FILES:
+        assert (target / "share" / name).read_bytes() == (ROOT / "share" / name).read_bytes()

@@ -20,7 +20,7 @@ from multibot_rewrite import model
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("gc_pause", "version", "lazy", "nearest"),
+    ("gc_pause", "version", "lazy", "nearest", "plural"),
     ("findings",),
     ("model",),
     ("rosnames", "naming", "config", "arguments"),
@@ -35,6 +35,7 @@ FLOORS = (
     ("fleets",),
     ("__init__", "launch", "catalogue"),
     ("cli",),
+    ("__main__",),
 )
 HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro")
 # What a start pays for without need; the commands import these where they use them.

@@ -90,7 +90,7 @@ def rewritten(old: str, new: str, robot: str) -> bool:
 
 
 @given(random_robots(), options)
-@settings(max_examples=400)
+@settings(max_examples=200)
 def test_it_is_the_same_robot_under_new_names(robot: Robot, words: Options) -> None:
     result = attempt(robot, words)
     if result:
@@ -98,7 +98,7 @@ def test_it_is_the_same_robot_under_new_names(robot: Robot, words: Options) -> N
 
 
 @given(random_robots(), options, robot_names)
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_strip_gives_the_input_back(robot: Robot, words: Options, name: str) -> None:
     result = attempt(robot, words, name)
     if result:
@@ -106,7 +106,7 @@ def test_strip_gives_the_input_back(robot: Robot, words: Options, name: str) -> 
 
 
 @given(random_robots(), options)
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_changes_are_the_difference(robot: Robot, words: Options) -> None:
     result = attempt(robot, words)
     if result:
@@ -117,7 +117,7 @@ def test_changes_are_the_difference(robot: Robot, words: Options) -> None:
 
 
 @given(random_robots(), options)
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_names_are_the_only_thing_that_changes(robot: Robot, words: Options) -> None:
     result = attempt(robot, words)
     for (tag, attribute, old), new in changed_slots(robot.text, result.data) if result else ():
@@ -127,7 +127,7 @@ def test_names_are_the_only_thing_that_changes(robot: Robot, words: Options) -> 
 
 
 @given(random_robots(), options, st.lists(robot_names, min_size=2, max_size=2, unique=True))
-@settings(max_examples=300)
+@settings(max_examples=150)
 def test_two_robots_share_no_renamed_name(robot: Robot, words: Options, two: list[str]) -> None:
     try:
         results = list(rewrite_all(robot.text, two, **words))  # type: ignore[arg-type]
@@ -146,7 +146,7 @@ def renamed(source: bytes, result: Rewrite, kind: str) -> set[str]:
 
 
 @given(random_robots(), options, st.lists(robot_names, min_size=1, max_size=4, unique=True))
-@settings(max_examples=200)
+@settings(max_examples=100)
 def test_many_at_once_are_each_alone(robot: Robot, words: Options, fleet: list[str]) -> None:
     try:
         together = list(rewrite_all(robot.text, fleet, **words))  # type: ignore[arg-type]
@@ -159,7 +159,7 @@ def test_many_at_once_are_each_alone(robot: Robot, words: Options, fleet: list[s
 
 
 @given(random_robots())
-@settings(max_examples=200)
+@settings(max_examples=100)
 def test_a_policy_that_renames_nothing_changes_no_byte(robot: Robot) -> None:
     nothing = make_naming()._replace(separators={})
     template = pipeline.prepare(robot.text, "robot", nothing, builtin_tree())
@@ -167,13 +167,13 @@ def test_a_policy_that_renames_nothing_changes_no_byte(robot: Robot) -> None:
 
 
 @given(random_robots(extras=False))
-@settings(max_examples=100)
+@settings(max_examples=50)
 def test_bare_frames_leave_a_plain_description_alone(robot: Robot) -> None:
     assert rewrite(robot.text, ROBOT, layout="L1").data == robot.text
 
 
 @given(random_robots(), options)
-@settings(max_examples=150)
+@settings(max_examples=75)
 def test_a_second_rewrite_needs_again(robot: Robot, words: Options) -> None:
     result = attempt(robot, words)
     assume(result is not None and any(True for _ in etree.fromstring(robot.text).iter("link")))
@@ -189,7 +189,7 @@ def graph_changed(result: Rewrite) -> bool:
 
 
 @given(st.text(max_size=12) | st.text("ab_1- /", max_size=6) | st.just("a" * 246))
-@settings(max_examples=500)
+@settings(max_examples=250)
 def test_any_text_is_a_robot_name_or_leads_to_one(text: str) -> None:
     valid = re.fullmatch("[A-Za-z_][A-Za-z0-9_]*", text) is not None and len(text) <= 245
     if valid and "__" not in text:
@@ -203,7 +203,7 @@ def test_any_text_is_a_robot_name_or_leads_to_one(text: str) -> None:
 
 
 @given(st.text(max_size=8), st.sampled_from(("layout", "affix", "topics")))
-@settings(max_examples=100)
+@settings(max_examples=50)
 def test_an_unknown_word_is_a_usage_error(word: str, option: str) -> None:
     known = {*LAYOUTS, "postfix", "prefix", "namespace", ""}
     assume(word not in known)
@@ -224,7 +224,7 @@ def test_most_random_robots_are_rewritten() -> None:
     taken: list[bool] = []
 
     @given(random_robots(), options)
-    @settings(max_examples=100)
+    @settings(max_examples=50)
     def count(robot: Robot, words: Options) -> None:
         taken.append(attempt(robot, words) is not None)
 

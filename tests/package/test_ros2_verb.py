@@ -9,7 +9,8 @@ from importlib.metadata import entry_points
 import pytest
 from paths import FIXTURES
 
-from multibot_rewrite.cli.multibot import COMMANDS, main
+from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.ros2_verb import MultibotCommand
 from multibot_rewrite.version import __version__
 
@@ -30,7 +31,7 @@ def ros2(*words: str) -> int:
 
 def test_words_reach_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     rover = str(FIXTURES / "robots" / "rover.urdf")
-    words = ["remap", rover, "robot1", "--stack", "nav2", "--format", "ros-args"]
+    words = ["remap", rover, "robot1", "--stack", "nav2", "--form", "ros-args"]
     assert ros2(*words) == main(words) == 0
     first, second = capsys.readouterr().out.split("# robot1: map_server", 1)
     assert second.count("# robot1: map_server") == 1
@@ -48,7 +49,7 @@ def test_help_lists_the_commands(words: list[str], capsys: pytest.CaptureFixture
         ros2(*words)
     assert caught.value.code == 0
     shown = capsys.readouterr().out
-    assert all(name in shown and about in shown for name, about in COMMANDS.items())
+    assert all(name in shown and it.about in shown for name, it in COMMANDS.items())
 
 
 def test_help_of_a_command_is_its_own(capsys: pytest.CaptureFixture[str]) -> None:

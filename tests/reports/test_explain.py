@@ -1,4 +1,4 @@
-"""``--explain FILE:LINE``: which rewriter claims a value, why, and what it becomes."""
+"""``--why FILE:LINE``: which rewriter claims a value, why, and what it becomes."""
 
 from __future__ import annotations
 
@@ -99,6 +99,7 @@ def test_an_srdf_is_explained_beside_its_urdf() -> None:
         explain(SRDF, 3)
 
 
+@pytest.mark.slow
 def test_every_claim_of_a_real_robot_is_explained_at_its_line() -> None:
     text = ROVER.read_text()
     for number in range(1, text.count("\n") + 1):
@@ -111,7 +112,7 @@ def test_the_command_prints_place_rewriter_and_result(capsys: pytest.CaptureFixt
     line = next(
         n for n, row in enumerate(ROVER.read_text().split("\n"), 1) if "<left_joint>" in row
     )
-    assert main(["--explain", f"{ROVER}:{line}", "bob"]) == 0
+    assert main(["--why", f"{ROVER}:{line}", "bob"]) == 0
     out = capsys.readouterr().out
     assert out.startswith(f"{ROVER}:{line}:")
     assert "claimed by [plugin gazebo_ros_diff_drive] classic_ros2.vocab:" in out
@@ -132,7 +133,7 @@ def test_bad_places_are_one_line(
     place: str, words: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "a.urdf").write_text(ROBOT)
-    assert main(["--explain", place.format(tmp_path / "a.urdf")]) == 2
+    assert main(["--why", place.format(tmp_path / "a.urdf")]) == 2
     err = capsys.readouterr().err
     assert words in err
     assert err.count("\n") == 1

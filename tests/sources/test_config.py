@@ -135,7 +135,7 @@ def test_the_command_uses_it_and_the_library_does_not(
     project: Path, capsysbinary: pytest.CaptureFixture[bytes]
 ) -> None:
     path = str(project / "robots" / "crane" / "in.urdf")
-    assert main([path, "robot1", "--strict"]) == 0
+    assert main([path, "robot1", "--fail-on", "warning"]) == 0
     rewritten = capsysbinary.readouterr().out
     assert b"<my_frame>base/robot1</my_frame>" in rewritten
     assert "<my_frame>base</my_frame>" in rewrite(path, "robot1").text

@@ -438,6 +438,7 @@ def test_libsdformat_notices_a_wrong_name(
 # ---------------------------------------------------------------- the command
 
 
+@pytest.mark.slow
 def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
     (tmp_path / "model.sdf").write_bytes(NESTED)
     assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}/model.sdf").code == UNUSABLE

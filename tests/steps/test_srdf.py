@@ -324,6 +324,7 @@ MACRO = """
   <joint name="wrist" type="fixed"><parent link="base_link"/><child link="$(arg tip)"/></joint>"""
 
 
+@pytest.mark.slow
 def test_an_srdf_is_rewritten_and_stripped(folder: Path) -> None:
     done = run(folder, "arm.srdf", ROBOT, "--urdf", "arm.urdf", "-o", "out.srdf")
     assert done.code == 0

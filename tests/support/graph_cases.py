@@ -396,7 +396,7 @@ def check_lines(plan: str, graph: str) -> str:
     """What the command prints on standard output."""
     data = BytesIO()
     with TextIOWrapper(data, "utf-8") as out, redirect_stdout(out):
-        multibot(["check", plan, "--snapshot", graph])
+        multibot(["check", plan, "--snapshot", graph, "--verbose"])
         out.flush()
         return data.getvalue().decode()
 

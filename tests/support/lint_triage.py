@@ -17,10 +17,10 @@ from real_robots import corpus_files, wheel_files
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.lint.settings import Settings
 from multibot_rewrite.model import ERROR
 
 COUNTS = FIXTURES / "lint_triage_counts.tsv"
@@ -28,17 +28,17 @@ COUNTS = FIXTURES / "lint_triage_counts.tsv"
 LEAST = 5
 SHOWN = 5
 _HEAD = """\
-# What urdf-lint says about public robots
+# Findings of urdf-lint in public robots
 
 Made by `python tests/support/lint_triage.py page > docs/lint-triage.md`
 from `fixtures/lint_triage_*.tsv`.
 
 Every rule that finds an error in {corpus} public files or {wheels} of Python packages was
-judged: at least five of its findings, or all, by reading the file or by what check_urdf,
-sdformat or MuJoCo say to it. False errors were faults of the rule and are mended. Of warnings
-and notes a sample was judged; the few that are false are warnings because of them. Each rule
-shows some judgements here, the files hold them all. The counts are those of errors; a test
-holds them.
+judged: at least five of its findings, or all, by reading the file or with check_urdf,
+sdformat or MuJoCo. False errors were bugs of the rule and are fixed. Of warnings and notes a
+sample was judged; rules with a few false findings are warnings for that reason. Each rule
+shows some judgements here, the files have all of them. The counts are those of errors; a test
+checks them.
 
 | rule | public files | packages | judged | false |
 |---|--:|--:|--:|--:|
@@ -131,9 +131,9 @@ def page() -> str:
         by_rule[it.code].append(it)
     corpus, wheels = counts.pop("files")
     parts = [_HEAD.format(corpus=f"{corpus:,}", wheels=wheels)]
-    told = [code for code in sorted({*counts, *by_rule}) if code in RULES]
-    parts += [_row(code, *counts.get(code, (0, 0)), by_rule[code]) for code in told]
-    parts += [part for code in told if by_rule[code] for part in _section(code, by_rule[code])]
+    codes = [code for code in sorted({*counts, *by_rule}) if code in RULES]
+    parts += [_row(code, *counts.get(code, (0, 0)), by_rule[code]) for code in codes]
+    parts += [part for code in codes if by_rule[code] for part in _section(code, by_rule[code])]
     return "".join(parts)
 
 

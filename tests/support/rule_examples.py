@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 from graph_examples import read_example
 
-from multibot_rewrite import RewriteRefused, rewrite_all
+from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.companions.lua import frames_to_edit
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
@@ -20,7 +20,7 @@ from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.lint.check import lint_file
-from multibot_rewrite.lint.settings import Settings
+from multibot_rewrite.lint.config.settings import Settings
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\
@@ -88,13 +88,21 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example rewritten for ``robots`` of the rule's options; the others are those of the call."""
+    """The example rewritten for ``robots`` of the rule's options, or with ``strip`` taken back for
+    that robot; the other options are those of the call."""
+    file = folder / f"example.{'srdf' if SRDF in rule.formats else 'urdf'}"
+    file.write_text(whole(example))
     options: dict[str, Any] = {"robots": ["robot1"], **rule.options}
+    if "urdf" in options:
+        options["urdf"] = folder / options["urdf"]
+    robots, stripped = options.pop("robots"), options.pop("strip", "")
     try:
-        rewrites = list(rewrite_all(whole(example), options.pop("robots"), **options))
+        if stripped:
+            strip(file, stripped, **options)
+            return []
+        return list(next(iter(rewrite_all(file, robots, **options))).findings)
     except RewriteRefused as refused:
         return list(refused.findings)
-    return list(rewrites[0].findings)
 
 
 def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:

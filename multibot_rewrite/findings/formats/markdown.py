@@ -17,6 +17,7 @@ from multibot_rewrite.findings.formats.shared import (
     title,
     via,
 )
+from multibot_rewrite.plural import plural
 
 # A comment on GitHub holds 65,536 characters.
 ROOM = 60_000
@@ -36,13 +37,9 @@ def render(findings: Sequence[Finding], report: Report) -> str:
 
 
 def _sum(findings: Sequence[Finding], report: Report) -> str:
-    found = [_counted(number, level) for level, number in counts(findings).items() if number]
-    files = _counted(len(report.files), "file")
+    found = [plural(number, level) for level, number in counts(findings).items() if number]
+    files = plural(len(report.files), "file")
     return f"**{report.tool}**: {', '.join(found) or 'no findings'} in {files}\n"
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number != 1)}"
 
 
 def _parts(findings: Sequence[Finding], report: Report) -> Iterator[tuple[bool, str]]:

@@ -94,14 +94,26 @@ def action_servers(node: Node, name: str, namespace: str) -> Any:
     """Names and types of the actions that a node serves."""
     from rclpy.action import get_action_server_names_and_types_by_node
 
-    return get_action_server_names_and_types_by_node(node, name, namespace)
+    return _actions(get_action_server_names_and_types_by_node, node, name, namespace)
 
 
 def action_clients(node: Node, name: str, namespace: str) -> Any:
     """Names and types of the actions that a node calls."""
     from rclpy.action import get_action_client_names_and_types_by_node
 
-    return get_action_client_names_and_types_by_node(node, name, namespace)
+    return _actions(get_action_client_names_and_types_by_node, node, name, namespace)
+
+
+def _actions(query: Callable[..., Any], node: Node, name: str, namespace: str) -> Any:
+    """Queries for actions raise a plain RCLError for a node that left the graph."""
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    try:
+        return query(node, name, namespace)
+    except rclpy_implementation.RCLError as error:
+        if (name, namespace) in node.get_node_names_and_namespaces():
+            raise
+        raise node_gone_error()(f"{namespace.rstrip('/')}/{name} left the graph") from error
 
 
 def message_class(type_: str) -> tuple[Any, str]:

@@ -1,1 +1,1 @@
-"""What a lint is asked to report: patterns of files, ignore comments, known findings, changed files."""
+"""What to lint and report: settings and their file, ignore comments, known findings, changed files."""

@@ -38,14 +38,14 @@ class Baseline(NamedTuple):
 
 
 def read_baseline(path: str) -> Baseline:
-    """The baseline in a file; raises UsageError for a file that is none."""
+    """The baseline in a file; raises UsageError for any other file."""
     try:
         content = json.loads(read(path))
         return Baseline(_counts(content))
     except (ValueError, RecursionError) as error:
         reason = " ".join(str(error).split())
         hint = f"write one with --write-baseline {path}"
-        raise UsageError(f"{path}: it is no baseline of urdf-lint: {reason}; {hint}") from None
+        raise UsageError(f"{path}: not a baseline of urdf-lint: {reason}; {hint}") from None
 
 
 def _counts(content: object) -> Counter[Key]:
@@ -53,7 +53,7 @@ def _counts(content: object) -> Counter[Key]:
         raise ValueError(f'"{FORMAT}": {VERSION} is not in it')
     listed = content.get("findings")
     if not isinstance(listed, list):
-        raise ValueError('"findings" is no list')
+        raise ValueError('"findings" is not a list')
     counts: Counter[Key] = Counter()
     for number, entry in enumerate(listed, 1):
         _check(entry, number)

@@ -1,4 +1,4 @@
-"""Which files git says changed, and which xacro files read one that did."""
+"""Which files changed since a revision, and which xacro files include one that did."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from multibot_rewrite.model import UsageError
 _INCLUDE = re.compile(
     rb"<xacro:include\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?filename\s*=\s*(\"[^\"]*\"|'[^']*')"
 )
-# Only xacro can fill these in: it may be any name.
+# Only xacro knows these values: it may be any name.
 _UNKNOWN = re.compile(rb"\$.*[)}]|&#?\w+;", re.DOTALL)
-# A word in a file, or the end of its name -> what it reads without naming it.
+# Text in a file, or the end of its name -> files that it reads without naming them.
 _YAML = (b"load_yaml", ("*.yaml", "*.yml"))
 _BESIDE = ((".srdf", ".srdf.xacro"), ("*.urdf", "*.xacro"))
 
@@ -35,10 +35,10 @@ def changed_since(rev: str, paths: Sequence[str]) -> list[str]:
 
     That is a commit since then, the working tree, a file git does not have, or a xacro file that
     includes such a one. The repository is that of the working directory; what is outside of it, or
-    ignored, counts as changed: git cannot tell. Raises UsageError where git cannot be asked.
+    ignored, counts as changed. Raises UsageError if git fails.
     """
     if not rev or rev.startswith("-") or "\0" in rev:
-        raise UsageError(f"{rev!r} is no revision; name a branch, a tag or a commit")
+        raise UsageError(f"{rev!r} is not a revision; name a branch, a tag or a commit")
     changes = _changes(rev)
     touched = _touched(paths, changes)
     return [it for it in paths if touched[it]]
@@ -67,13 +67,13 @@ def _base(rev: str) -> str:
         _git([], "rev-parse", "--verify", "--quiet", f"{rev}^{{commit}}")
     except UsageError:
         raise UsageError(
-            f"git knows no revision {rev!r} here; fetch it, or name another one"
+            f"git does not know the revision {rev!r}; fetch it, or use another one"
         ) from None
     try:
         return _git([], "merge-base", rev, "HEAD").decode().strip()
     except UsageError:
         hint = "fetch the whole history (fetch-depth: 0)"
-        raise UsageError(f"{rev!r} and HEAD have no commit in common here; {hint}") from None
+        raise UsageError(f"{rev!r} and HEAD have no commit in common; {hint}") from None
 
 
 def _git(where: Sequence[str], *words: str) -> bytes:
@@ -82,8 +82,8 @@ def _git(where: Sequence[str], *words: str) -> bytes:
     except OSError as error:
         raise UsageError(f"git cannot be run: {error.strerror}; install it") from None
     except subprocess.CalledProcessError as error:
-        said = error.stderr.decode("utf-8", "replace").strip().splitlines() or ["it failed"]
-        raise UsageError(f"git says: {said[0].removeprefix('fatal: ')}") from None
+        lines = error.stderr.decode("utf-8", "replace").strip().splitlines() or ["it failed"]
+        raise UsageError(f"git reports: {lines[0].removeprefix('fatal: ')}") from None
     return done.stdout
 
 

@@ -1,4 +1,4 @@
-"""``urdf-lint:`` comments of a file: what they silence, and in which part of the file.
+"""``urdf-lint:`` comments of a file: what they suppress, and in which part of the file.
 
 <!-- urdf-lint: ignore MB401, MB402 - a reason -->
 <!-- urdf-lint: ignore-file MB401: a reason -->
@@ -17,15 +17,15 @@ from multibot_rewrite.nearest import nearest
 
 MARK = b"urdf-lint"
 IGNORE, IGNORE_FILE = "ignore", "ignore-file"
-# No comment silences these: the lint did not look at a file, or a comment is wrong.
-ALWAYS_TOLD = frozenset({"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103"})
+# No comment can suppress these: a file was not checked, or a comment is wrong.
+ALWAYS_REPORTED = frozenset({"MB001", "MB002", "MB003", "MB004", "MB101", "MB102", "MB103"})
 _OPEN, _EMPTY, _CLOSE, _COMMENT, _OTHER = "open", "empty", "close", "comment", "other"
 _PART = lazy_compile(
     rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|</?([^\s/>!?]+)(?:[^>\"']|\"[^\"]*\"|'[^']*')*>",
     re.DOTALL,
 )
 _DIRECTIVE = lazy_compile(rb"<!--\s*urdf-lint\s*(:?)\s*([^\s:]*)(.*)-->", re.DOTALL)
-# A dash or a colon with blanks around: neither MB401-MB405 nor MB401:MB402 drops a code silently.
+# A dash or a colon with spaces around it, so that MB401-MB405 and MB401:MB402 are errors.
 _REASON = lazy_compile(rb"\s*:(?=\s|$)|\s+(?:-|\xe2\x80\x93|\xe2\x80\x94)(?=\s|$)")
 _WORD = lazy_compile(rb"[^\s,]+")
 _LIKE_A_CODE = lazy_compile(r"[A-Za-z]{1,3}-?\d+")
@@ -62,8 +62,8 @@ class Code(NamedTuple):
 class Directive(NamedTuple):
     """A comment from ``start`` to ``end``, and the lines it is on as byte offsets.
 
-    ``element`` is the span of the element below it, if any. ``sometimes``: not every expansion of the
-    file has what it is about. ``idle``: there is nothing that a finding could be at.
+    ``element`` is the span of the element below it, if any. ``sometimes``: only some expansions
+    of the file have what it is about. ``idle``: there is no element that a finding could be at.
     """
 
     start: int
@@ -78,7 +78,7 @@ class Directive(NamedTuple):
 
 
 def read_directives(source: bytes) -> list[Directive]:
-    """The comments of a file that address the lint, in order."""
+    """The ``urdf-lint:`` comments of a file, in order."""
     parts = list(_parts(source))
     ends = _element_ends(parts)
     spans = [(parts[at].start, end) for at, end in ends.items() if parts[at].name in _SOMETIMES]
@@ -120,15 +120,15 @@ def _element_ends(parts: Sequence[Part]) -> dict[int, int]:
 
 
 def _directive(source: bytes, part: Part) -> Directive | None:
-    said = _DIRECTIVE.fullmatch(source, part.start, part.end)
-    if said is None:
+    comment = _DIRECTIVE.fullmatch(source, part.start, part.end)
+    if comment is None:
         return None
-    word = said[2].decode("utf-8", "replace")
-    if not said[1] and word not in (IGNORE, IGNORE_FILE):
-        return None  # prose about the lint
-    codes, faults = _codes(source, said)
-    if not said[1]:
-        faults = [Fault(part.start, f"there is no colon behind {MARK.decode()!r}")]
+    word = comment[2].decode("utf-8", "replace")
+    if not comment[1] and word not in (IGNORE, IGNORE_FILE):
+        return None  # text about the lint
+    codes, faults = _codes(source, comment)
+    if not comment[1]:
+        faults = [Fault(part.start, f"there is no colon after {MARK.decode()!r}")]
     elif word not in (IGNORE, IGNORE_FILE):
         faults = [_unknown_word(word, part.start)]
     codes = [] if faults and faults[0].start == part.start else codes
@@ -144,16 +144,16 @@ def _line_end(source: bytes, offset: int) -> int:
 def _unknown_word(word: str, start: int) -> Fault:
     near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
     hint = f"did you mean {near!r}?" if near else _HOW
-    return Fault(start, f"{word!r} is no word of urdf-lint" if word else "it says nothing", hint)
+    return Fault(start, f"unknown word {word!r}" if word else "the comment is empty", hint)
 
 
-def _codes(source: bytes, said: re.Match[bytes]) -> tuple[list[Code], list[Fault]]:
+def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[Code], list[Fault]]:
     """The valid codes, and what is wrong with the others."""
-    reason = _REASON.search(source, said.start(3), said.end(3))
-    end = reason.start() if reason else said.end(3)
+    reason = _REASON.search(source, comment.start(3), comment.end(3))
+    end = reason.start() if reason else comment.end(3)
     codes: list[Code] = []
     faults: list[Fault] = []
-    for found in _WORD.finditer(source, said.start(3), end):
+    for found in _WORD.finditer(source, comment.start(3), end):
         text = found[0].decode("utf-8", "replace")
         fault = _fault(text, found.start())
         if fault:
@@ -161,21 +161,21 @@ def _codes(source: bytes, said: re.Match[bytes]) -> tuple[list[Code], list[Fault
         else:
             codes.append(Code(text, *found.span()))
         if not _LIKE_A_CODE.fullmatch(text):
-            break  # the words of a reason are one fault
+            break  # a reason without a dash is one fault
     if not codes and not faults:
-        faults.append(Fault(said.start(), "it names no code"))
+        faults.append(Fault(comment.start(), "there is no code in it"))
     return codes, faults
 
 
 def _fault(text: str, start: int) -> Fault | None:
-    if text in ALWAYS_TOLD:
-        return Fault(start, f"no comment silences {text}", "leave it out")
+    if text in ALWAYS_REPORTED:
+        return Fault(start, f"no comment can suppress {text}", "remove it")
     if text in RULES:
         return None
     if not _LIKE_A_CODE.fullmatch(text):
-        return Fault(start, f"{text!r} is no code", "put a dash before a reason: CODE - reason")
+        return Fault(start, f"{text!r} is not a code", "put a dash before a reason: CODE - reason")
     if any(code.startswith(text.upper()) for code in RULES) and text.upper() not in RULES:
-        return Fault(start, f"{text!r} is only the beginning of codes", "write whole codes")
+        return Fault(start, f"{text!r} is not a whole code", "write whole codes")
     near = nearest(text.upper(), RULES)
     return Fault(start, f"no rule has the code {text!r}", f"did you mean {near}?" if near else _HOW)
 
@@ -204,7 +204,7 @@ def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
     """An ignore-file has no effect after the root's first child."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
-    late = Fault(it.start, f"{IGNORE_FILE} stands behind the first element", "move it to the top")
+    late = Fault(it.start, f"{IGNORE_FILE} is after the first element", "move it to the top")
     return it._replace(codes=(), faults=(*it.faults, late))
 
 

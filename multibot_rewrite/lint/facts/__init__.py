@@ -1,1 +1,1 @@
-"""What rules ask of a document: its links and joints, elements by tag, numbers, values before xacro."""
+"""What rules read of a document: links and joints, elements by tag, numbers, values before xacro."""

@@ -1,4 +1,4 @@
-"""The elements of a document by their tags: looked for once, however many rules ask."""
+"""The elements of a document by their tags: found once for all rules."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Elements:
         return [it for tag in tags for it in self._every.get(tag, ())]
 
     def tops(self, *tags: str) -> list[_Element]:
-        """The same of the root's children alone."""
+        """The same, only of the root's children."""
         return [it for tag in tags for it in self._tops.get(tag, ())]
 
 

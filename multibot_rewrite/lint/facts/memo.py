@@ -1,4 +1,4 @@
-"""What several rules ask of one document is worked out once and kept with its subject."""
+"""What several rules need of one document is computed once and kept with its subject."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ WORLD = "world"
 
 class Inertial(NamedTuple):
     """A link's ``<inertial>``. ``moments`` are in the order of ``MOMENTS``; like ``mass`` they are
-    None where they are missing or no numbers."""
+    None where they are missing or not numbers."""
 
     element: _Element
     mass: float | None
@@ -103,10 +103,10 @@ def _inertial(element: _Element) -> Inertial:
 
 def _firsts(things: Sequence[_Named]) -> dict[str, _Named]:
     """The first thing of each name, in document order."""
-    order: dict[str, _Named] = {}
+    first: dict[str, _Named] = {}
     for it in things:
-        order.setdefault(it.name, it)
-    return order
+        first.setdefault(it.name, it)
+    return first
 
 
 def _joint(element: _Element) -> Joint:
@@ -172,20 +172,20 @@ def loops(robot: Robot) -> list[list[Joint]]:
     done: set[str] = set()
     found = []
     for start in rest:
-        way: dict[str, Joint] = {}
+        path: dict[str, Joint] = {}
         name = start
         while name not in done:
             done.add(name)
-            way[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
-            name = way[name].parent
-        if name in way:
-            found.append(_from(way, name)[::-1])
+            path[name] = next(it for it in robot.above[name] if _ties(it) and it.parent in rest)
+            name = path[name].parent
+        if name in path:
+            found.append(_from(path, name)[::-1])
     return found
 
 
-def _from(way: Mapping[str, Joint], name: str) -> list[Joint]:
-    """The joints of a way, from the one above ``name`` on."""
-    return list(way.values())[list(way).index(name) :]
+def _from(path: Mapping[str, Joint], name: str) -> list[Joint]:
+    """The joints of a path, from the one above ``name`` on."""
+    return list(path.values())[list(path).index(name) :]
 
 
 def _not_of_a_tree(robot: Robot) -> dict[str, None]:

@@ -1,4 +1,4 @@
-"""How a value was written before xacro expanded it: can a caller give each robot its own?"""
+"""How a value was written before xacro expanded it: can a caller set another one for each robot?"""
 
 from __future__ import annotations
 

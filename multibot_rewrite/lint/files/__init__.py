@@ -1,1 +1,1 @@
-"""From a path to what rules look at: which files there are, how they expand, which belong together."""
+"""From a path to what rules check: which files there are, how they expand, which belong together."""

@@ -1,4 +1,4 @@
-"""Where packages and the files in them are: looked up once for a process."""
+"""Where packages and the files in them are: looked up once per process."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MOST_FOLDERS = 20_000
 HIGHEST = 6
 _MANIFEST = "package.xml"
 _NAME = lazy_compile(rb"<name>\s*([^<\s]+)\s*</name>")
-# Build results, libraries and the like: no sources of meshes below them.
+# Build results, libraries and similar folders: there are no sources of meshes below them.
 _SKIPPED = frozenset(("build", "log", "lib", "lib64", "include", "bin", "node_modules", "cmake"))
 
 
@@ -30,7 +30,7 @@ def package_folders(name: str, file: str, roots: tuple[str, ...]) -> tuple[str, 
 def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
     """The folder that $(find NAME) stands for in ``file``; empty if there is none.
 
-    The packages beside the file's own one, in the same repository, are found as well.
+    Other packages in the same repository are found as well.
     """
     known = package_folders(name, file, roots)
     own = _own_package(os.path.dirname(os.path.abspath(file)))

@@ -11,9 +11,9 @@ from io import StringIO
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.config.settings import Settings, matches
 from multibot_rewrite.lint.facts.robot import Robot, read_robot
 from multibot_rewrite.lint.files.packages import package_folder
-from multibot_rewrite.lint.settings import Settings, matches
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared

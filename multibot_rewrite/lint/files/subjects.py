@@ -1,4 +1,4 @@
-"""A file -> what rules look at: its document, once for each set of xacro arguments."""
+"""A file -> what rules check: its document, once for each set of xacro arguments."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO
+from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.robot import read_robot
 from multibot_rewrite.lint.files.packages import package_folder
 from multibot_rewrite.lint.files.pairing import SRDF_MARK, find_pair
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.schema.faults import read_faults
-from multibot_rewrite.lint.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
@@ -26,7 +26,7 @@ from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.steps.document import Document, read_document
 
-# Makes the reader take the root for that of an SRDF, whatever it holds.
+# Makes the reader treat the root as that of an SRDF, whatever it contains.
 NO_URDF: Declared = {"link": {}}
 EXPANDED = " (expanded)"
 DEFAULT = ArgumentSet("*", ())
@@ -36,7 +36,7 @@ DEFINITIONS = frozenset({"macro", "property", "arg", "include"})
 
 
 class Failed(NamedTuple):
-    """An expansion that failed: what xacro says, and the arguments that it was made with."""
+    """An expansion that failed: xacro's message, and the arguments that it was made with."""
 
     message: str
     arguments: str
@@ -76,7 +76,7 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
 
     trace = Trace({path: data}, path)
     find = partial(package_folder, file=path, roots=settings.roots)
-    # What xacro warns about is no finding, and would be printed between them.
+    # Warnings of xacro are not findings, and would be printed between them.
     with redirect_stderr(StringIO()):
         expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
     subject = _subject(read_document(expanded, path + EXPANDED), settings)
@@ -84,7 +84,7 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
 
 
 def _shaped(subject: Subject) -> Subject:
-    """The subject with the faults of its shape; the source of a xacro file has none yet."""
+    """The subject with the faults of its structure; the source of a xacro file has none yet."""
     urdf = subject.format == URDF
     return subject._replace(faults=read_faults(subject.document)) if urdf else subject
 

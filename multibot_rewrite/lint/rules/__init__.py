@@ -1,1 +1,1 @@
-"""The rules: a folder a group, a file a theme. A rule is its words, its examples and its check."""
+"""The rules: a folder per group, a file per theme. A rule has a description, examples and a check."""

@@ -1,4 +1,4 @@
-"""MB9: what a rewrite for several robots would leave as it is, because nothing says what it means."""
+"""MB9: what a rewrite for several robots leaves as it is, because its meaning is not known."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from multibot_rewrite.steps.document import slot_values
     "MB901",
     "unclaimed-mention",
     WARNING,
-    what="A value holds the name of a link or joint, and nothing in the vocabulary says what it "
-    "means.",
-    why="Where links and joints are renamed for each robot this value keeps the old name: the "
-    "plugin that reads it looks for a link or joint that is not there any more.",
-    fix="Add a line to a vocabulary file that says it is a name, or that it is to be kept.",
+    what="A value holds the name of a link or joint, and the vocabulary does not say what the "
+    "value means.",
+    why="Where links and joints are renamed for each robot, this value keeps the old name: the "
+    "plugin that reads it looks for a link or joint that no longer exists.",
+    fix="Add a line to a vocabulary file that says it is a name, or that it must stay as it is.",
     bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
     good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
     formats=(URDF, SRDF),
@@ -54,8 +54,8 @@ unknown_plugin = rule(
     "unknown-plugin",
     NOTE,
     what="A plugin is not in the vocabulary.",
-    why="Its parameters that name links, joints, frames or topics stay as they are for every robot, "
-    "unless they are called as other plugins call them.",
+    why="Its parameters that name links, joints, frames or topics stay as they are for every "
+    "robot, unless other plugins have parameters with the same names.",
     fix="Add a section for it to a vocabulary file.",
     bad='<gazebo><plugin name="p" filename="libmy_company_thing.so"/></gazebo>',
     good='<gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"/></gazebo>',
@@ -69,8 +69,13 @@ unknown_hardware_class = rule(
     why="One of its parameters may be a name, or a prefix that the driver puts in front of names: "
     "it stays as it is for every robot.",
     fix="Add a section for it to a vocabulary file.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin>'
-    '<param name="side">left</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>my_company/Arm</plugin></hardware>'
-    "</ros2_control>",
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>my_company/Arm</plugin>\n"
+    '    <param name="side">left</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>my_company/Arm</plugin></hardware>\n"
+    "</ros2_control>\n",
 )(partial(_audit, unknown_hardware))

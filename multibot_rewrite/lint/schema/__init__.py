@@ -1,1 +1,1 @@
-"""The shape of a URDF: what its readers look for (``urdf.schema``), and every fault against it."""
+"""The structure of a URDF: what parsers look for (``urdf.schema``), and every fault against it."""

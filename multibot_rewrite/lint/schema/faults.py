@@ -1,4 +1,4 @@
-"""A URDF against the schema of what its readers look for: one pass, every fault of its shape."""
+"""A URDF against the schema of what parsers look for: one pass, every fault of its structure."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from multibot_rewrite.steps.document import Document, tag_end
 
 # What a child of <robot> can be a misspelling of: anything else there is an extension.
 _CORE = ("link", "joint", "material", "transmission", "ros2_control", "gazebo")
-# The parts of a robot that hold text somewhere, which is quick to ask, and where.
+# The parts of a robot with text in them, found quickly, and where the text is.
 _TOPS = etree.XPath(
     "/robot[text()[normalize-space()]] | /robot/link[normalize-space()]"
     " | /robot/joint[normalize-space()] | /robot/material[normalize-space()]"
 )
 _TEXTS = etree.XPath("descendant-or-self::*[text()[normalize-space()]]")
-# A number with a line end or tab right after it.
+# A number with a line break or tab right after it.
 _BROKEN = (
     lazy_compile(rb"\n(?<=[\d.]\n)"),
     lazy_compile(rb"\t(?<=[\d.]\t)"),
@@ -45,7 +45,7 @@ _AXIS_FREE = ("fixed", "floating")
 
 
 class Fault(NamedTuple):
-    """A fault of the document's shape; ``kind`` is the name of the rule that reports it.
+    """A fault of the document's structure; ``kind`` is the name of the rule that reports it.
 
     ``attribute`` is as in ``Problem``.
     """
@@ -96,7 +96,7 @@ def _sorted_children(
 
 
 def _to_check(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._Element]:
-    """The elements whose attributes need a closer look."""
+    """The elements whose attributes may have a fault."""
     kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
     for element in elements:
         kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
@@ -125,7 +125,7 @@ def _with_odd_values(
 
 
 def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
-    """All that is wrong with an element's attributes."""
+    """All faults of an element's attributes."""
     keys = [str(key) for key in element.attrib]
     yield from _unknown_attributes(element, section, keys)
     for key in keys:
@@ -137,7 +137,7 @@ def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
 def _unknown_attributes(
     element: etree._Element, section: Section, keys: Sequence[str]
 ) -> Iterator[Fault]:
-    """Attributes that are missing, and those that no reader knows."""
+    """Attributes that are missing, and those that no parser knows."""
     known = section.attributes
     # A file of macros has neither a name nor links.
     empty = section.name == ROBOT and element.find("link") is None
@@ -147,7 +147,7 @@ def _unknown_attributes(
             continue
         meant = _near(key, [it for it in known if it not in keys])
         hint = f"did you mean {meant!r}?" if meant else ""
-        where = f"<{element.tag}> has an attribute {key!r}, which no reader of URDF knows"
+        where = f"<{element.tag}> has an attribute {key!r}, which no URDF parser reads"
         if meant in missing:
             missing.remove(meant)
             yield Fault("missing", element, key, f"<{element.tag}> has no {meant!r}", hint)
@@ -160,7 +160,7 @@ def _unknown_attributes(
 
 
 def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
-    """Children that are missing, repeated, or that no reader knows."""
+    """Children that are missing, repeated, or that no parser knows."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
     count = Counter(tags)
@@ -172,7 +172,7 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
         if meant in missing:
             missing.remove(meant)
             message = f"<{element.tag}> has no <{meant}>"
-            yield Fault("missing", child, None, message, f"is <{child.tag}> meant to be it?")
+            yield Fault("missing", child, None, message, f"is <{child.tag}> misspelled?")
         else:
             yield from _unknown_child(element, child, section, meant)
     for tag in missing:
@@ -185,7 +185,7 @@ def _unknown_child(
     element: etree._Element, child: etree._Element, section: Section, meant: str
 ) -> Iterator[Fault]:
     """A child that the schema does not have in its parent."""
-    message = f"<{child.tag}> in <{element.tag}> is read by nobody"
+    message = f"no parser reads <{child.tag}> inside <{element.tag}>"
     hint = f"did you mean <{meant}>?" if meant else ""
     if section.name == "ros2_control":
         yield Fault("unknown-component", child, None, f"<{child.tag}> in <ros2_control>", hint)
@@ -211,7 +211,7 @@ def _repeated(element: etree._Element, section: Section, count: Counter[str]) ->
         first, *others = element.findall(tag)
         other = next((it for it in others if _canonical(it) != _canonical(first)), None)
         if other is not None:
-            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads the first one alone"
+            message = f"<{element.tag}> has {times} <{tag}>: urdfdom reads only the first"
             yield Fault("repeated-element", other, None, message)
 
 
@@ -224,7 +224,7 @@ def _shapes(element: etree._Element, section: Section) -> Iterator[Fault]:
     known = [tag for tag, child in section.children.items() if child.times == "either"]
     shapes = list(element.iterchildren(*known)) if known else []
     if len(shapes) > 1:
-        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads the first one alone"
+        message = f"<{element.tag}> has {len(shapes)} shapes: urdfdom reads only the first"
         yield Fault("repeated-element", shapes[1], None, message)
 
 
@@ -248,15 +248,15 @@ def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> I
     elif kind.type == "version":
         if FINE["version"].fullmatch(value):
             return
-        message = f"{where}, urdfdom knows 1.0 alone"
+        message = f"{where}, urdfdom knows only 1.0"
         yield Fault(
             "bad-choice", element, attribute, message, 'write version="1.0", or leave it out'
         )
     elif not _is_unread(element):
-        said, problem, hint = wrong_numbers(value, kind.type)
-        if said:
-            named = "bad-colour" if kind.type == "rgba" else said
-            yield Fault(named, element, attribute, f"{where}{problem}", hint)
+        named, problem, hint = wrong_numbers(value, kind.type)
+        if named:
+            rule = "bad-colour" if kind.type == "rgba" else named
+            yield Fault(rule, element, attribute, f"{where}{problem}", hint)
 
 
 def _is_unread(element: etree._Element) -> bool:
@@ -266,15 +266,15 @@ def _is_unread(element: etree._Element) -> bool:
 
 
 def _stray_texts(root: etree._Element) -> Iterator[Fault]:
-    """Text where no reader expects any, mostly a stray ``>``."""
+    """Text where no parser expects any, mostly a stray ``>``."""
     for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
         section = section_of(element)
         if section is None or section.text:
             continue
         pieces = [element.text, *(child.tail for child in element)]
-        said = next(" ".join(it.split()) for it in pieces if it and it.strip())
+        found = next(" ".join(it.split()) for it in pieces if it and it.strip())
         inside = "" if element.text and element.text.strip() else None
-        message = f"text {shortened(said)!r} in <{element.tag}>, where nobody reads it"
+        message = f"text {shortened(found)!r} in <{element.tag}>, which no parser reads"
         yield Fault("stray-text", element, inside, message)
 
 
@@ -287,7 +287,7 @@ def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
 
 
 def _broken_numbers(document: Document) -> Iterator[Fault]:
-    """Line ends and tabs after a number: white space for XML, but not for urdfdom."""
+    """Line breaks and tabs after a number: white space for XML, but not for urdfdom."""
     source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
     for at in (it.start() for pattern in _BROKEN for it in pattern.finditer(source)):
@@ -299,5 +299,5 @@ def _broken_numbers(document: Document) -> Iterator[Fault]:
         found = _ASSIGNED.search(source, starts[number], at)
         key = found[1].decode() if found else ""
         if section and key in section.attributes and section.attributes[key].type in COUNTS:
-            message = f"{elements[number].tag}@{key} has a tab or a line end behind a number"
-            yield Fault("blank-behind-number", elements[number], key, message, "write one blank")
+            message = f"{elements[number].tag}@{key} has a tab or a line break after a number"
+            yield Fault("space-after-number", elements[number], key, message, "write one space")

@@ -1,7 +1,7 @@
-"""The schema as data: what readers of URDF look for in each element, read from ``urdf.schema``.
+"""The schema as data: what parsers of URDF look for in each element, read from ``urdf.schema``.
 
-Elements are alike in their attributes and children, so what the schema says about a combination is
-worked out once and then looked up.
+Many elements have the same attributes and children, so what the schema says about a combination is
+computed once and then looked up.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from multibot_rewrite.lazy import lazy_compile
 
 _SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
 _UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
-# What most values look like. urdfdom takes blanks before a lone number and none after it.
+# What most values look like. urdfdom accepts spaces before a single number and none after it.
 FINE = {
     "number": lazy_compile(rf" *{_SCALAR}", re.ASCII),
     "numbers": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
@@ -35,15 +35,15 @@ def shortened(text: str) -> str:
 
 
 def wrong_numbers(value: str, kind: str) -> tuple[str, str, str]:
-    """(kind of fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
+    """(fault, what is wrong, hint) of a value that should be numbers; empty where fine."""
     words = value.split()
     odd = next((word for word in words if not _NUMBER.fullmatch(word)), None)
     if not words:
-        return "not-a-number", ", which is no number", ""
+        return "not-a-number", ", which is not a number", ""
     if odd is not None and not _INFINITE.fullmatch(odd):
         return (
             "not-a-number",
-            f": {shortened(odd)!r} is no number" * (odd != value),
+            f": {shortened(odd)!r} is not a number" * (odd != value),
             _number_hint(value, odd),
         )
     if odd is not None or not all(isfinite(float(word)) for word in words):
@@ -60,14 +60,14 @@ def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, s
     if kind == "rgba" and not all(0 <= it <= 1 for it in numbers):
         return kind, ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
     if kind == "number" and value.endswith(" "):
-        return "blank-behind-number", ", with a blank behind it", "delete the blank"
+        return "space-after-number", ", with a space after it", "delete the space"
     return "", "", ""
 
 
 def _number_hint(value: str, odd: str) -> str:
     if "," in value:
-        alone = re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
-        return "write a point for the comma" if alone else "separate numbers by blanks, not commas"
+        single = re.fullmatch(r"\s*[-+]?\d+,\d+\s*", value)
+        return "use a decimal point" if single else "separate numbers by spaces, not commas"
     if "$" in value:
         return "expand it with xacro first"
     if _UNITS.fullmatch(odd):

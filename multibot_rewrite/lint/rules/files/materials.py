@@ -22,15 +22,19 @@ Look = tuple[tuple[float, ...] | str, str]
     "MB131",
     "undefined-material",
     WARNING,
-    what="A visual names a material that neither the robot nor an earlier visual defines, or a "
-    "material of the robot has neither colour nor texture.",
+    what="A visual refers to a material that neither the robot nor an earlier visual defines, or a "
+    "material of the robot has neither a color nor a texture.",
     why="urdfdom warns \"material 'm' undefined\" and leaves the visual without a material: "
     "viewers and Gazebo draw it in their default colour.",
     fix="Define it once as a child of <robot>, with a <color> or <texture>.",
-    bad='<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="m"/>'
-    "</visual></link>",
-    good='<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="m"/>'
-    '</visual></link><material name="m"><color rgba="1 0 0 1"/></material>',
+    bad='<link name="a">\n'
+    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
+    "</link>\n",
+    good='<link name="a">\n'
+    '  <visual><geometry><sphere radius="1"/></geometry><material name="m"/></visual>\n'
+    "</link>\n"
+    '<material name="m"><color rgba="1 0 0 1"/></material>\n',
+    line=2,
 )
 def undefined_material(subject: Subject) -> Iterator[Problem]:
     """Read in urdfdom's order: the robot's own materials first, then those of visuals."""
@@ -79,16 +83,26 @@ def _defines(material: etree._Element) -> bool:
     "MB132",
     "material-differs",
     WARNING,
-    what="A visual defines a material that is there already under that name, and differently.",
-    why="urdfdom keeps the first definition of a name for the whole robot: the visual is drawn in "
-    "the other colour, not in its own.",
-    fix="Give the material a name of its own.",
-    bad='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"><visual><geometry>'
-    '<sphere radius="1"/></geometry><material name="m"><color rgba="0 1 0 1"/></material></visual>'
-    "</link>",
-    good='<material name="m"><color rgba="1 0 0 1"/></material><link name="a"><visual><geometry>'
-    '<sphere radius="1"/></geometry><material name="m"><color rgba="1.0 0 0 1"/></material>'
-    "</visual></link>",
+    what="A visual defines a material whose name is already defined with another colour or "
+    "texture.",
+    why="urdfdom keeps the first definition of a name for the whole robot: the visual gets that "
+    "colour, not its own.",
+    fix="Give the material its own name.",
+    bad='<material name="m"><color rgba="1 0 0 1"/></material>\n'
+    '<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><sphere radius="1"/></geometry>\n'
+    '    <material name="m"><color rgba="0 1 0 1"/></material>\n'
+    "  </visual>\n"
+    "</link>\n",
+    good='<material name="m"><color rgba="1 0 0 1"/></material>\n'
+    '<link name="a">\n'
+    "  <visual>\n"
+    '    <geometry><sphere radius="1"/></geometry>\n'
+    '    <material name="m"><color rgba="1.0 0 0 1"/></material>\n'
+    "  </visual>\n"
+    "</link>\n",
+    line=5,
 )
 def material_differs(subject: Subject) -> Iterator[Problem]:
     """Each visual whose own definition is ignored."""
@@ -98,7 +112,7 @@ def material_differs(subject: Subject) -> Iterator[Problem]:
     for material in looks:
         name, look = material.get("name", ""), _look(material)
         if first.setdefault(name, look) != look:
-            hint = "the first definition of the name counts"
+            hint = "the first definition of the name is used"
             message = f"material {name!r} has another colour or texture than its first definition"
             yield Problem(material, message, "name", hint)
 

@@ -1,4 +1,4 @@
-"""Files that cannot be read, or are no robot description as they are."""
+"""Files that cannot be read, or are not a robot description as they are."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ not_xml = declare(
     "MB101",
     "not-xml",
     ERROR,
-    what="The file is not a robot description that can be read: broken XML, another encoding, "
-    "DOCTYPE, empty, or another root element.",
-    why="xacro, launch files and every other reader with a whole XML parser stop with an error. "
-    "urdfdom's takes some of it, so half of the system may run without the other half.",
-    fix="Mend the XML where the finding points; save the file as UTF-8.",
+    what="The file cannot be read as a robot description: broken XML, an encoding other than "
+    "UTF-8, a DOCTYPE, an empty file, or another root element.",
+    why="xacro, launch files and every other program with a complete XML parser stop with an "
+    "error. urdfdom's parser accepts some of it, so a part of the system may run without the rest.",
+    fix="Correct the XML at the place of the finding; save the file as UTF-8.",
     bad='<robot name="r"><link name="a"></robot>',
     good='<robot name="r"><link name="a"/></robot>',
 )
@@ -32,12 +32,15 @@ unreadable = declare(
     "MB102",
     "unreadable",
     ERROR,
-    what="The file, or one that it includes, is not there or may not be read.",
-    why="xacro and robot_state_publisher stop with an error, and the launch with them.",
-    fix="Mend the path; where it has $(find PACKAGE), source the workspace with that package.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:include filename="nowhere.xacro"/><link name="a"/></robot>',
+    what="The file, or one that it includes, does not exist or cannot be opened.",
+    why="xacro and robot_state_publisher stop with an error, and so does the launch file.",
+    fix="Correct the path; where it has $(find PACKAGE), source the workspace with that package.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:include filename="nowhere.xacro"/>\n'
+    '  <link name="a"/>\n'
+    "</robot>\n",
     good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="a"/></robot>',
+    line=2,
 )
 
 xacro_failed = declare(
@@ -47,12 +50,16 @@ xacro_failed = declare(
     what="xacro cannot expand the file: an argument, property, macro or package is missing, or an "
     "expression is wrong.",
     why="There is no URDF: the Command substitution of the launch file fails and nothing starts.",
-    fix="Give every <xacro:arg> a default, or the lint the arguments to expand with; for the rest "
-    "see the finding.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<link name="$(arg side)_arm"/></robot>',
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:arg name="side" default="left"/><link name="$(arg side)_arm"/></robot>',
+    fix="Give every <xacro:arg> a default, or pass the arguments to urdf-lint; for other errors "
+    "see the message.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <link name="$(arg side)_arm"/>\n'
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:arg name="side" default="left"/>\n'
+    '  <link name="$(arg side)_arm"/>\n'
+    "</robot>\n",
+    line=2,
 )
 
 
@@ -61,14 +68,14 @@ xacro_failed = declare(
     "leftover-xacro",
     WARNING,
     what="A file that is not named .xacro holds xacro elements or ${...} and $(arg ...).",
-    why="Who loads it as the URDF that its name promises gets no macros, and urdfdom refuses the "
-    "joint, and with it the robot, where ${...} stands for a number.",
-    fix="Name the file .urdf.xacro and load it through xacro, or write the expanded text.",
+    why="A program that loads it as a plain URDF does not expand macros, and urdfdom rejects the "
+    "joint, and with it the robot, where ${...} is in place of a number.",
+    fix="Name the file .urdf.xacro and load it through xacro, or store the expanded text.",
     bad='<link name="a"/><link name="${prefix}b"/>',
     good='<link name="a"/><link name="b"/>',
 )
 def leftover(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, at the first of them."""
+    """One finding per file, at the first of them."""
     found = list(leftover_xacro(subject.inventory))
     return _placed(subject, found) if found else iter(())
 
@@ -77,20 +84,21 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     "MB106",
     "already-rewritten",
     WARNING,
-    what="The description is spelled for one of the robots already: every name that a rewrite "
-    "spells has that robot's affix, or there is text that a rewrite inserted.",
-    why="urdf-postfix refuses it: a second rewrite would make base_link/robot1/robot1. Given to "
-    "several robots, all of them have the frames and topics of the one.",
-    fix="Lint and rewrite the source; take the affix back with urdf-postfix --strip, or let "
-    "exclude leave out what is generated.",
+    what="The description is already rewritten for one of the robots: every name that a rewrite "
+    "changes has that robot's prefix or postfix, or there is text that a rewrite inserted.",
+    why="urdf-postfix rejects it: a second rewrite would make base_link/robot1/robot1. If several "
+    "robots use it, all of them have the frames and topics of that one robot.",
+    fix="Lint and rewrite the source file; undo the rewrite with urdf-postfix --strip, or exclude "
+    "generated files.",
     bad='<robot name="r_robot1"><link name="base/robot1"/></robot>',
     good='<robot name="r"><link name="base"/></robot>',
     options={"robots": ("robot1", "robot2")},
 )
 def already(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, for the first robot whose name is in it."""
+    """One finding per file, for the first robot whose name is in it."""
     settings = subject.settings
-    found = already_rewritten(subject.inventory, rename_map(subject), settings.robots, False)
+    renames = rename_map(subject)
+    found = already_rewritten(subject.inventory, renames, settings.robots, False)
     for it in islice(found, 1):
         yield Problem(subject.document.root, it.message, None, "lint the source it was made from")
 
@@ -100,8 +108,8 @@ def already(subject: Subject) -> Iterator[Problem]:
     "sdf-world",
     ERROR,
     what="The file is an SDF world, which holds several models.",
-    why="Which of the models is the robot, nobody can tell: its names cannot be checked or spelled "
-    "for one robot.",
+    why="It is unknown which of the models is the robot, so names cannot be checked or renamed for "
+    "one robot.",
     fix="Keep the robot in a model.sdf of its own and include it in the world.",
     bad='<?xml version="1.0"?><sdf version="1.9"><world name="w"/></sdf>',
     good='<?xml version="1.0"?><sdf version="1.9"><model name="r"><link name="a"/></model></sdf>',

@@ -1,4 +1,4 @@
-"""What rules about the shape of a URDF share."""
+"""What rules about the structure of a URDF share."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from multibot_rewrite.lint.records import Problem, Subject
 
 
 def faults(kind: str, subject: Subject, *, substitutions: bool = True) -> Iterator[Problem]:
-    """The faults of a document's shape (``schema.faults``) of one kind, which its rule is named after.
+    """The faults of a document's structure (``schema.faults``) of one kind, the name of its rule.
 
     Without ``substitutions`` values with a ``$`` are left out: MB105 reports them.
     """

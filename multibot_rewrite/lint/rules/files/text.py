@@ -21,11 +21,12 @@ _ROOT = lazy_compile(rb"<robot\b(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
     "xml-declaration",
     WARNING,
     what="The XML declaration names a version other than 1.0, or an encoding other than UTF-8.",
-    why="urdfdom and Gazebo read UTF-8 whatever it says; expat (xacro, Python launch files) "
-    "refuses encodings of several bytes such as gb2312, and reads letters as the others do not.",
+    why="urdfdom and Gazebo read the file as UTF-8 whatever the declaration; expat (xacro, Python "
+    "launch files) rejects multi-byte encodings such as gb2312, and decodes letters differently.",
     fix='Write <?xml version="1.0" encoding="UTF-8"?>.',
     bad='<?xml version="1.0" encoding="ISO-8859-1"?><robot name="r"><link name="a"/></robot>',
     good='<?xml version="1.0" encoding="utf-8"?><robot name="r"><link name="a"/></robot>',
+    fixed='<?xml version="1.0" encoding="UTF-8"?><robot name="r"><link name="a"/></robot>',
 )
 def xml_declaration(subject: Subject) -> Iterator[Problem]:
     """With a fix: a file of another encoding that was read at all is plain ASCII."""
@@ -38,9 +39,9 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
     ):
         found = pattern.match(source, source.index(b"<?xml"))
         if found and found[1].lower() not in allowed:
-            said = found[1].decode("utf-8", "replace")
+            value = found[1].decode("utf-8", "replace")
             edit = Edit(found.start(1), found.end(1), right, None)
-            message = f"the XML declaration says {said!r}"
+            message = f"the XML declaration says {value!r}"
             yield Problem(subject.document.root, message, None, f"write {right.decode()}", (edit,))
 
 
@@ -49,11 +50,12 @@ def xml_declaration(subject: Subject) -> Iterator[Problem]:
     "byte-order-mark",
     NOTE,
     what="The file starts with a byte order mark.",
-    why="UTF-8 needs none. XML readers skip it at the start of a file, and refuse it as text before "
-    "the root where a script or template puts the description behind other text.",
+    why="UTF-8 needs none. XML parsers skip it at the start of a file, but reject it where a "
+    "script or template puts the description after other text.",
     fix="Save the file as UTF-8 without it.",
     bad='\ufeff<robot name="r"><link name="a"/></robot>',
     good='<robot name="r"><link name="a"/></robot>',
+    fixed='<robot name="r"><link name="a"/></robot>',
 )
 def byte_order_mark(subject: Subject) -> Iterator[Problem]:
     """With a fix."""
@@ -68,11 +70,12 @@ def byte_order_mark(subject: Subject) -> Iterator[Problem]:
     "unused-namespace",
     NOTE,
     what="The root element declares a namespace prefix that the file does not use.",
-    why="It has no effect. A xacro prefix in a plain URDF makes readers look for macros that are "
-    "not there.",
+    why="It has no effect. A xacro prefix in a plain URDF makes programs look for macros that do "
+    "not exist.",
     fix="Delete the declaration.",
     bad='<robot name="r" xmlns:drake="http://drake.mit.edu"><link name="a"/></robot>',
     good='<robot name="r" xmlns:drake="http://drake.mit.edu"><drake:joint name="j"/></robot>',
+    fixed='<robot name="r"><link name="a"/></robot>',
 )
 def unused_namespace(subject: Subject) -> Iterator[Problem]:
     """Prefixes of the root that are written nowhere else in the file."""

@@ -24,19 +24,20 @@ PARTLY = {
     "MB707",
     "mesh-format-unknown",
     WARNING,
-    what="A mesh's name has no ending, or one of a format that neither RViz nor Gazebo reads.",
-    why="Both choose the loader by the ending: the link has no shape.",
+    what="The file name of a mesh has no extension, or that of a format that neither RViz nor "
+    "Gazebo reads.",
+    why="Both choose the loader by the extension: the link has no shape.",
     fix="Convert it to STL, COLLADA (.dae) or OBJ.",
     bad=MESH % "package://arm/meshes/base.step",
     good=MESH % "package://arm/meshes/base.stl",
 )
 def mesh_format_unknown(subject: Subject) -> Iterator[Problem]:
-    """Endings of meshes that no program knows."""
+    """Extensions of meshes that no program knows."""
     for it in _meshes(subject):
         ending = _ending(it)
         if ending not in READABLE and ending not in PARTLY:
-            said = f"ends in .{ending}, which" if ending else "has no ending, so that"
-            yield problem(it, f"{it.name!r} {said} no program can load", "use .stl, .dae or .obj")
+            fault = f"no program can load .{ending}" if ending else "it has no extension"
+            yield problem(it, f"{it.name!r}: {fault}", "use .stl, .dae or .obj")
 
 
 def _meshes(subject: Subject) -> list[Used]:
@@ -54,9 +55,9 @@ def _ending(it: Used) -> str:
     "mesh-format-partly",
     NOTE,
     what="A mesh has a format that some of RViz, Gazebo Classic and gz cannot read.",
-    why="There the link has no shape: Gazebo Classic loads STL, COLLADA and OBJ, gz also glTF and "
-    "FBX from Garden on, RViz what assimp reads.",
-    fix="Convert it where the robot is to be seen in those programs too.",
+    why="In those programs the link has no shape: Gazebo Classic loads STL, COLLADA and OBJ, gz "
+    "also glTF and FBX from Garden on, RViz what assimp reads.",
+    fix="Convert it if the robot is to be shown in those programs too.",
     bad=MESH % "package://arm/meshes/base.glb",
     good=MESH % "package://arm/meshes/base.dae",
 )

@@ -1,4 +1,4 @@
-"""Files and packages that are not there."""
+"""Files and packages that do not exist."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_
 
 class Lookup(NamedTuple):
     """A file that was looked for: the folders it may be below, its path there, and the path as it
-    is written on the disk, empty where it is not there."""
+    is on the disk, empty where it does not exist."""
 
     used: Used
     folders: tuple[str, ...]
@@ -55,7 +55,7 @@ def _where(
         return (), ""
     path = path.lstrip("/")
     first = path.partition("/")[0].lower()
-    # A folder without a manifest must at least have the folder that is asked for.
+    # A folder without a manifest must at least have the first folder of the path.
     return tuple(it for it in folders_of(package) if _may_be_the_package(entries(it), first)), path
 
 
@@ -67,10 +67,10 @@ def _may_be_the_package(names: frozenset[str], first: str) -> bool:
     "MB701",
     "mesh-missing",
     ERROR,
-    what="A mesh or texture file is not there, though its package is.",
+    what="A mesh or texture file does not exist, though its package does.",
     why="RViz shows the link without a shape and marks the robot as faulty; Gazebo spawns it "
     "without that visual or collision, so a wheel falls through the ground.",
-    fix="Correct the path, or add the file to the package and to what it installs.",
+    fix="Correct the path, or add the file to the package and to its install rules.",
     bad=MESH % "package://arm_description/meshes/base.stl",
     good=MESH % "package://arm_description/meshes/link.stl",
     beside={
@@ -84,7 +84,7 @@ def mesh_missing(subject: Subject) -> Iterator[Problem]:
         if it.folders and not it.found:
             near = _nearest(it)
             hint = f"did you mean {near!r}?" if near else f"looked in {it.folders[0]}"
-            yield problem(it.used, f"{it.used.name!r} is not there", hint)
+            yield problem(it.used, f"{it.used.name!r} does not exist", hint)
 
 
 def _nearest(it: Lookup) -> str:
@@ -98,10 +98,10 @@ def _nearest(it: Lookup) -> str:
     "MB702",
     "package-not-found",
     NOTE,
-    what="A package that holds meshes is not below the folders that were searched.",
-    why="Whether its files are there was not checked; at run time they are looked for in the "
-    "packages of the sourced workspace.",
-    fix="Name the folder of the workspace's sources as a root, or source the workspace.",
+    what="A package that holds meshes was not found in the searched folders.",
+    why="Its files were not checked; at run time they are looked up in the packages of the sourced "
+    "workspace.",
+    fix="Give the source folder of the workspace as a root (--roots), or source the workspace.",
     bad=MESH % "package://arm_description/meshes/base.stl",
     good=MESH % "package://hand_description/meshes/base.stl",
     beside={
@@ -113,9 +113,7 @@ def package_not_found(subject: Subject) -> Iterator[Problem]:
     """Once for each package."""
     lost = [it for it in _lookups(subject) if it.path and not it.folders]
     for package, it in {_package(it): it for it in reversed(lost)}.items():
-        yield problem(
-            it.used, f"package {package!r} was not found", "name a folder it is in: --roots"
-        )
+        yield problem(it.used, f"package {package!r} was not found", "give its folder with --roots")
 
 
 def _package(it: Lookup) -> str:
@@ -126,10 +124,10 @@ def _package(it: Lookup) -> str:
     "MB703",
     "mesh-name-case",
     ERROR,
-    what="A mesh file has another spelling on the disk: capitals where there are none.",
-    why="macOS and Windows find it all the same, Linux does not: on the robot and in CI the link has "
-    "no shape.",
-    fix="Write it as the file is called.",
+    what="The name of a mesh file differs from the file on the disk in upper and lower case.",
+    why="macOS and Windows find it anyway, Linux does not: on the robot and in CI the link has no "
+    "shape.",
+    fix="Use the name of the file as it is on the disk.",
     bad=MESH % "package://arm_description/meshes/base.stl",
     good=MESH % "package://arm_description/meshes/Base.STL",
     beside={
@@ -138,8 +136,8 @@ def _package(it: Lookup) -> str:
     },
 )
 def mesh_name_case(subject: Subject) -> Iterator[Problem]:
-    """Paths that differ from the file only in capitals."""
+    """Paths that differ from the file only in upper and lower case."""
     for it in _lookups(subject):
         if it.found and it.found != os.path.normpath(it.path):
-            message = f"{it.path!r} is called {it.found!r} on the disk"
-            yield problem(it.used, message, f"write {it.found!r}")
+            message = f"{it.path!r} is {it.found!r} on the disk"
+            yield problem(it.used, message, f"use {it.found!r}")

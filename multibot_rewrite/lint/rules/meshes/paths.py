@@ -1,4 +1,4 @@
-"""How files are named: paths of one machine, schemes, backslashes."""
+"""How files are named: absolute paths, schemes, backslashes."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ def _with_scheme(subject: Subject, *schemes: str) -> list[Used]:
     "MB704",
     "path-of-one-machine",
     WARNING,
-    what="A mesh is named by a path from the root of one machine's disk.",
-    why="On every other machine, in CI and in a container the file is not there: the link has no "
+    what="A mesh is named by an absolute path of one machine.",
+    why="On every other machine, in CI and in a container the file does not exist: the link has no "
     "shape in RViz and none in Gazebo.",
-    fix="Write package://NAME/..., or file://$(find NAME)/... in xacro.",
+    fix="Use package://NAME/..., or file://$(find NAME)/... in xacro.",
     bad=MESH % "file:///home/me/ws/src/arm/meshes/base.stl",
     good=MESH % "package://arm/meshes/base.stl",
 )
@@ -46,9 +46,10 @@ def _is_literal(subject: Subject, start: int) -> bool:
     "MB705",
     "backslash-in-path",
     WARNING,
-    what="A mesh's path has backslashes.",
-    why="On Linux a backslash is a letter like any other: no such file is found, in no program.",
-    fix="Write slashes.",
+    what="The path of a mesh contains backslashes.",
+    why="On Linux a backslash is an ordinary character of a file name, so no program finds the "
+    "file.",
+    fix="Use slashes.",
     bad=MESH % r"package://arm\meshes\base.stl",
     good=MESH % "package://arm/meshes/base.stl",
 )
@@ -64,10 +65,10 @@ def backslash_in_path(subject: Subject) -> Iterator[Problem]:
     "MB706",
     "mesh-without-file",
     ERROR,
-    what="A mesh names no file.",
-    why="Without the attribute urdfdom refuses the robot (urdf_parser link.cpp); with an empty one "
+    what="A mesh has no file name.",
+    why="Without the attribute urdfdom rejects the robot (urdf_parser link.cpp); if it is empty, "
     "RViz and Gazebo find nothing to load.",
-    fix="Name the file, or take the visual or collision out.",
+    fix="Add the file name, or remove the visual or collision.",
     bad='<link name="a"><visual><geometry><mesh filename=""/></geometry></visual></link>',
     good=MESH % "package://arm/meshes/base.stl",
 )
@@ -76,8 +77,8 @@ def mesh_without_file(subject: Subject) -> Iterator[Problem]:
     for mesh in subject.elements.every("mesh"):
         name = mesh.get("filename")
         if (name is None or not name.strip()) and _is_shape(mesh):
-            said = "no file" if name is None else "an empty file name"
-            yield Problem(mesh, f"<mesh> has {said}", None if name is None else "filename")
+            fault = "no file" if name is None else "an empty file name"
+            yield Problem(mesh, f"<mesh> has {fault}", None if name is None else "filename")
 
 
 def _is_shape(mesh: _Element) -> bool:
@@ -90,19 +91,20 @@ def _is_shape(mesh: _Element) -> bool:
     "MB709",
     "mixed-schemes",
     NOTE,
-    what="The meshes of one robot are named in several ways: package://, model://, paths.",
+    what="The meshes of one robot are named in different ways: package://, model://, paths.",
     why="Each program resolves only some of them, so some links have a shape and others none.",
-    fix="Name all of them by package://.",
+    fix="Use package:// for all of them.",
     bad=(MESH % "package://arm/meshes/a.stl")
     + '<link name="b"><visual><geometry><mesh filename="meshes/b.stl"/></geometry></visual></link>',
     good=(MESH % "package://arm/meshes/a.stl"),
+    line=2,
 )
 def mixed_schemes(subject: Subject) -> Iterator[Problem]:
     """The first file that is named in another way than the first."""
     used = [it for it in used_files(subject) if "$" not in it.name]
     other = next((it for it in used if it.scheme != used[0].scheme), None)
     if other is not None:
-        message = f"{other.name!r} beside {used[0].name!r}: two ways to name meshes"
+        message = f"{other.name!r} and {used[0].name!r}: two ways to name meshes"
         yield problem(other, message, "use package:// for all")
 
 
@@ -110,10 +112,10 @@ def mixed_schemes(subject: Subject) -> Iterator[Problem]:
     "MB710",
     "model-uri",
     WARNING,
-    what="A mesh is named by model://.",
-    why="Gazebo finds it through its resource path; RViz's resource_retriever knows package://, "
-    "file:// and http:// only, and shows the link without a shape.",
-    fix="Write package://NAME/...; both Gazebos turn that into model:// when a URDF is loaded.",
+    what="A mesh is named with model://.",
+    why="Gazebo finds it through its resource path; RViz's resource_retriever supports only "
+    "package://, file:// and http://, and shows the link without a shape.",
+    fix="Use package://NAME/...; both Gazebos convert it to model:// when they load a URDF.",
     bad=MESH % "model://arm/meshes/base.stl",
     good=MESH % "package://arm/meshes/base.stl",
 )
@@ -130,8 +132,8 @@ def model_uri(subject: Subject) -> Iterator[Problem]:
     "mesh-from-the-net",
     NOTE,
     what="A mesh is loaded from the network.",
-    why="RViz fetches it at every start, Gazebo takes only Fuel's addresses: without a network, or "
-    "when the page moves, the link has no shape.",
+    why="RViz downloads it at every start, Gazebo supports only URLs of Fuel: without a network, "
+    "or when the page moves, the link has no shape.",
     fix="Put the file into a package.",
     bad=MESH % "https://example.org/base.stl",
     good=MESH % "package://arm/meshes/base.stl",
@@ -148,9 +150,9 @@ def mesh_from_the_net(subject: Subject) -> Iterator[Problem]:
     "MB712",
     "find-left-over",
     ERROR,
-    what="A mesh's path holds $(find ...), which only xacro understands.",
+    what="The path of a mesh holds $(find ...), which only xacro understands.",
     why="In a plain URDF nothing replaces it: no program finds the file.",
-    fix="Name the file .xacro and expand it, or write package://NAME/....",
+    fix="Name the file .xacro and expand it, or use package://NAME/....",
     bad=MESH % "file://$(find arm)/meshes/base.stl",
     good=MESH % "package://arm/meshes/base.stl",
 )

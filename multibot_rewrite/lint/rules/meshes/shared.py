@@ -13,7 +13,7 @@ from multibot_rewrite.lint.records import Problem, Subject
 _SCHEME = lazy_compile(r"([A-Za-z][A-Za-z0-9+.-]+)://")
 # A letter and a colon is a drive of Windows.
 _MACHINE = lazy_compile(r"/|[A-Za-z]:[/\\]")
-MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visual></link>'
+MESH = '<link name="a"><visual><geometry><mesh filename="%s"/></geometry></visual></link>\n'
 
 
 class Used(NamedTuple):

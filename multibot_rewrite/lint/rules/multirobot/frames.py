@@ -20,15 +20,20 @@ from multibot_rewrite.rosnames import split_remap
     "MB404",
     "robot-name-in-frame",
     WARNING,
-    what="A frame is the name of a link with a robot's name in front, which the links do not have.",
-    why="Only with that frame_prefix does the frame exist: the second robot's data is stamped with "
-    "the first one's frame and placed on it, and a rewrite cannot know what was meant.",
-    fix="Write the link's own name and let frame_prefix or urdf-postfix spell it, or make the "
-    "name in front a xacro argument.",
-    bad='<link name="laser"/><gazebo reference="laser"><sensor name="l" type="gpu_lidar">'
-    "<gz_frame_id>robot1/laser</gz_frame_id></sensor></gazebo>",
-    good='<link name="laser"/><gazebo reference="laser"><sensor name="l" type="gpu_lidar">'
-    "<gz_frame_id>laser</gz_frame_id></sensor></gazebo>",
+    what="A frame is the name of a link with a robot's name in front, which the link does not have.",
+    why="The frame exists only with that frame_prefix: the second robot's data gets the first "
+    "one's frame and appears on it, and a rewrite cannot know what was intended.",
+    fix="Use the link's own name and let frame_prefix or urdf-postfix add the robot's name, or "
+    "make the name in front a xacro argument.",
+    bad='<link name="laser"/>\n'
+    '<gazebo reference="laser">\n'
+    '  <sensor name="l" type="gpu_lidar"><gz_frame_id>robot1/laser</gz_frame_id></sensor>\n'
+    "</gazebo>\n",
+    good='<link name="laser"/>\n'
+    '<gazebo reference="laser">\n'
+    '  <sensor name="l" type="gpu_lidar"><gz_frame_id>laser</gz_frame_id></sensor>\n'
+    "</gazebo>\n",
+    line=3,
 )
 def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that are a link with something and a slash in front."""
@@ -39,44 +44,64 @@ def robot_name_in_frame(subject: Subject) -> Iterator[Problem]:
             continue
         link = value.partition("/")[2].strip("/")
         if link in links and is_plain(value) and claim_is_fixed(subject, claim):
-            message = f"frame {claim.value!r} holds a robot's name, the link is called {link!r}"
-            yield Problem(claim.element, message, claim.attribute, f"write {link!r}")
+            message = (
+                f"frame {claim.value!r} has a robot's name in front, the link is called {link!r}"
+            )
+            yield Problem(claim.element, message, claim.attribute, f"use {link!r}")
 
 
 @rule(
     "MB406",
     "default-frame-shared",
     NOTE,
-    what="A plugin publishes a frame by its default, which is the same for every robot.",
-    why="gazebo_ros_diff_drive and its like broadcast odom -> base_footprint without asking for a "
-    "namespace or prefix: on one /tf two robots pull one base to two places.",
-    fix="Say the frame and give each robot its own; urdf-postfix inserts it.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><robot_base_frame>base'
-    "</robot_base_frame></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><robot_base_frame>base'
-    "</robot_base_frame><odometry_frame>r1/odom</odometry_frame></plugin></gazebo>",
+    what="A plugin publishes its default frame, which is the same for every robot.",
+    why="gazebo_ros_diff_drive and similar plugins broadcast odom -> base_footprint without a "
+    "namespace or prefix: on a shared /tf two robots move one base to two places.",
+    fix="Set the frame, a different one for each robot; urdf-postfix inserts it.",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <robot_base_frame>base</robot_base_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <robot_base_frame>base</robot_base_frame>\n"
+    "    <odometry_frame>r1/odom</odometry_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
 )
 def default_frame_shared(subject: Subject) -> Iterator[Problem]:
     """Frames that would have to be inserted for a robot."""
     for element, item in inserted(subject):
         if item[0] in ("frame", "link"):
-            message = f"without <{item[2]}> the plugin uses {item[1]!r}, as every other robot's"
-            yield Problem(element, message, None, f"say <{item[2]}> for each robot")
+            message = f"without <{item[2]}> the plugin uses {item[1]!r}, the same for every robot"
+            yield Problem(element, message, None, f"set <{item[2]}> for each robot")
 
 
 @rule(
     "MB407",
     "fixed-odometry-frame",
     NOTE,
-    what="An odometry frame is written out, so that every copy of the robot has it.",
-    why="Two robots on one /tf then have one frame odom between them: the trees grow together and "
-    "every look-up through it is wrong for one of them.",
-    fix="Spell it for each robot: a xacro argument, or urdf-postfix; with a tf topic for each robot "
-    "it may stay.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><odometry_frame>odom'
-    "</odometry_frame><robot_base_frame>b</robot_base_frame></plugin></gazebo>",
-    good='<link name="b"/><gazebo><plugin name="p" filename="libgazebo_ros_p3d.so"><frame_name>'
-    "world</frame_name><body_name>b</body_name></plugin></gazebo>",
+    what="An odometry frame has a fixed name, which is the same for every copy of the robot.",
+    why="On one /tf two robots then share the frame odom: their trees are connected, and every "
+    "lookup through it is wrong for one of them.",
+    fix="Use a different name for each robot: a xacro argument, or urdf-postfix. With a tf topic "
+    "for each robot it may stay.",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <odometry_frame>odom</odometry_frame>\n"
+    "    <robot_base_frame>b</robot_base_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="b"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_p3d.so">\n'
+    "    <frame_name>world</frame_name>\n"
+    "    <body_name>b</body_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
     """Literal odometry frames that are no links and hold no robot's name."""
@@ -90,8 +115,12 @@ def fixed_odometry_frame(subject: Subject) -> Iterator[Problem]:
         if "odom" not in _words(claim) or {name, name.rpartition("/")[2]} & (links.keys() | shared):
             continue
         if is_plain(name) and claim_is_fixed(subject, claim):
-            message = f"{tag_of(claim)} {claim.value!r} is one frame for every copy of the robot"
-            yield Problem(claim.element, message, claim.attribute, "spell it for each robot")
+            message = (
+                f"{tag_of(claim)} {claim.value!r} is the same frame for every copy of the robot"
+            )
+            yield Problem(
+                claim.element, message, claim.attribute, "use a different one for each robot"
+            )
 
 
 def _words(claim: Claim) -> str:
@@ -102,15 +131,24 @@ def _words(claim: Claim) -> str:
     "MB408",
     "tf-not-remapped",
     NOTE,
-    what="A plugin publishes tf, and no rule takes it off the one /tf.",
-    why="tf2's broadcaster publishes on the absolute /tf, which no namespace moves: with a tf topic "
-    "for each robot this plugin's transforms are missing from it, and they meet on /tf.",
+    what="A plugin publishes on /tf, and no remap rule moves it to the robot's own tf topic.",
+    why="tf2's broadcaster publishes on the absolute topic /tf, which a namespace does not move: "
+    "with a tf topic for each robot this plugin's transforms are missing there, and those of all "
+    "robots are mixed on /tf.",
     fix="Add <remapping>/tf:=tf</remapping> to its <ros> block; urdf-postfix inserts it where each "
-    "robot has its tf topic. Not needed where all share /tf and frames are spelled per robot.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><publish_odom_tf>true'
-    "</publish_odom_tf></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><publish_odom_tf>true'
-    "</publish_odom_tf><ros><remapping>/tf:=tf</remapping></ros></plugin></gazebo>",
+    "robot has its tf topic. Not needed where all robots share /tf and have different frames.",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <publish_odom_tf>true</publish_odom_tf>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <publish_odom_tf>true</publish_odom_tf>\n"
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
 )
 def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
     """Plugins with tf switched on and no rule for it, unless the robots share one /tf."""
@@ -123,8 +161,10 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
         if "/tf" in switched_off(host.element, section) or _moves_tf(host.element):
             continue
         of = "the controllers it loads publish" if section.process_wide else "it publishes"
-        message = f"plugin {host.element.get('name', '')!r}: {of} on /tf, which no namespace moves"
-        yield Problem(host.element, message, None, "<remapping>/tf:=tf</remapping>")
+        message = (
+            f"plugin {host.element.get('name', '')!r}: {of} on /tf, which a namespace does not move"
+        )
+        yield Problem(host.element, message, None, "add <remapping>/tf:=tf</remapping>")
 
 
 def _moves_tf(plugin: _Element) -> bool:

@@ -1,4 +1,4 @@
-"""What a rewrite for the named robots refuses or warns about."""
+"""What a rewrite for the named robots rejects or warns about."""
 
 from __future__ import annotations
 
@@ -11,25 +11,24 @@ from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
 from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, TWO
+from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
 from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.renames import RenameMap
 
-Hazard = Callable[[Inventory, Naming], Iterable[Remark]]
-NameHazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
+Hazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
+ByNaming = Callable[[Inventory, Naming], Iterable[Remark]]
+
+
+def _by_naming(hazard: ByNaming) -> Hazard:
+    """The same for what needs no spelled name."""
+    return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the named robots warns about; nothing where none are named."""
-    if subject.settings.robots:
-        yield from problems(hazard(subject.inventory, subject.settings.naming))
-
-
-def _if_renamed(hazard: NameHazard, subject: Subject) -> Iterator[Problem]:
-    """The same of a hazard that looks at what names become."""
     if subject.settings.robots:
         yield from problems(hazard(subject.inventory, rename_map(subject)))
 
@@ -38,34 +37,39 @@ joints_reordered = rule(
     "MB405",
     "joints-reordered",
     WARNING,
-    what="With the robot's name behind them, the joints below one link sort in another order.",
-    why="urdfdom keeps sibling joints sorted by name and pinocchio numbers its configuration vector "
-    "so: the same code then moves other joints.",
-    fix="Spell the robot's name in front: affix prefix.",
-    bad='<link name="a"/><link name="b"/><link name="c"/>'
-    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<joint name="j2" type="fixed"><parent link="a"/><child link="c"/></joint>',
-    good='<link name="a"/><link name="b"/><link name="c"/>'
-    '<joint name="i" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint>',
+    what="With the robot's name at the end, the joints below one link sort in another order.",
+    why="urdfdom sorts sibling joints by name, and pinocchio numbers its configuration vector in "
+    "that order: the same code then moves other joints.",
+    fix="Put the robot's name in front: affix prefix.",
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<link name="c"/>\n'
+    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<joint name="j2" type="fixed"><parent link="a"/><child link="c"/></joint>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<link name="c"/>\n'
+    '<joint name="i" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<joint name="j" type="fixed"><parent link="a"/><child link="c"/></joint>\n',
+    line=5,
     options={"robots": TWO},
-)(partial(_if_renamed, hazards.reordered))
+)(partial(_if_robots, hazards.reordered))
 
 
 @rule(
     "MB420",
     "name-taken",
     ERROR,
-    what="A name becomes, for one of the robots, what another name of the file is already.",
-    why="The rewritten file would hold two links or joints of one name, or give a dangling "
-    "reference another meaning: urdf-postfix refuses it.",
+    what="For one of the robots a name becomes the same as another name in the file.",
+    why="The rewritten file would have two links or joints with one name, or an undeclared "
+    "reference would get another meaning: urdf-postfix rejects it.",
     fix="Choose another separator or another robot name.",
     bad='<link name="a"/><gazebo reference="a/robot1"/>',
     good='<link name="a"/><gazebo reference="a"/>',
     options={"robots": TWO},
 )
 def name_taken(subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the robots refuses as MB420."""
+    """What a rewrite for the robots rejects as MB420."""
     names = subject.settings.robots
     if names:
         yield from problems(robots.taken_names(subject.inventory, rename_map(subject), names))
@@ -75,9 +79,9 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     "MB421",
     "robots-share-a-name",
     ERROR,
-    what="Two different names of the file come out alike for two of the robots.",
-    why="Both robots then publish one tf frame or obey one topic of that name: each is moved by "
-    "the other, and no namespace shows it.",
+    what="Two different names in the file become the same name for two of the robots.",
+    why="Both robots then publish one tf frame or subscribe to one topic of that name: each is "
+    "moved by the other, and no namespace shows it.",
     fix="Rename a robot or choose another separator.",
     bad='<link name="arm"/><link name="arm_left"/>',
     good='<link name="arm"/><link name="tool"/>',
@@ -87,7 +91,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     },
 )
 def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
-    """What a rewrite for the robots refuses as MB421."""
+    """What a rewrite for the robots rejects as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
     for it in robots.meeting(subject.inventory, rename_map(subject), pairs):
@@ -98,56 +102,82 @@ prefix_only = rule(
     "MB422",
     "prefix-only",
     WARNING,
-    what="A parameter is put in front of names in code, where the robots' names stand behind.",
-    why="The driver makes its joint, sensor and gpio names from that prefix: a postfix cannot reach "
-    "them, so the second robot's interfaces are called as the first one's.",
-    fix="Spell the robot's name in front: affix prefix.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>'
-    "ur_robot_driver/URPositionHardwareInterface</plugin>"
-    '<param name="tf_prefix">a_</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>'
-    "mock_components/GenericSystem</plugin></hardware></ros2_control>",
+    what="The driver's code puts a parameter in front of names, but the robot's name goes at the "
+    "end of names.",
+    why="The driver makes its joint, sensor and gpio names from that prefix. A postfix cannot be "
+    "added to them, so the second robot's interfaces have the same names as the first one's.",
+    fix="Put the robot's name in front: affix prefix.",
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>ur_robot_driver/URPositionHardwareInterface</plugin>\n"
+    '    <param name="tf_prefix">a_</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>mock_components/GenericSystem</plugin></hardware>\n"
+    "</ros2_control>\n",
+    line=4,
     options={"robots": TWO},
-)(partial(_if_robots, hazards.prefix_only))
+)(partial(_if_robots, _by_naming(hazards.prefix_only)))
 
 off_the_shared_tf = rule(
     "MB423",
     "off-the-shared-tf",
     WARNING,
-    what="A remap rule takes a plugin off the one /tf that the robots share.",
-    why="Its transforms are on a topic nobody hears: the robot's odometry frame is missing from the "
-    "tree.",
-    fix="Drop the rule, or use the layout both.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>/tf:=tf'
-    "</remapping></ros></plugin></gazebo>",
+    what="A remap rule moves a plugin off the /tf topic that the robots share.",
+    why="Its transforms are on a topic without a subscriber: the robot's odometry frame is missing "
+    "from the tree.",
+    fix="Delete the rule, or use the layout both.",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
-    options={"robots": TWO},
-)(partial(_if_robots, hazards.moved_tf))
+    line=3,
+    options={"robots": TWO, "naming": ONE_TF},
+)(partial(_if_robots, _by_naming(hazards.moved_tf)))
 
 
 @rule(
     "MB424",
     "collision-number-unstable",
     ERROR,
-    what="The number in a contact sensor's collision depends on how the robot's name sorts.",
-    why="sdformat numbers lumped collisions in the order of the joints' names: for one robot the "
-    "sensor would listen to another part than for the next.",
-    fix="Spell the robot's name in front (affix prefix), or keep the fixed joints apart with "
+    what="The number in the name of a contact sensor's collision depends on how the robot's name "
+    "sorts.",
+    why="sdformat numbers merged collisions in the order of the joints' names: the sensor would "
+    "listen to different parts for different robots.",
+    fix="Put the robot's name in front (affix prefix), or keep the fixed joints separate with "
     "preserveFixedJoint.",
-    bad='<link name="a"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<link name="b"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<link name="c"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<joint name="j_n" type="fixed"><parent link="a"/><child link="c"/></joint>'
-    '<gazebo reference="a"><sensor name="s" type="contact"><contact>'
-    "<collision>a_fixed_joint_lump__b_collision_1</collision></contact></sensor></gazebo>",
-    good='<link name="a"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
-    '<gazebo reference="a"><sensor name="s" type="contact"><contact>'
-    "<collision>a_collision</collision></contact></sensor></gazebo>",
+    bad='<link name="a">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<link name="b">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<link name="c">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<joint name="j_n" type="fixed"><parent link="a"/><child link="c"/></joint>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="contact">\n'
+    "    <contact><collision>a_fixed_joint_lump__b_collision_1</collision></contact>\n"
+    "  </sensor>\n"
+    "</gazebo>\n",
+    good='<link name="a">\n'
+    '  <collision><geometry><sphere radius="1"/></geometry></collision>\n'
+    "</link>\n"
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="contact">\n'
+    "    <contact><collision>a_collision</collision></contact>\n"
+    "  </sensor>\n"
+    "</gazebo>\n",
+    line=14,
     options={"robots": TWO},
 )
 def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
-    """Contacts that a rewrite refuses as MB424."""
+    """Contacts that a rewrite rejects as MB424."""
     if not subject.settings.robots or subject.document.root.find(".//contact") is None:
         return
     from multibot_rewrite.rewriters.contact import respell_collisions
@@ -166,37 +196,48 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, "use affix prefix")
 
 
-sensor_names_meet = rule(
+sensor_names_collide = rule(
     "MB425",
-    "sensor-names-meet",
+    "sensor-names-collide",
     WARNING,
-    what="Sensors are looked up by bare name in the whole world, and the robots' names for them do "
-    "not differ.",
-    why="gz_ros2_control takes the first IMU of that name, the realsense and kobuki plugins find "
-    "none where two have it: the second robot reads the first one's data, or nothing.",
+    what="A plugin looks sensors up by bare name in the whole world, and the sensors have the same "
+    "names for all robots.",
+    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
+    "none if two have it: the second robot reads the first one's data, or nothing.",
     fix="Use the layout both, which spells sensors for each robot.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>'
-    '<ros2_control name="h" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
-    '</plugin></hardware><sensor name="imu"/></ros2_control>',
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    '  <sensor name="imu"/>\n'
+    "</ros2_control>\n",
     good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
+    line=3,
     options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_if_robots, hazards.bare_lookups))
+)(partial(_if_robots, _by_naming(hazards.bare_lookups)))
 
 
 @rule(
     "MB426",
     "process-wide-rule",
     WARNING,
-    what="A remap rule of a control plugin leads to an absolute name, or the robots' topics differ "
-    "by such rules only.",
-    why="gazebo_ros2_control and gz_ros2_control hand their rules to the whole Gazebo process: the "
-    "first robot's rule also moves the second robot's topic, to the first one's name.",
-    fix="Write a relative target, it ends in each robot's own namespace; keep robots apart by "
+    what="A remap rule of a control plugin has an absolute target, or the robots' topics differ "
+    "only by such rules.",
+    why="gazebo_ros2_control and gz_ros2_control apply their remap rules to the whole Gazebo "
+    "process: the first robot's rule also moves the second robot's topic, to the first one's name.",
+    fix="Use a relative target, which ends in each robot's own namespace; separate the robots by "
     "namespaces.",
-    bad='<gazebo><plugin name="c" filename="gz_ros2_control-system"><ros><remapping>/tf:=/robot1/tf'
-    "</remapping></ros></plugin></gazebo>",
-    good='<gazebo><plugin name="c" filename="gz_ros2_control-system"><ros><remapping>/tf:=tf'
-    "</remapping></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    "    <ros><remapping>/tf:=/robot1/tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def process_wide_rule(subject: Subject) -> Iterator[Problem]:
     """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""
@@ -209,32 +250,41 @@ fixed_to_own_frame = rule(
     "MB427",
     "fixed-to-own-frame",
     WARNING,
-    what="An SRDF fixes the robot to a frame that becomes another one for each robot.",
-    why="Each move_group then plans in a frame of its own that nothing publishes: the robots do not "
-    "see one another's place, and look-ups from the world fail.",
-    fix="Add the frame to the shared ones.",
-    bad='<robot name="r"><virtual_joint name="v" type="fixed" parent_frame="floor" child_link="a"/>'
-    "</robot>",
-    good='<robot name="r"><virtual_joint name="v" type="fixed" parent_frame="world" child_link="a"/>'
-    "</robot>",
+    what="An SRDF fixes the robot to a frame that is renamed for each robot.",
+    why="Each move_group then plans in its own frame, which no node publishes: the robots do not "
+    "know each other's pose, and lookups from the world fail.",
+    fix="Add the frame to the shared frames.",
+    bad='<robot name="r">\n'
+    '  <virtual_joint name="v" type="fixed" parent_frame="floor" child_link="a"/>\n'
+    "</robot>\n",
+    good='<robot name="r">\n'
+    '  <virtual_joint name="v" type="fixed" parent_frame="world" child_link="a"/>\n'
+    "</robot>\n",
+    line=2,
     formats=(SRDF,),
     beside={"r.urdf": '<robot name="r"><link name="a"/></robot>'},
     options={"robots": TWO, "urdf": "r.urdf"},
-)(partial(_if_renamed, hazards.outside_frames))
+)(partial(_if_robots, hazards.outside_frames))
 
 hard_wired_name = rule(
     "MB428",
     "hard-wired-name",
     WARNING,
-    what="A plugin's code looks for a literal name that the robots' naming changes.",
-    why="It finds nothing under the new name and stops, or drives nothing: no element tells it "
-    "another one.",
-    fix="Keep names as they are and part the robots by tf topics: layout tf-per-robot.",
-    bad='<link name="a"/><link name="b"/><joint name="right_front" type="continuous"><parent link='
-    '"a"/><child link="b"/></joint><gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/>'
-    "</gazebo>",
-    good='<link name="a"/><link name="b"/><joint name="wheel" type="continuous"><parent link='
-    '"a"/><child link="b"/></joint><gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/>'
-    "</gazebo>",
+    what="A plugin's code looks for a fixed name, which is renamed for each robot.",
+    why="It does not find the new name and stops, or moves nothing: it has no parameter for "
+    "another name.",
+    fix="Keep the names as they are and separate the robots by tf topics: layout tf-per-robot.",
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="right_front" type="continuous">\n'
+    '  <parent link="a"/>\n'
+    '  <child link="b"/>\n'
+    "</joint>\n"
+    '<gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/></gazebo>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="wheel" type="continuous"><parent link="a"/><child link="b"/></joint>\n'
+    '<gazebo><plugin name="s" filename="libSkidSteerDrivePlugin.so"/></gazebo>\n',
+    line=7,
     options={"robots": TWO},
-)(partial(_if_renamed, hazards.hardwired))
+)(partial(_if_robots, hazards.hardwired))

@@ -21,14 +21,19 @@ DESCRIPTIONS = ("robot_param", "robotParam", "robot_param_node")
     "MB403",
     "hard-coded-namespace",
     NOTE,
-    what="A plugin's namespace is written out in the description.",
-    why="Both copies put their nodes and topics under it: in Gazebo Classic of ROS 2 the second "
-    "node of one name is refused (gazebo_ros node.hpp), in ROS 1 both answer on one topic.",
+    what="A plugin's namespace is fixed in the description.",
+    why="All copies of the robot put their nodes and topics in it: in Gazebo Classic of ROS 2 the "
+    "second node with the same name is rejected (gazebo_ros node.hpp), in ROS 1 both respond on "
+    "one topic.",
     fix="Make it a xacro argument, or let urdf-postfix put each robot's name in front; "
-    "spawn_entity.py -robot_namespace overwrites it.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><namespace>/demo'
-    "</namespace></ros></plugin></gazebo>",
+    "spawn_entity.py -robot_namespace overrides it.",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><namespace>/demo</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
     good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros/></plugin></gazebo>',
+    line=3,
 )
 def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     """Each literal namespace, at its first place."""
@@ -46,15 +51,23 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     "MB409",
     "no-namespace",
     NOTE,
-    what="Plugins that make ROS nodes stand in no namespace.",
-    why="The second robot's nodes have the same full names and topics: Gazebo Classic of ROS 2 gives "
-    "the second plugin no node at all, and parameters and services answer for one robot only.",
+    what="Plugins with ROS nodes have no namespace.",
+    why="The second robot's nodes have the same full names and topics: Gazebo Classic of ROS 2 "
+    "creates no node for the second plugin, and parameters and services respond for one robot "
+    "only.",
     fix="Spawn each robot with -robot_namespace, or give the plugins a <namespace>: a xacro argument, "
     "or urdf-postfix. ros_gz_sim's create has no such option.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_joint_state_publisher.so"><joint_name>j'
-    "</joint_name></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_joint_state_publisher.so"><ros>'
-    "<namespace>r1/</namespace></ros></plugin></gazebo>",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_joint_state_publisher.so">\n'
+    "    <joint_name>j</joint_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_joint_state_publisher.so">\n'
+    "    <ros><namespace>r1/</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
 )
 def no_namespace(subject: Subject) -> Iterator[Problem]:
     """The first plugin without a namespace, and how many there are."""
@@ -68,9 +81,9 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
         if any(it.kind == "namespace" for it in items):
             bare.append(host.element)
     if bare:
-        more = f" and {len(bare) - 1} more" if len(bare) > 1 else ""
-        message = f"plugin {bare[0].get('name', '')!r}{more} in no namespace"
-        yield Problem(bare[0], message, None, "give it one for each robot")
+        have = f"and {len(bare) - 1} more have" if len(bare) > 1 else "has"
+        message = f"plugin {bare[0].get('name', '')!r} {have} no namespace"
+        yield Problem(bare[0], message, None, "give each robot its own")
 
 
 @rule(
@@ -78,13 +91,21 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
     "one-robot-description",
     NOTE,
     what="A plugin reads the robot description from an absolute name.",
-    why="Every copy reads the first robot's description: its controllers then claim joints that the "
-    "second robot, where it was renamed, does not have, and wait for a node outside their namespace.",
-    fix="Name it relative to the plugin's namespace: robot_description, robot_state_publisher.",
-    bad='<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>'
-    "/robot_description</robotParam></plugin></gazebo>",
-    good='<gazebo><plugin name="c" filename="libgazebo_ros_control.so"><robotParam>'
-    "robot_description</robotParam></plugin></gazebo>",
+    why="Every copy reads the first robot's description: its controllers then claim joints that "
+    "the second robot does not have if it was renamed, and wait for a node outside their "
+    "namespace.",
+    fix="Use a name relative to the plugin's namespace: robot_description, robot_state_publisher.",
+    bad="<gazebo>\n"
+    '  <plugin name="c" filename="libgazebo_ros_control.so">\n'
+    "    <robotParam>/robot_description</robotParam>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="c" filename="libgazebo_ros_control.so">\n'
+    "    <robotParam>robot_description</robotParam>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def one_robot_description(subject: Subject) -> Iterator[Problem]:
     """Absolute names of descriptions and of the nodes that hold them."""
@@ -93,7 +114,7 @@ def one_robot_description(subject: Subject) -> Iterator[Problem]:
     for element in found:
         if is_fixed(subject, starts[element], ""):
             message = f"<{element.tag}> {(element.text or '').strip()!r} is the same for all robots"
-            yield Problem(element, message, "", "leave out what stands before the last slash")
+            yield Problem(element, message, "", "use the part after the last slash")
 
 
 def _children(subject: Subject, tags: tuple[str, ...]) -> list[_Element]:

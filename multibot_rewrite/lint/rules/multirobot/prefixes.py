@@ -37,17 +37,29 @@ _BUILTIN = frozenset(
     "prefix-forgotten",
     WARNING,
     what="A name lacks the prefix that the other names of its macro or file have.",
-    why="With an empty prefix nobody notices; with the second robot's the name is there twice, or "
-    "refers to a link or joint that is called otherwise, and urdfdom refuses the robot.",
-    fix="Put the prefix in front.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix"><link name="${prefix}base"/><link name="tool"/>'
-    '<joint name="${prefix}j" type="fixed"><parent link="${prefix}base"/><child link="${prefix}tip"'
-    "/></joint></xacro:macro></robot>",
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix parent"><link name="${prefix}base"/>'
-    '<joint name="${prefix}j" type="fixed"><parent link="${parent}"/><child link="${prefix}base"/>'
-    "</joint></xacro:macro></robot>",
+    why="With an empty prefix there is no problem; with the second robot's prefix the name exists "
+    "twice, or refers to a link or joint that has another name, and urdfdom rejects the robot.",
+    fix="Put the prefix in front of the name.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix">\n'
+    '    <link name="${prefix}base"/>\n'
+    '    <link name="tool"/>\n'
+    '    <joint name="${prefix}j" type="fixed">\n'
+    '      <parent link="${prefix}base"/>\n'
+    '      <child link="${prefix}tip"/>\n'
+    "    </joint>\n"
+    "  </xacro:macro>\n"
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix parent">\n'
+    '    <link name="${prefix}base"/>\n'
+    '    <joint name="${prefix}j" type="fixed">\n'
+    '      <parent link="${parent}"/>\n'
+    '      <child link="${prefix}base"/>\n'
+    "    </joint>\n"
+    "  </xacro:macro>\n"
+    "</robot>\n",
+    line=4,
     formats=(XACRO,),
 )
 def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
@@ -69,14 +81,17 @@ def prefix_forgotten(subject: Subject) -> Iterator[Problem]:
     "MB418",
     "prefix-unused",
     WARNING,
-    what="A macro or file takes a prefix and uses it nowhere.",
-    why="Whoever gives it believes that two copies differ: the second one brings every name again, "
-    "and urdfdom refuses the robot for links that are not unique.",
-    fix="Put it in front of the names, or take the parameter away.",
-    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro></robot>',
-    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
-    '<xacro:macro name="arm" params="prefix"><link name="${prefix}base"/></xacro:macro></robot>',
+    what="A macro or file takes a prefix and does not use it.",
+    why="Two copies are expected to differ, but the second one has the same names again, and "
+    "urdfdom rejects the robot because its links are not unique.",
+    fix="Put it in front of the names, or remove the parameter.",
+    bad='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix"><link name="base"/></xacro:macro>\n'
+    "</robot>\n",
+    good='<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+    '  <xacro:macro name="arm" params="prefix"><link name="${prefix}base"/></xacro:macro>\n'
+    "</robot>\n",
+    line=2,
     formats=(XACRO,),
 )
 def prefix_unused(subject: Subject) -> Iterator[Problem]:
@@ -88,7 +103,7 @@ def prefix_unused(subject: Subject) -> Iterator[Problem]:
             read = words_of(macro)
             for name in names:
                 if name not in read and macro.find(".//link") is not None:
-                    message = f"macro {macro.get('name', '')!r} takes {name!r} and uses it nowhere"
+                    message = f"macro {macro.get('name', '')!r} takes {name!r} and does not use it"
                     yield Problem(macro, message, "params", "put it in front of the names")
     yield from _unused_arguments(root)
 
@@ -114,7 +129,7 @@ def _unused_arguments(root: _Element) -> Iterator[Problem]:
     for element in arguments:
         name = element.get("name", "")
         if PREFIX.fullmatch(name) and name not in read:
-            message = f"argument {name!r} is declared and used nowhere"
+            message = f"argument {name!r} is declared and not used"
             yield Problem(element, message, "name", "put it in front of the names")
 
 
@@ -131,4 +146,4 @@ def _of(scope: Scope) -> str:
 def _hint(scope: Scope, text: str) -> str:
     own = next((it for it in scope.declared if it.words & scope.prefix_names), None)
     found = SUBSTITUTIONS.search(own.text) if own else None
-    return f"write {found[0] + text!r}" if found else "put the prefix in front"
+    return f"use {found[0] + text!r}" if found else "put the prefix in front"

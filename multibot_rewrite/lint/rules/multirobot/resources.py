@@ -1,4 +1,4 @@
-"""Files, devices, sensors and systems of the world that there is only one of."""
+"""Files, devices, sensors and systems of the world that exist only once."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from multibot_rewrite.rewriters.tree import library_key
 # gz systems that serve every entity of the world, whoever loads them (gz-sim src/systems).
 WORLD_SYSTEMS = {
     "gz-sim-sensors-system": "Gazebo crashes when rendering is set up twice",
-    "gz-sim-imu-system": "every IMU of the world is published once more for each copy",
+    "gz-sim-imu-system": "every IMU of the world is published again for each copy",
     "gz-sim-physics-system": "two physics engines move the same links",
-    "gz-sim-contact-system": "every contact sensor is published once more for each copy",
-    "gz-sim-forcetorque-system": "every force sensor is published once more for each copy",
-    "gz-sim-navsat-system": "every GPS of the world is published once more for each copy",
-    "gz-sim-magnetometer-system": "every magnetometer is published once more for each copy",
-    "gz-sim-altimeter-system": "every altimeter is published once more for each copy",
-    "gz-sim-air-pressure-system": "every barometer is published once more for each copy",
-    "gz-sim-scene-broadcaster-system": "every state of the world is sent once more for each copy",
+    "gz-sim-contact-system": "every contact sensor is published again for each copy",
+    "gz-sim-forcetorque-system": "every force sensor is published again for each copy",
+    "gz-sim-navsat-system": "every GPS of the world is published again for each copy",
+    "gz-sim-magnetometer-system": "every magnetometer is published again for each copy",
+    "gz-sim-altimeter-system": "every altimeter is published again for each copy",
+    "gz-sim-air-pressure-system": "every barometer is published again for each copy",
+    "gz-sim-scene-broadcaster-system": "every state of the world is sent again for each copy",
 }
 DEVICE = lazy_compile(
     r"/dev/\S+|v?can\d+|COM\d+|(?!127\.|0\.0\.0\.0|255\.)\d{1,3}\.\d{1,3}\.\d{1,3}\.\d{1,3}(:\d+)?"
@@ -35,15 +35,21 @@ DEVICE = lazy_compile(
     "MB411",
     "one-controller-file",
     NOTE,
-    what="The file of the controllers' parameters is fixed in a control plugin.",
-    why="Both robots' controller managers read it: its keys fit only nodes of the names in it, so in "
-    "another namespace without /** no controller has a type, and its joints are the first robot's.",
-    fix="Write the keys as /**/controller_manager, and where joints are renamed give each robot its "
+    what="A control plugin has a fixed file of controller parameters.",
+    why="Every robot's controller manager reads it. Its keys match only nodes with the names in "
+    "it: in another namespace, without /**, no controller has a type, and its joints are the first "
+    "robot's.",
+    fix="Write the keys as /**/controller_manager; where joints are renamed, give each robot its "
     "own file through a xacro argument.",
-    bad='<gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
-    'filename="gz_ros2_control-system"><parameters>/opt/c.yaml</parameters></plugin></gazebo>',
-    good='<gazebo><plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
-    'filename="gz_ros2_control-system"/></gazebo>',
+    bad="<gazebo>\n"
+    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system">\n'
+    "    <parameters>/opt/c.yaml</parameters>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" filename="gz_ros2_control-system"/>\n'
+    "</gazebo>\n",
+    line=3,
 )
 def one_controller_file(subject: Subject) -> Iterator[Problem]:
     """Literal ``<parameters>`` of plugins that load a controller manager."""
@@ -54,7 +60,7 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
         text = (element.text or "").strip()
         if text and is_fixed(subject, starts[element], ""):
             message = f"every robot's controllers read {text.rpartition('/')[2]!r}"
-            yield Problem(element, message, "", "give each robot its file")
+            yield Problem(element, message, "", "give each robot its own file")
 
 
 @rule(
@@ -65,10 +71,13 @@ def one_controller_file(subject: Subject) -> Iterator[Problem]:
     why="Two robots would open one device: the second driver fails to connect, or both command the "
     "same motors.",
     fix="Make it a xacro argument that each robot's launch sets.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>a/B</plugin>'
-    '<param name="device">/dev/ttyUSB0</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>a/B</plugin>'
-    '<param name="rate">100</param></hardware></ros2_control>',
+    bad='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="device">/dev/ttyUSB0</param></hardware>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    '  <hardware><plugin>a/B</plugin><param name="rate">100</param></hardware>\n'
+    "</ros2_control>\n",
+    line=2,
 )
 def one_device(subject: Subject) -> Iterator[Problem]:
     """Literal parameters that name a device or an address of another machine."""
@@ -86,19 +95,25 @@ def one_device(subject: Subject) -> Iterator[Problem]:
     "MB415",
     "sensor-found-by-bare-name",
     NOTE,
-    what="Something in the file looks sensors up by their bare name in the whole world.",
-    why="gz_ros2_control takes the first IMU of that name, the realsense and kobuki plugins find "
-    "none where two have it: the second robot reads the first one's data, or nothing.",
+    what="A plugin looks sensors up by their bare name in the whole world.",
+    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
+    "none if two have it: the second robot reads the first one's data, or nothing.",
     fix="Make sensor names differ between robots: a xacro prefix, or urdf-postfix with the layout "
     "both.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>'
-    '<ros2_control name="h" type="system"><hardware><plugin>gz_ros2_control/GazeboSimSystem'
-    '</plugin></hardware><sensor name="imu"/></ros2_control>',
-    good='<link name="a"/><ros2_control name="h" type="system"><hardware><plugin>'
-    "gz_ros2_control/GazeboSimSystem</plugin></hardware></ros2_control>",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    '  <sensor name="imu"/>\n'
+    "</ros2_control>\n",
+    good='<link name="a"/>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    "</ros2_control>\n",
+    line=3,
 )
 def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
-    """Only while no robots are named: then MB425 knows whether their names differ."""
+    """Only if no robots are named: otherwise MB425 knows whether their names differ."""
     if subject.settings.robots or not _has_fixed_sensor(subject):
         return
     for it in hazards.bare_lookups(subject.inventory, AS_WRITTEN):
@@ -114,14 +129,17 @@ def _has_fixed_sensor(subject: Subject) -> bool:
     "MB416",
     "world-system-in-robot",
     WARNING,
-    what="The robot brings a gz system along that serves the whole world.",
-    why="gz-sim loads it once more with every copy: two Sensors systems crash it (gz-sensors issue "
+    what="The robot loads a gz system that acts on the whole world.",
+    why="gz-sim loads it again with every copy: two Sensors systems crash it (gz-sensors issue "
     "497), and two Imu systems each publish every IMU of the world (gz-sim Imu.cc).",
-    fix="Load it in the world's SDF and take it out of the robot.",
-    bad='<gazebo><plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>'
-    "</gazebo>",
-    good='<gazebo><plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>'
-    "</gazebo>",
+    fix="Load it in the world's SDF and remove it from the robot.",
+    bad="<gazebo>\n"
+    '  <plugin filename="gz-sim-sensors-system" name="gz::sim::systems::Sensors"/>\n'
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive"/>\n'
+    "</gazebo>\n",
+    line=2,
 )
 def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
     """Plugins whose library is one of the world's systems."""
@@ -130,5 +148,5 @@ def world_system_in_robot(subject: Subject) -> Iterator[Problem]:
             continue
         key = library_key(host.element.get("filename", ""))
         if key in WORLD_SYSTEMS:
-            message = f"{key} comes once more with every robot: {WORLD_SYSTEMS[key]}"
+            message = f"{key} is loaded again with every robot: {WORLD_SYSTEMS[key]}"
             yield Problem(host.element, message, "filename", "load it in the world")

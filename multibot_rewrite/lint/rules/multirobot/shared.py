@@ -1,4 +1,4 @@
-"""What rules about several robots share: which claims they look at, and examples."""
+"""What rules about several robots share: which claims they check, and examples."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from multibot_rewrite.naming import NOT_PLAIN, make_naming
 from multibot_rewrite.rewriters.insert import insertions
 
 TWO = ("robot1", "robot2")
-# Frames, tf and topics all per robot: what a rewrite inserts for that is what copies share.
+# Frames, tf and topics are all per robot: what a rewrite inserts for that is shared by copies.
 APART = make_naming("both")
 AS_WRITTEN = make_naming("tf-per-robot")
+ONE_TF = make_naming("frames-per-robot")
 
 
 def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
@@ -25,7 +26,7 @@ def claims_of(subject: Subject, kinds: tuple[str, ...]) -> list[Claim]:
 
 
 def is_plain(text: str) -> bool:
-    """Is it a name: not empty, no placeholder?"""
+    """Is it a name: not empty and not a placeholder?"""
     return bool(text.strip("/")) and NOT_PLAIN.isdisjoint(text) and not text.startswith("__")
 
 

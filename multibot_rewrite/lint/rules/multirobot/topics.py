@@ -24,6 +24,8 @@ from multibot_rewrite.rosnames import split_remap
 
 ROS_KINDS = ("topic", "service")
 REMAP_FORMS = ("remap", "argument")
+# What a plugin has a default of, in a message.
+NOUNS = {"topic": "topic", "service": "service", "stem": "name"}
 GZ_SECTIONS = ("plugin gz-", "element sensor", "element gazebo", "sensor ")
 GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
 
@@ -32,18 +34,25 @@ GZ_LIBRARIES = ("gz-", "gz_", "ign_", "ignition-")
     "MB401",
     "absolute-topic",
     NOTE,
-    what="A plugin's topic or service is absolute, or its remap rule leads to an absolute one.",
-    why="A ROS namespace moves relative names only (rcl expand_topic_name.c): both robots obey one "
-    "/cmd_vel and their sensors are mixed on one topic.",
-    fix="Leave out the leading slash and start each robot in its namespace; urdf-postfix spells it "
-    "for each robot.",
-    bad='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>'
-    "cmd_vel:=/cmd_vel</remapping></ros></plugin></gazebo>",
-    good='<gazebo><plugin name="d" filename="libgazebo_ros_diff_drive.so"><ros><remapping>'
-    "cmd_vel:=drive</remapping></ros></plugin></gazebo>",
+    what="A plugin's topic or service is absolute, or its remap rule has an absolute target.",
+    why="A ROS namespace moves relative names only (rcl expand_topic_name.c): both robots "
+    "subscribe to one /cmd_vel, and their sensor data is mixed on one topic.",
+    fix="Leave out the leading slash and start each robot in its namespace, or rename it for each "
+    "robot with urdf-postfix.",
+    bad="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><remapping>cmd_vel:=/cmd_vel</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="d" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><remapping>cmd_vel:=drive</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
 def absolute_topic(subject: Subject) -> Iterator[Problem]:
-    """Absolute ROS names that the settings do not call shared."""
+    """Absolute ROS names that are not shared by the settings."""
     wide = process_wide_plugins(subject)
     for claim in claims_of(subject, ROS_KINDS):
         name = _target(claim)
@@ -77,13 +86,17 @@ def _target(claim: Claim) -> str:
     "gz-topic-shared",
     NOTE,
     what="A sensor or system of gz-sim has a topic that is the same for every copy of the robot.",
-    why="gz topics are global in their partition and no ROS namespace reaches them: one command "
-    "drives both robots, both lidars publish on one topic and ros_gz_bridge cannot part them.",
-    fix="Leave the element out, gz then puts the model's name into the topic, or give each robot its "
-    "own through a xacro argument or urdf-postfix.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar">'
-    "<topic>scan</topic></sensor></gazebo>",
+    why="gz topics are global in their partition and a ROS namespace does not move them: one "
+    "command drives both robots, both lidars publish on one topic and ros_gz_bridge cannot "
+    "separate them.",
+    fix="Leave the element out, then gz puts the model's name into the topic, or give each robot "
+    "its own topic through a xacro argument or urdf-postfix.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="l" type="gpu_lidar"><topic>scan</topic></sensor>\n'
+    "</gazebo>\n",
     good='<link name="a"/><gazebo reference="a"><sensor name="l" type="gpu_lidar"/></gazebo>',
+    line=3,
 )
 def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
     """Literal gz topics."""
@@ -96,8 +109,10 @@ def gz_topic_shared(subject: Subject) -> Iterator[Problem]:
             continue
         if not claim_is_fixed(subject, claim):
             continue
-        message = f"{tag_of(claim)} {topic!r} is one gz topic for every copy of the robot"
-        yield Problem(claim.element, message, claim.attribute, "leave it out or spell it per robot")
+        message = f"{tag_of(claim)} {topic!r} is the same gz topic for every copy of the robot"
+        yield Problem(
+            claim.element, message, claim.attribute, "leave it out, or set one for each robot"
+        )
 
 
 def _is_gz(claim: Claim) -> bool:
@@ -105,7 +120,7 @@ def _is_gz(claim: Claim) -> bool:
 
 
 def _is_classic(subject: Subject) -> bool:
-    """Is it for Gazebo Classic, which puts the model's name before sensor topics itself?"""
+    """Is it for Gazebo Classic, which itself puts the model's name before sensor topics?"""
     hosts = (it.element for it in subject.inventory.hosts)
     keys = [library_key(it.get("filename", "")) for it in hosts if it.tag == "plugin"]
     return bool(keys) and not any(key.startswith(GZ_LIBRARIES) for key in keys)
@@ -115,22 +130,27 @@ def _is_classic(subject: Subject) -> bool:
     "MB413",
     "default-topic-shared",
     NOTE,
-    what="A plugin or hardware class uses a topic or name by its default, which a namespace does "
-    "not move.",
-    why="All robots' components of that class talk on the one absolute topic: each joint command "
+    what="A plugin or hardware class uses a default topic or name that a namespace does not move.",
+    why="All robots' components of that class use the same absolute topic: each joint command "
     "reaches every robot.",
-    fix="Say the name and give each robot its own; urdf-postfix inserts it.",
-    bad='<ros2_control name="h" type="system"><hardware><plugin>'
-    "topic_based_ros2_control/TopicBasedSystem</plugin>"
-    '<param name="joint_states_topic">states</param></hardware></ros2_control>',
-    good='<ros2_control name="h" type="system"><hardware><plugin>'
-    "topic_based_ros2_control/TopicBasedSystem</plugin>"
-    '<param name="joint_states_topic">states</param>'
-    '<param name="joint_commands_topic">commands</param></hardware></ros2_control>',
+    fix="Set the name, a different one for each robot; urdf-postfix inserts it.",
+    bad='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"
+    '    <param name="joint_states_topic">states</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
+    good='<ros2_control name="h" type="system">\n'
+    "  <hardware>\n"
+    "    <plugin>topic_based_ros2_control/TopicBasedSystem</plugin>\n"
+    '    <param name="joint_states_topic">states</param>\n'
+    '    <param name="joint_commands_topic">commands</param>\n'
+    "  </hardware>\n"
+    "</ros2_control>\n",
 )
 def default_topic_shared(subject: Subject) -> Iterator[Problem]:
-    """Topics, services and beginnings of names that would have to be inserted for a robot."""
+    """Topics, services and prefixes of names that would have to be inserted for a robot."""
     for element, (kind, old, _) in inserted(subject):
-        if kind in ("topic", "service", "stem"):
-            message = f"without being told another {kind} it uses {old!r}, as every other robot's"
-            yield Problem(element, message, None, "say it for each robot")
+        if kind in NOUNS:
+            message = f"its default {NOUNS[kind]} {old!r} is the same for every robot"
+            yield Problem(element, message, None, "set it for each robot")

@@ -10,7 +10,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.lazy import lazy_compile
 
-# How people call the parameter that is put in front of a robot's names.
+# What people call the parameter that is put in front of a robot's names.
 PREFIX = lazy_compile(r"(?:\w+_)?(?:prefix|namespace)|ns|robot_ns|robot_name")
 _PARAM = lazy_compile(r"\*{0,2}([A-Za-z_]\w*)(?::?=(?:'[^']*'|\"[^\"]*\"|\S*))?")
 SUBSTITUTIONS = lazy_compile(r"\$\{([^}]*)\}|\$\(arg\s+([^)\s]+)\s*\)")

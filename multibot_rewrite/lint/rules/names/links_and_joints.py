@@ -1,4 +1,4 @@
-"""Names of links, joints and the robot that URDF, SDF or tf cannot take."""
+"""Names of links, joints and the robot that are not valid in URDF, SDF or tf."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ WORLD = "world"
     "empty-name",
     ERROR,
     what="A link or joint has an empty name.",
-    why="urdfdom refuses a joint to a link without a name, sdformat refuses the empty name of a "
-    "joint, and tf2 takes no transform whose frame is empty.",
-    fix="Give it a name; in xacro see which argument or property is empty.",
+    why="urdfdom rejects a joint to a link without a name, sdformat rejects the empty name of a "
+    "joint, and tf2 accepts no transform with an empty frame.",
+    fix="Give it a name; in xacro check which argument or property is empty.",
     bad='<link name=""/>',
     good='<link name="a"/>',
 )
@@ -32,23 +32,23 @@ def empty_name(subject: Subject) -> Iterator[Problem]:
 
 @rule(
     "MB303",
-    "blank-in-name",
+    "space-in-name",
     WARNING,
-    what="The name of a link or joint holds white space.",
-    why="No ROS name may hold any: topics, nodes and namespaces made of it are refused by rcl. "
-    "Lists of names in plugins and hardware parameters are cut at blanks.",
-    fix="Write an underscore, or delete the blank around it, at every use as well.",
+    what="The name of a link or joint contains white space.",
+    why="ROS names must not contain white space: rcl rejects topics, nodes and namespaces made "
+    "from it. Lists of names in plugins and hardware parameters are split at spaces.",
+    fix="Use an underscore, or delete the space around it, at every use as well.",
     bad='<link name="left wheel"/>',
     good='<link name="left_wheel"/>',
 )
-def blank_in_name(subject: Subject) -> Iterator[Problem]:
+def space_in_name(subject: Subject) -> Iterator[Problem]:
     """White space in a name or around it."""
     for kind, name, element in named(subject):
         if name.strip() and BLANK.search(name):
             where = "" if name == name.strip() else " around it"
             near = "_".join(name.split())
             yield Problem(
-                element, f"{kind} {name!r} holds white space{where}", "name", f"write {near!r}"
+                element, f"{kind} {name!r} contains white space{where}", "name", f"use {near!r}"
             )
 
 
@@ -56,10 +56,11 @@ def blank_in_name(subject: Subject) -> Iterator[Problem]:
     "MB305",
     "double-colon",
     ERROR,
-    what="The name of the robot, a link or a joint holds '::'.",
-    why="SDF keeps '::' for names inside of models: sdformat 13 and later turn the URDF into SDF "
-    "1.11 and refuse the whole model, older ones look for a model of the first part.",
-    fix="Write an underscore.",
+    what="The name of the robot, a link or a joint contains '::'.",
+    why="SDF reserves '::' for names inside of models: sdformat 13 and later convert the URDF to "
+    "SDF 1.11 and reject the whole model, older ones look for a model with the first part as its "
+    "name.",
+    fix="Use an underscore.",
     bad='<link name="arm::hand"/>',
     good='<link name="arm_hand"/>',
 )
@@ -67,19 +68,23 @@ def double_colon(subject: Subject) -> Iterator[Problem]:
     """Names that become names in SDF."""
     for kind, name, element in named(subject):
         if "::" in name:
-            hint = f"write {name.replace('::', '_')!r}"
-            yield Problem(element, f"{kind} {name!r} holds '::', which SDF keeps", "name", hint)
+            hint = f"use {name.replace('::', '_')!r}"
+            yield Problem(
+                element, f"{kind} {name!r} contains '::', which SDF reserves", "name", hint
+            )
     if "::" in (name_of_robot(subject) or ""):
-        yield Problem(subject.document.root, "the robot's name holds '::', which SDF keeps", "name")
+        yield Problem(
+            subject.document.root, "the robot's name contains '::', which SDF reserves", "name"
+        )
 
 
 @rule(
     "MB306",
     "reserved-name",
     ERROR,
-    what="A link, a joint or the robot has a name that SDF keeps for itself: __x__, or world for a "
-    "joint or the robot.",
-    why="sdformat refuses the model: 'The supplied joint name [world] is reserved'. Gazebo spawns "
+    what="A link, a joint or the robot has a name that SDF reserves: __x__, or world for a joint "
+    "or the robot.",
+    why="sdformat rejects the model: 'The supplied joint name [world] is reserved'. Gazebo spawns "
     "nothing.",
     fix="Give it another name.",
     bad='<link name="__base__"/>',
@@ -89,10 +94,10 @@ def reserved_name(subject: Subject) -> Iterator[Problem]:
     """Links, joints and the robot; a link called world is MB307."""
     for kind, name, element in named(subject):
         if _is_reserved(name) or (kind == "joint" and name == WORLD):
-            yield Problem(element, f"SDF keeps {name!r} for itself: no {kind} may have it", "name")
+            yield Problem(element, f"SDF reserves the name {name!r}: no {kind} may have it", "name")
     robot = name_of_robot(subject)
     if robot is not None and (_is_reserved(robot) or robot == WORLD):
-        message = f"SDF keeps {robot!r} for itself: no model may have it"
+        message = f"SDF reserves the name {robot!r}: no model may have it"
         yield Problem(subject.document.root, message, "name")
 
 
@@ -104,18 +109,21 @@ def _is_reserved(name: str) -> bool:
     "MB307",
     "world-link",
     WARNING,
-    what="A link is called world and is more than the point to which the robot is fixed: it is not "
-    "the root, or it has mass or shapes.",
-    why="A root called world is the simulation's own world: sdformat leaves its mass and shapes out. "
-    "Elsewhere the name is reserved, and a world that moves with the robot breaks every tf tree.",
-    fix="Give a link with content another name; fix the robot to an empty root called world.",
-    bad='<link name="world"><visual><geometry><sphere radius="1"/></geometry></visual></link>'
-    '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
-    good='<link name="world"/>'
-    '<link name="a"/><joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>',
+    what="A link called world is more than the point to which the robot is fixed: it is not the "
+    "root, or it has mass or shapes.",
+    why="A root link called world is the simulation's own world: sdformat ignores its mass and "
+    "shapes. Elsewhere the name is reserved, and a world that moves with the robot breaks every tf "
+    "tree.",
+    fix="Rename a link with content; fix the robot to an empty root link called world.",
+    bad='<link name="world"><visual><geometry><sphere radius="1"/></geometry></visual></link>\n'
+    '<link name="a"/>\n'
+    '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
+    good='<link name="world"/>\n'
+    '<link name="a"/>\n'
+    '<joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint>\n',
 )
 def world_link(subject: Subject) -> Iterator[Problem]:
-    """One finding, for the worst that is wrong with it."""
+    """One finding, for its worst fault."""
     link = subject.robot.link.get(WORLD)
     if link is None:
         return
@@ -127,7 +135,7 @@ def world_link(subject: Subject) -> Iterator[Problem]:
         message = f"link 'world' is not the root: joint {above[0].name!r} moves it with the robot"
         yield Problem(link.element, message, "name")
     elif content:
-        message = f"link 'world' has <{content}>, which Gazebo leaves out"
+        message = f"link 'world' has <{content}>, which Gazebo ignores"
         yield Problem(link.element, message, "name")
 
 
@@ -135,14 +143,17 @@ def world_link(subject: Subject) -> Iterator[Problem]:
     "MB308",
     "link-and-joint-alike",
     WARNING,
-    what="A link and a joint have one name, and both become parts of the simulated model.",
-    why="SDF has one set of names for them: sdformat says 'name collision' and refuses the model, "
-    "so Gazebo does not spawn it.",
-    fix="Rename the joint, to NAME_joint as a rule.",
-    bad='<link name="a"/><link name="b"/><joint name="b" type="continuous"><parent link="a"/>'
-    '<child link="b"/></joint>',
-    good='<link name="a"/><link name="b"/><joint name="b_joint" type="continuous">'
-    '<parent link="a"/><child link="b"/></joint>',
+    what="A link and a joint have the same name, and both become parts of the simulated model.",
+    why="In SDF a link and a joint must not share a name: sdformat reports 'name collision' and "
+    "rejects the model, so Gazebo does not spawn it.",
+    fix="Rename the joint, usually to NAME_joint.",
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b_joint" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
+    line=3,
 )
 def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
     """Only where both stay: Gazebo merges the links of a fixed joint, and its name is gone."""
@@ -157,16 +168,16 @@ def link_and_joint_alike(subject: Subject) -> Iterator[Problem]:
 
 @rule(
     "MB309",
-    "case-twins",
+    "names-differ-by-case",
     NOTE,
-    what="Two links or two joints differ in nothing but capitals.",
-    why="ROS and Gazebo tell them apart; a person, and files named after them on a disk that ignores "
-    "capitals, do not.",
-    fix="Give one another name.",
+    what="The names of two links or two joints differ only in upper and lower case.",
+    why="ROS and Gazebo distinguish them; people, and files named after them on a case-insensitive "
+    "disk, do not.",
+    fix="Rename one of them.",
     bad='<link name="arm"/><link name="Arm"/>',
     good='<link name="arm"/><link name="arm_2"/>',
 )
-def case_twins(subject: Subject) -> Iterator[Problem]:
+def names_differ_by_case(subject: Subject) -> Iterator[Problem]:
     """The second of each pair."""
     links = {it.name: it.element for it in subject.robot.links}
     joints = {it.name: it.element for it in subject.robot.joints}
@@ -177,7 +188,7 @@ def case_twins(subject: Subject) -> Iterator[Problem]:
         for name, element in parts.items():
             first = seen.setdefault(name.lower(), name)
             if first != name:
-                message = f"{kind} {name!r} differs from {first!r} in capitals alone"
+                message = f"{kind} {name!r} differs from {first!r} only in upper and lower case"
                 yield Problem(element, message, "name")
 
 
@@ -185,10 +196,10 @@ def case_twins(subject: Subject) -> Iterator[Problem]:
     "MB310",
     "name-not-ascii",
     NOTE,
-    what="The name of a link or joint holds a letter that is not ASCII.",
-    why="No ROS name may hold one: rcl refuses topics, nodes and namespaces made of it. Two letters "
-    "that look alike are two names.",
-    fix="Write letters from a to z.",
+    what="The name of a link or joint contains a letter that is not ASCII.",
+    why="ROS names must be ASCII: rcl rejects topics, nodes and namespaces made from it. Two "
+    "letters that look the same can be different.",
+    fix="Use the letters a to z.",
     bad='<link name="fühler"/>',
     good='<link name="fuehler"/>',
 )
@@ -198,4 +209,4 @@ def name_not_ascii(subject: Subject) -> Iterator[Problem]:
         if not name.isascii():
             letter = next(it for it in name if not it.isascii())
             code = f"U+{ord(letter):04X}"
-            yield Problem(element, f"{kind} {name!r} holds {letter!r} ({code})", "name")
+            yield Problem(element, f"{kind} {name!r} contains {letter!r} ({code})", "name")

@@ -1,4 +1,4 @@
-"""Names that ROS cannot take: frames, topics, interfaces, the robot."""
+"""Names that are not valid in ROS: frames, topics, interfaces, the robot."""
 
 from __future__ import annotations
 
@@ -24,14 +24,29 @@ _ALLOWED_EVERYWHERE = lazy_compile(r"[\w/~]*", re.ASCII)
     "MB301",
     "leading-slash",
     WARNING,
-    what="A frame is written with a slash in front.",
-    why="tf2 look-ups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
-    "link's name as it is, so a link written like that is a frame that nobody can ask for.",
-    fix="Drop the slash.",
-    bad='<link name="lidar"/><gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
-    "<frame_name>/lidar</frame_name></plugin></gazebo>",
-    good='<link name="lidar"/><gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so">'
-    "<frame_name>lidar</frame_name></plugin></gazebo>",
+    what="A frame starts with a slash.",
+    why="tf2 lookups throw: \"tf2 frame_ids cannot start with a '/'\"; robot_state_publisher sends a "
+    "link's name as it is, so a link with a leading slash is a frame that cannot be looked up.",
+    fix="Delete the slash.",
+    bad='<link name="lidar"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <frame_name>/lidar</frame_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="lidar"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <frame_name>lidar</frame_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=4,
+    fixed='<link name="lidar"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <frame_name>lidar</frame_name>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
     formats=(URDF, SRDF),
 )
 def leading_slash(subject: Subject) -> Iterator[Problem]:
@@ -45,7 +60,7 @@ def leading_slash(subject: Subject) -> Iterator[Problem]:
             known = name in subject.inventory.declared["link"]
             message = f"frame {claim.value!r} starts with a slash"
             edits = _without_slash(subject, claim) if known else ()
-            yield Problem(claim.element, message, claim.attribute, "drop the slash", edits)
+            yield Problem(claim.element, message, claim.attribute, "delete the slash", edits)
 
 
 def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
@@ -59,15 +74,20 @@ def _without_slash(subject: Subject, claim: Claim) -> tuple[Edit, ...]:
     "MB304",
     "slash-in-joint",
     NOTE,
-    what="The name of a joint, sensor or gpio in <ros2_control> holds a slash.",
-    why="Its interfaces are called NAME/INTERFACE, and the controller manager cuts that at the "
-    "first slash: arm/j1/position belongs to the controller 'arm' as soon as there is one.",
-    fix="Write an underscore, in the URDF and in the controllers' parameters; or call no "
-    "controller what stands before the slash.",
-    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="arm/j1"><state_interface name="position"/></joint></ros2_control>',
-    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="arm_j1"><state_interface name="position"/></joint></ros2_control>',
+    what="The name of a joint, sensor or gpio in <ros2_control> contains a slash.",
+    why="Its interfaces are called NAME/INTERFACE, and the controller manager splits that at the "
+    "first slash: arm/j1/position belongs to the controller 'arm' if there is one.",
+    fix="Use an underscore, in the URDF and in the controllers' parameters; or give no controller "
+    "the name before the slash.",
+    bad='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="arm/j1"><state_interface name="position"/></joint>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="arm_j1"><state_interface name="position"/></joint>\n'
+    "</ros2_control>\n",
+    line=3,
 )
 def slash_in_joint(subject: Subject) -> Iterator[Problem]:
     """Every component that has interfaces."""
@@ -76,17 +96,19 @@ def slash_in_joint(subject: Subject) -> Iterator[Problem]:
             name = part.get("name", "")
             if "/" in name and SUBSTITUTION not in name:
                 cut = name.partition("/")[0]
-                message = f"{part.tag} {name!r} holds a slash: its interfaces seem to be of {cut!r}"
-                yield Problem(part, message, "name", f"write {name.replace('/', '_')!r}")
+                owner = f"its interfaces seem to belong to {cut!r}"
+                message = f"{part.tag} {name!r} contains a slash: {owner}"
+                yield Problem(part, message, "name", f"use {name.replace('/', '_')!r}")
 
 
 @rule(
     "MB311",
     "robot-name",
     NOTE,
-    what="The robot's name is no ROS name: empty, or with blanks, hyphens, dots or a digit in front.",
-    why="Spawners take it for the model, and Gazebo puts it into topics like /model/NAME/odometry: "
-    "bridged to ROS these are refused, and as a namespace or node name it is, too.",
+    what="The robot's name is not a valid ROS name: empty, or with spaces, hyphens, dots or a "
+    "leading digit.",
+    why="Spawners use it for the model, and Gazebo puts it into topics like /model/NAME/odometry: "
+    "ROS rejects these when they are bridged, and also a namespace or node name made from it.",
     fix="Use letters, digits and underscores.",
     bad='<robot name="my-robot"><link name="a"/></robot>',
     good='<robot name="my_robot"><link name="a"/></robot>',
@@ -96,24 +118,33 @@ def robot_name(subject: Subject) -> Iterator[Problem]:
     name = name_of_robot(subject)
     if name is None or "::" in name or TOKEN.fullmatch(name):
         return
-    hint = f"write {propose_token(name)!r}" if name.strip() else "give it one"
-    yield Problem(subject.document.root, f"robot name {name!r} is no ROS name", "name", hint)
+    hint = f"use {propose_token(name)!r}" if name.strip() else "add one"
+    yield Problem(
+        subject.document.root, f"robot name {name!r} is not a valid ROS name", "name", hint
+    )
 
 
 @rule(
     "MB312",
-    "no-ros-name",
+    "invalid-ros-name",
     WARNING,
-    what="A topic, service, namespace or node name of a plugin is no name that ROS takes.",
-    why="rcl throws InvalidTopicNameError, or the node is not made: the plugin does not load, or "
-    "publishes nothing.",
-    fix="Use letters, digits, underscores and slashes, no digit in front.",
-    bad='<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><ros>'
-    "<namespace>my-robot</namespace></ros></plugin></gazebo>",
-    good='<gazebo><plugin name="p" filename="libgazebo_ros_imu_sensor.so"><ros>'
-    "<namespace>my_robot</namespace></ros></plugin></gazebo>",
+    what="A topic, service, namespace or node name of a plugin is not a valid ROS name.",
+    why="rcl throws InvalidTopicNameError, or the node is not created: the plugin does not load, "
+    "or publishes nothing.",
+    fix="Use letters, digits, underscores and slashes, without a leading digit.",
+    bad="<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <ros><namespace>my-robot</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="p" filename="libgazebo_ros_imu_sensor.so">\n'
+    "    <ros><namespace>my_robot</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
 )
-def no_ros_name(subject: Subject) -> Iterator[Problem]:
+def invalid_ros_name(subject: Subject) -> Iterator[Problem]:
     """Values that are relative to a ROS namespace; those with a substitution are skipped."""
     for claim in subject.inventory.claims:
         site = claim.site
@@ -121,7 +152,7 @@ def no_ros_name(subject: Subject) -> Iterator[Problem]:
             continue
         for name in _ros_names(claim):
             if fault := _name_fault(name, site.section):
-                message = f"{site.kinds[0]} {name!r} is no ROS name: {fault}"
+                message = f"{site.kinds[0]} {name!r} is not a valid ROS name: {fault}"
                 yield Problem(claim.element, message, claim.attribute)
 
 
@@ -135,7 +166,7 @@ def _ros_names(claim: Claim) -> list[str]:
 
 
 def _name_fault(name: str, section: str) -> str:
-    """Why rcl refuses a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
+    """Why rcl rejects a name; in a plugin that may be for ROS 1 or Gazebo, why all of them do."""
     if _ALLOWED_EVERYWHERE.fullmatch(name) and not section.startswith("block ros"):
         return ""
     fault = check_topic_name(name.rstrip("/"))
@@ -146,14 +177,19 @@ def _name_fault(name: str, section: str) -> str:
     "MB313",
     "odd-interface-name",
     WARNING,
-    what="A <ros2_control> component or interface has an empty name, or one with white space.",
-    why="Controllers ask for NAME/INTERFACE, spelled exactly: the parser strips blanks around a "
-    "name, those within it stay, and an empty one can be asked for by nobody.",
-    fix="Write the name without blanks.",
-    bad='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="j"><state_interface name=""/></joint></ros2_control>',
-    good='<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware>'
-    '<joint name="j"><state_interface name="position"/></joint></ros2_control>',
+    what="A <ros2_control> component or interface has an empty name, or a name with white space.",
+    why="Controllers ask for NAME/INTERFACE exactly: the parser strips white space around a name "
+    "but not inside it, and an empty name cannot be requested.",
+    fix="Write the name without spaces.",
+    bad='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="j"><state_interface name=""/></joint>\n'
+    "</ros2_control>\n",
+    good='<ros2_control name="c" type="system">\n'
+    "  <hardware><plugin>p/P</plugin></hardware>\n"
+    '  <joint name="j"><state_interface name="position"/></joint>\n'
+    "</ros2_control>\n",
+    line=3,
 )
 def odd_interface(subject: Subject) -> Iterator[Problem]:
     """Components and their interfaces; the name of a joint is reported at its declaration."""

@@ -1,4 +1,4 @@
-"""Names that other formats cannot take, where they are asked for (USD, MJCF)."""
+"""Names that are not valid in other formats (USD, MJCF), checked with the option targets."""
 
 from __future__ import annotations
 
@@ -13,18 +13,19 @@ from multibot_rewrite.lint.rules.names.shared import TOKEN, named
 
 @rule(
     "MB320",
-    "no-usd-name",
+    "invalid-usd-name",
     WARNING,
-    what="A name is no USD identifier (asked with the target usd).",
-    why="A prim is called by letters, digits and underscores, no digit in front: converters to USD "
-    "replace the rest, and what looks for the URDF's name in the stage finds nothing.",
-    fix="Write underscores for what is not a letter or digit.",
+    what="A name is not a valid USD identifier (checked with the target usd).",
+    why="The names of USD prims have letters, digits and underscores, without a leading digit: "
+    "converters to USD replace the rest, and a program that looks for the URDF name in the stage "
+    "finds nothing.",
+    fix="Use underscores in place of other characters.",
     bad='<link name="left/wheel"/>',
     good='<link name="left_wheel"/>',
     options={"targets": ("usd",)},
 )
 def no_usd_name(subject: Subject) -> Iterator[Problem]:
-    """The message says what a converter makes of it, and whether that name exists."""
+    """The message has the name that a converter makes, and whether it already exists."""
     if "usd" not in subject.settings.targets:
         return
     names = {name for _, name, _ in named(subject)}
@@ -32,19 +33,19 @@ def no_usd_name(subject: Subject) -> Iterator[Problem]:
         if name.strip() and not TOKEN.fullmatch(name):
             made = re.sub(r"\W", "_", name, flags=re.ASCII)
             made = f"_{made}" if made[0].isdigit() else made
-            taken = ", which is there already" if made in names else ""
-            message = f"{kind} {name!r} is no USD identifier: it becomes {made!r}{taken}"
-            yield Problem(element, message, "name", f"write {made!r}")
+            taken = ", which already exists" if made in names else ""
+            message = f"{kind} {name!r} is not a valid USD identifier: it becomes {made!r}{taken}"
+            yield Problem(element, message, "name", f"use {made!r}")
 
 
 @rule(
     "MB321",
     "slash-for-mjcf",
     WARNING,
-    what="The name of a link or joint holds a slash (asked with the target mjcf).",
-    why="MuJoCo takes it; dm_control's mjcf does not: it keeps '/' for the names of attached models, "
-    "and raises ValueError when the model is loaded.",
-    fix="Write an underscore.",
+    what="The name of a link or joint contains a slash (checked with the target mjcf).",
+    why="MuJoCo accepts it; dm_control's mjcf does not: it reserves '/' for the names of attached "
+    "models, and raises ValueError when the model is loaded.",
+    fix="Use an underscore.",
     bad='<link name="left/wheel"/>',
     good='<link name="left_wheel"/>',
     options={"targets": ("mjcf",)},
@@ -55,5 +56,5 @@ def slash_for_mjcf(subject: Subject) -> Iterator[Problem]:
         return
     for kind, name, element in named(subject):
         if "/" in name:
-            hint = f"write {name.strip('/').replace('/', '_')!r}"
-            yield Problem(element, f"{kind} {name!r} holds a slash", "name", hint)
+            hint = f"use {name.strip('/').replace('/', '_')!r}"
+            yield Problem(element, f"{kind} {name!r} contains a slash", "name", hint)

@@ -38,11 +38,12 @@ LARGER, SMALLER, SMALL_SHAPE = 50.0, 0.01, 0.01
     "inertia-missing",
     ERROR,
     what="An <inertial> has no inertia, or not all six values of it.",
-    why="urdfdom says 'Inertial element must have inertia element' and reads no further: the link "
-    "has no visual and no collision; MuJoCo refuses the file.",
+    why="urdfdom reports 'Inertial element must have inertia element' and stops reading the link: "
+    "it has no visual and no collision; MuJoCo rejects the file.",
     fix="Write ixx, ixy, ixz, iyy, iyz and izz, or delete the <inertial>.",
     bad=one_link(an_inertial(inertia="")),
     good=one_link(an_inertial()),
+    line=2,
 )
 def inertia_missing(subject: Subject) -> Iterator[Problem]:
     """Inertials without <inertia>, or with a part of it."""
@@ -62,11 +63,12 @@ def inertia_missing(subject: Subject) -> Iterator[Problem]:
     "inertia-zero",
     WARNING,
     what="The inertia of a link that moves on its own is 0.",
-    why="MuJoCo refuses the file ('mass and inertia of moving bodies must be larger than mjMINVAL'); "
-    "sdformat lets it through to the physics engine, which has nothing to divide a torque by.",
-    fix="Write the inertia of a box or a cylinder of that mass and size.",
+    why="MuJoCo rejects the file ('mass and inertia of moving bodies must be larger than "
+    "mjMINVAL'); sdformat accepts it, and the physics engine divides a torque by 0.",
+    fix="Use the inertia of a box or a cylinder with that mass and size.",
     bad=moving_link(an_inertial(inertia=diagonal("0", "0", "0"))),
     good=moving_link(an_inertial()),
+    line=10,
 )
 def inertia_zero(subject: Subject) -> Iterator[Problem]:
     """Bodies with mass and no inertia, also not from a link that is fixed to them."""
@@ -87,13 +89,14 @@ def inertia_zero(subject: Subject) -> Iterator[Problem]:
     "MB606",
     "inertia-not-positive",
     ERROR,
-    what="The inertia of a link is not positive definite: about some axis it is below 0.",
-    why="No body has it: sdformat refuses the file ('has invalid inertia'), MuJoCo, too ('inertia "
-    "must have positive eigenvalues').",
+    what="The inertia of a link is not positive definite: about some axis it is negative.",
+    why="This is physically impossible: sdformat rejects the file ('has invalid inertia'), and so "
+    "does MuJoCo ('inertia must have positive eigenvalues').",
     fix="Look for a wrong sign, or for off-diagonal values in another unit; CAD programs differ in "
     "the sign of ixy, ixz and iyz.",
     bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.2"))),
     good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.1", ixy="0.02"))),
+    line=4,
 )
 def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     """Inertias of bodies with a negative principal moment."""
@@ -107,12 +110,13 @@ def inertia_not_positive(subject: Subject) -> Iterator[Problem]:
     "MB607",
     "inertia-triangle",
     ERROR,
-    what="One principal moment of a link's inertia is larger than the two others together.",
-    why="No body has it: sdformat refuses the file ('has invalid inertia'), MuJoCo, too ('inertia "
-    "must satisfy A + B >= C').",
-    fix="Take the values from the CAD program again: in kg m2, about the centre of mass.",
+    what="One principal moment of a link's inertia is larger than the sum of the two others.",
+    why="This is physically impossible: sdformat rejects the file ('has invalid inertia'), and so "
+    "does MuJoCo ('inertia must satisfy A + B >= C').",
+    fix="Export the values from the CAD program again: in kg m2, about the centre of mass.",
     bad=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))),
     good=one_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.2"))),
+    line=4,
 )
 def inertia_triangle(subject: Subject) -> Iterator[Problem]:
     """Inertias that no distribution of mass has, by more than rounding."""
@@ -127,10 +131,11 @@ def inertia_triangle(subject: Subject) -> Iterator[Problem]:
     "inertia-scale",
     WARNING,
     what="An inertia does not fit the link's mass and size.",
-    why="The simulator takes it as it is: such a link hardly turns, or spins at a touch.",
-    fix="Write mass in kg and inertia in kg m2; 1 kg mm2 is 1e-6 kg m2.",
+    why="The simulator uses it as it is: such a link hardly turns, or spins at a touch.",
+    fix="Use kg for the mass and kg m2 for the inertia; 1 kg mm2 is 1e-6 kg m2.",
     bad=one_link(an_inertial(inertia=diagonal("1000", "1000", "1000"))),
     good=one_link(an_inertial(inertia=diagonal("0.001", "0.001", "0.001"))),
+    line=4,
 )
 def inertia_scale(subject: Subject) -> Iterator[Problem]:
     """Radii of gyration that no robot has, or that do not fit the size of the link's shapes."""
@@ -142,29 +147,32 @@ def inertia_scale(subject: Subject) -> Iterator[Problem]:
         if largest < NOTHING:
             continue
         radius = sqrt(largest / mass)
-        said = f"inertia of link {link.name!r}: its {mass:g} kg would be {radius:.3g} m from the centre"
+        message = (
+            f"inertia of link {link.name!r}: {mass:g} kg would be {radius:.3g} m from the centre"
+        )
         if radius > LONG or radius < SHORT:
-            yield Problem(part_of(inertial, "inertia"), said, None, "is the unit right?")
+            yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
         elif radius > LARGER * SMALL_SHAPE or radius < 0.1:
             size = _size(link.element)
             if size > SMALL_SHAPE and not SMALLER <= radius / size <= LARGER:
-                said += f", its shapes end {size:.3g} m from the origin"
-                yield Problem(part_of(inertial, "inertia"), said, None, "is the unit right?")
+                message += f", its shapes reach {size:.3g} m from the origin"
+                yield Problem(part_of(inertial, "inertia"), message, None, "is the unit right?")
 
 
 @rule(
     "MB619",
     "merged-inertia",
     WARNING,
-    what="A link with a fixed joint, or with links fixed to it, has an inertia that no body has: a "
-    "principal moment is below 0 or larger than the two others together.",
-    why="MuJoCo refuses the file. Gazebo merges the links first and refuses the sum, if that is "
-    "impossible, too.",
-    fix="Take the values from the CAD program again: in kg m2, about the centre of mass.",
+    what="A link with a fixed joint, or with links fixed to it, has a physically impossible "
+    "inertia: a principal moment is negative or larger than the sum of the two others.",
+    why="MuJoCo rejects the file. Gazebo merges the links first and rejects the sum if that is "
+    "impossible as well.",
+    fix="Export the values from the CAD program again: in kg m2, about the centre of mass.",
     bad=moving_link(an_inertial(inertia=diagonal("0.1", "0.1", "0.3"))).replace(
         "continuous", "fixed"
     ),
     good=moving_link(an_inertial()).replace("continuous", "fixed"),
+    line=10,
 )
 def merged_inertia(subject: Subject) -> Iterator[Problem]:
     """Impossible inertias of links that simulators merge with others."""

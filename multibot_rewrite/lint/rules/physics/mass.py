@@ -1,4 +1,4 @@
-"""The mass of links, alone and with what is fixed to them."""
+"""The mass of links, with and without what is fixed to them."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import WORLD, Link, Robot, reached
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_joint, a_link, block
 from multibot_rewrite.lint.rules.physics.shared import (
     INERTIA,
     an_inertial,
@@ -26,11 +27,12 @@ TINY_MASS = 1e-6
     "mass-missing",
     ERROR,
     what="An <inertial> has no mass.",
-    why="urdfdom says 'Inertial element must have a mass element' and reads no further: the link "
-    "has no visual and no collision; MuJoCo refuses the file.",
+    why="urdfdom reports 'Inertial element must have a mass element' and stops reading the link: "
+    "it has no visual and no collision; MuJoCo rejects the file.",
     fix='Add <mass value="..."/>, or delete the <inertial>.',
-    bad=one_link(f"<inertial>{INERTIA}</inertial>"),
+    bad=one_link(block("<inertial>", INERTIA)),
     good=one_link(an_inertial()),
+    line=2,
 )
 def mass_missing(subject: Subject) -> Iterator[Problem]:
     """Inertials without <mass value>."""
@@ -47,11 +49,12 @@ def mass_missing(subject: Subject) -> Iterator[Problem]:
     "MB602",
     "mass-negative",
     ERROR,
-    what="A mass is below 0.",
-    why="sdformat refuses the file ('has invalid inertia'); MuJoCo refuses a moving body.",
+    what="A mass is negative.",
+    why="sdformat rejects the file ('has invalid inertia'); MuJoCo rejects a moving body.",
     fix="Write the mass in kg.",
     bad=one_link(an_inertial("-1")),
     good=one_link(an_inertial("1")),
+    line=3,
 )
 def mass_negative(subject: Subject) -> Iterator[Problem]:
     """Masses below 0."""
@@ -65,12 +68,14 @@ def mass_negative(subject: Subject) -> Iterator[Problem]:
     "MB603",
     "link-without-mass",
     WARNING,
-    what="A link has no mass, nor has any link that is fixed to it, but the robot has.",
-    why="Gazebo leaves out the link and all that hangs on it (sdformat: 'is not modeled in sdf'; "
-    "its joint and child joints are 'ignored'); MuJoCo refuses the file.",
+    what="A link has no mass, and neither has any link that is fixed to it, but other links of the "
+    "robot have.",
+    why="Gazebo leaves out the link and everything below it (sdformat: 'is not modeled in sdf'; "
+    "its joint and child joints are 'ignored'); MuJoCo rejects the file.",
     fix="Add <inertial> with mass and inertia, or make the joint above it fixed.",
-    bad=moving_link(""),
+    bad=moving_link(),
     good=moving_link(an_inertial()),
+    line=7,
 )
 def link_without_mass(subject: Subject) -> Iterator[Problem]:
     """The uppermost bodies without mass, if the robot has several bodies and some mass."""
@@ -87,7 +92,9 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
             continue  # no joint has it: MB501
         below = len(reached(robot, [name], lost)) - 1
         tail = f", with {below} links below it" if below else ""
-        message = f"link {name!r} has no mass, nor anything fixed to it: Gazebo leaves it out{tail}"
+        message = (
+            f"link {name!r} and the links fixed to it have no mass: Gazebo leaves it out{tail}"
+        )
         yield Problem(link.element, message, "name")
 
 
@@ -96,13 +103,12 @@ def link_without_mass(subject: Subject) -> Iterator[Problem]:
     "root-inertia",
     NOTE,
     what="The root link has an inertia.",
-    why="KDL drops it, and robot_state_publisher says so at every start ('KDL does not support a "
+    why="KDL drops it, and robot_state_publisher warns at every start ('KDL does not support a "
     "root link with an inertia').",
-    fix="Add a link without inertia above it, with a fixed joint.",
+    fix="Add a link without inertia above it, connected by a fixed joint.",
     bad=one_link(an_inertial()),
-    good='<link name="base"/><link name="a">'
-    + an_inertial()
-    + '</link><joint name="j" type="fixed"><parent link="base"/><child link="a"/></joint>',
+    good=a_link("base") + one_link(an_inertial()) + a_joint("j", "fixed", "base", "a"),
+    line=2,
 )
 def root_inertia(subject: Subject) -> Iterator[Problem]:
     """A root with <inertial>."""
@@ -117,11 +123,12 @@ def root_inertia(subject: Subject) -> Iterator[Problem]:
     "no-inertia",
     NOTE,
     what="No link has a mass: the robot cannot be simulated.",
-    why="Gazebo spawns nothing of it; MuJoCo refuses a moving body without mass. RViz and MoveIt "
-    "do not mind.",
+    why="Gazebo spawns nothing of it; MuJoCo rejects a moving body without mass. RViz and MoveIt "
+    "do not need it.",
     fix="Add <inertial> to the links, if the robot is to be simulated.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="continuous"><parent link="a"/>'
-    '<child link="b"/></joint>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>\n',
     good=moving_link(an_inertial()),
 )
 def no_inertia(subject: Subject) -> Iterator[Problem]:
@@ -137,11 +144,12 @@ def no_inertia(subject: Subject) -> Iterator[Problem]:
     "mass-tiny",
     NOTE,
     what="A link that moves on its own weighs less than a milligram.",
-    why="Iterative solvers need many more steps where such a link carries or drives kilograms; MuJoCo "
-    "refuses a body below 1e-15 kg.",
+    why="Iterative solvers need many more steps if such a link carries or drives kilograms; MuJoCo "
+    "rejects a body below 1e-15 kg.",
     fix="Write the real mass, or make the joint fixed.",
     bad=moving_link(an_inertial("1e-8")),
     good=moving_link(an_inertial("0.01")),
+    line=8,
 )
 def mass_tiny(subject: Subject) -> Iterator[Problem]:
     """Bodies of nearly no mass."""

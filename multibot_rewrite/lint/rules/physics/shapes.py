@@ -33,12 +33,12 @@ OLD_VERSIONS = ("1.0", "1")
     "MB611",
     "visual-without-collision",
     NOTE,
-    what="A link that moves is seen and touches nothing: it has <visual> and no <collision>, nor "
-    "has any link that is fixed to it.",
-    why="MoveIt plans through it, and in Gazebo it goes through everything.",
+    what="A link that moves has <visual> but no <collision>, and no link fixed to it has one.",
+    why="MoveIt plans through it, and in Gazebo it passes through everything.",
     fix="Add <collision>, with a simpler shape.",
-    bad=moving_link(f"{an_inertial()}<visual>{BOX}</visual>"),
-    good=moving_link(f"{an_inertial()}<visual>{BOX}</visual><collision>{BOX}</collision>"),
+    bad=moving_link(an_inertial(), f"<visual>{BOX}</visual>"),
+    good=moving_link(an_inertial(), f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"),
+    line=7,
 )
 def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     """Bodies; one finding for the robot where no link has a collision."""
@@ -48,10 +48,10 @@ def visual_without_collision(subject: Subject) -> Iterator[Problem]:
     touch, seen = _bodies_with(subject, "collision"), _bodies_with(subject, "visual")
     bare = [it for it in seen if it not in touch and moves(robot, it) and it in robot.link]
     if not touch and bare[1:]:
-        yield Problem(root, "no link has a <collision>: the robot touches nothing")
+        yield Problem(root, "no link has a <collision>: the robot cannot touch anything")
         return
     for name in bare:
-        message = f"link {name!r} has <visual> and no <collision>"
+        message = f"link {name!r} has <visual> but no <collision>"
         yield Problem(robot.link[name].element, message, "name")
 
 
@@ -66,12 +66,13 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     "MB613",
     "shape-size",
     WARNING,
-    what="A box, cylinder or sphere has a size of 0 or below.",
-    why="sdformat warns and takes its default instead, half a metre or a metre; MuJoCo refuses the "
-    "file ('size must be positive').",
-    fix="Write the size in metres; delete a shape that is not there.",
+    what="A box, cylinder or sphere has a size of 0 or less.",
+    why="sdformat warns and uses its default of half a metre or a metre; MuJoCo rejects the file "
+    "('size must be positive').",
+    fix="Write the size in metres, or delete the shape.",
     bad=visual('<box size="0 0 0"/>'),
     good=visual('<box size="0.1 0.1 0.1"/>'),
+    line=3,
 )
 def shape_size(subject: Subject) -> Iterator[Problem]:
     """Shapes with a size of 0 or less."""
@@ -87,10 +88,11 @@ def shape_size(subject: Subject) -> Iterator[Problem]:
     "shape-units",
     WARNING,
     what="A box, cylinder or sphere is larger than a house.",
-    why="URDF is in metres: the robot stands inside of the shape, in collision with itself.",
-    fix="Divide by 1000 what is in millimetres.",
+    why="URDF uses metres: the robot is inside of the shape, in collision with itself.",
+    fix="Divide millimetres by 1000.",
     bad=visual('<box size="300 200 100"/>'),
     good=visual('<box size="0.3 0.2 0.1"/>'),
+    line=3,
 )
 def shape_units(subject: Subject) -> Iterator[Problem]:
     """Shapes longer than LONG_SHAPE metres; a long and thin one may be a rail."""
@@ -105,12 +107,13 @@ def shape_units(subject: Subject) -> Iterator[Problem]:
     "MB615",
     "shape-missing",
     WARNING,
-    what="A <visual> or <collision> has no geometry, or one that URDF does not know.",
-    why="urdfdom says 'Could not parse visual element' and reads no further: visuals and collisions "
-    "behind it are missing.",
+    what="A <visual> or <collision> has no geometry, or a shape that URDF does not have.",
+    why="urdfdom reports 'Could not parse visual element' and stops reading the link: the visuals "
+    "and collisions after it are missing.",
     fix="Add <geometry> with a box, cylinder, sphere or mesh, or delete the element.",
     bad=one_link("<visual/>"),
     good=one_link(f"<visual>{BOX}</visual>"),
+    line=2,
 )
 def shape_missing(subject: Subject) -> Iterator[Problem]:
     """Elements without a shape that urdfdom reads."""
@@ -140,10 +143,11 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
     "mesh-flat",
     WARNING,
     what="A mesh is scaled by 0.",
-    why="It is flat or a point: nothing is seen of it, and a collision with it has no inside.",
-    fix="Write three scales that are not 0.",
+    why="It becomes flat or a point: it cannot be seen, and as a collision it has no volume.",
+    fix="Use three scales that are not 0.",
     bad=visual('<mesh filename="a.stl" scale="1 1 0"/>'),
     good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
+    line=3,
 )
 def mesh_flat(subject: Subject) -> Iterator[Problem]:
     """Scales with a 0."""
@@ -158,11 +162,12 @@ def mesh_flat(subject: Subject) -> Iterator[Problem]:
     "mesh-mirrored",
     NOTE,
     what="A mesh is scaled by a negative number.",
-    why="A mirror image turns the faces inside out: their normals point into the part, unless the "
-    "reader turns them back.",
-    fix="Export the mirrored mesh, where that matters.",
+    why="A mirror image turns the faces inside out: their normals point inwards, unless the "
+    "program corrects them.",
+    fix="Export the mirrored mesh if that matters.",
     bad=visual('<mesh filename="a.stl" scale="1 -1 1"/>'),
     good=visual('<mesh filename="a.stl" scale="1 1 1"/>'),
+    line=3,
 )
 def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
     """An odd number of negative scales: two of them are a rotation."""
@@ -176,12 +181,13 @@ def mesh_mirrored(subject: Subject) -> Iterator[Problem]:
     "MB618",
     "mesh-scale-units",
     NOTE,
-    what="A mesh is scaled by a number that no unit asks for.",
+    what="The scale of a mesh does not fit any unit.",
     why="Meshes are in millimetres (0.001), centimetres, inches (0.0254) or metres: the part will "
     "be much too large, too small or stretched.",
-    fix="Write the same scale three times: 0.001 for a mesh in millimetres.",
+    fix="Use the same scale three times: 0.001 for a mesh in millimetres.",
     bad=visual('<mesh filename="a.stl" scale="1000 1000 1000"/>'),
     good=visual('<mesh filename="a.stl" scale="0.001 0.001 0.001"/>'),
+    line=3,
 )
 def mesh_scale_units(subject: Subject) -> Iterator[Problem]:
     """Very large, very small, or very different scales."""

@@ -8,6 +8,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.lint.facts.numbers import numbers
 from multibot_rewrite.lint.facts.robot import Inertial, Link, Robot
+from multibot_rewrite.lint.rules.examples import a_joint, block
 
 # What MuJoCo takes for nothing (mjMINVAL).
 NOTHING = 1e-15
@@ -18,7 +19,7 @@ BOX = '<geometry><box size="1 1 1"/></geometry>'
 
 def an_inertial(mass: str = "1", inertia: str = INERTIA) -> str:
     """An example's mass and inertia."""
-    return f'<inertial><mass value="{mass}"/>{inertia}</inertial>'
+    return block("<inertial>", f'<mass value="{mass}"/>', *filter(None, [inertia]))
 
 
 def diagonal(ixx: str, iyy: str, izz: str, ixy: str = "0") -> str:
@@ -26,22 +27,20 @@ def diagonal(ixx: str, iyy: str, izz: str, ixy: str = "0") -> str:
     return f'<inertia ixx="{ixx}" ixy="{ixy}" ixz="0" iyy="{iyy}" iyz="0" izz="{izz}"/>'
 
 
-def one_link(inside: str) -> str:
-    """An example: a link."""
-    return f'<link name="a">{inside}</link>'
+def one_link(*inside: str, name: str = "a") -> str:
+    """An example: a link, whose content begins in line 2."""
+    return block(f'<link name="{name}">', *inside)
 
 
-def moving_link(inside: str) -> str:
-    """An example: a link on a wheel's joint."""
-    return (
-        f'{one_link(an_inertial())}<link name="b">{inside}</link><joint name="j" type="continuous">'
-        '<parent link="a"/><child link="b"/></joint>'
-    )
+def moving_link(*inside: str) -> str:
+    """An example: a link on a wheel's joint; the link is in line 7."""
+    wheel = one_link(*inside, name="b")
+    return one_link(an_inertial()) + wheel + a_joint("j", "continuous", "a", "b")
 
 
 def visual(shape: str) -> str:
     """An example: a link that shows a shape."""
-    return one_link(f"<visual><geometry>{shape}</geometry></visual>")
+    return one_link(block("<visual>", f"<geometry>{shape}</geometry>"))
 
 
 def inertials(robot: Robot) -> Iterator[tuple[Link, Inertial]]:

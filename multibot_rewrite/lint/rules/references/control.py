@@ -10,10 +10,11 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import Joint
 from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.references.shared import ARM, PAIR, SYSTEM, name_of
+from multibot_rewrite.lint.rules.examples import block
+from multibot_rewrite.lint.rules.references.shared import ARM, FIXED, a_pair, a_system, name_of
 from multibot_rewrite.model import Claim
 
-# Types that no motor moves.
+# Types that a motor cannot move.
 UNDRIVEN = ("fixed", "floating", "planar", "")
 
 
@@ -22,11 +23,11 @@ UNDRIVEN = ("fixed", "floating", "planar", "")
     "transmission-without-joint",
     WARNING,
     what="A <transmission> has no joint.",
-    why="transmission_interface and gazebo_ros_control of ROS 1 leave it out ('has no associated "
-    "joints'): nothing drives what it was made for.",
-    fix="Name the joint, or delete the transmission.",
+    why="transmission_interface and gazebo_ros_control of ROS 1 skip it ('has no associated "
+    "joints'), so it has no effect.",
+    fix="Add the joint, or delete the transmission.",
     bad='<transmission name="t"><actuator name="m"/></transmission>',
-    good=f'{ARM}<transmission name="t"><joint name="j"/><actuator name="m"/></transmission>',
+    good=ARM + block('<transmission name="t">', '<joint name="j"/>', '<actuator name="m"/>'),
 )
 def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     """Transmissions of the robot; those of the PR2 name joints by other tags."""
@@ -40,20 +41,20 @@ def transmission_without_joint(subject: Subject) -> Iterator[Problem]:
     "MB224",
     "driven-fixed-joint",
     ERROR,
-    what="A joint of a <ros2_control> is fixed.",
-    why="From Jazzy on the controller manager refuses the description ('Fixed joints do not make "
+    what="A joint in a <ros2_control> is fixed.",
+    why="From Jazzy on the controller manager rejects the description ('Fixed joints do not make "
     "sense in ros2_control'); Gazebo removes fixed joints before it looks for them.",
-    fix="Take the joint out, or give it a type that moves.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint>' + SYSTEM.format('<joint name="j"/>'),
-    good=ARM + SYSTEM.format('<joint name="j"/>'),
+    fix="Remove the joint, or give it a type that moves.",
+    bad=FIXED + a_system('<joint name="j"/>'),
+    good=ARM + a_system('<joint name="j"/>'),
+    line=7,
 )
 def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     """Joints that ros2_control is to move and that cannot."""
     for it in _components(subject.document.root):
         joint = subject.robot.joint.get(it.get("name", ""))
         if joint is not None and joint.type == "fixed":
-            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "take it out")
+            yield Problem(it, f"joint {joint.name!r} is fixed", "name", "remove it")
 
 
 @rule(
@@ -61,12 +62,12 @@ def driven_fixed_joint(subject: Subject) -> Iterator[Problem]:
     "fixed-transmission",
     WARNING,
     what="A transmission drives a fixed joint.",
-    why="Gazebo removes fixed joints, so gazebo_ros_control finds none of that name and loads no "
+    why="Gazebo removes fixed joints, so gazebo_ros_control does not find the joint and loads no "
     "hardware at all.",
     fix="Delete the transmission, or give the joint a type that moves.",
-    bad='<link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint><transmission name="t"><joint name="j"/></transmission>',
+    bad=FIXED + '<transmission name="t"><joint name="j"/></transmission>\n',
     good=f'{ARM}<transmission name="t"><joint name="j"/></transmission>',
+    line=6,
 )
 def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     """Joints of transmissions that cannot move."""
@@ -82,22 +83,27 @@ def fixed_transmission(subject: Subject) -> Iterator[Problem]:
     "commanded-mimic",
     WARNING,
     what="A joint that mimics another one has a command interface in <ros2_control>.",
-    why="From Jazzy on the controller manager refuses the description ('Activated mimic joints "
-    'cannot have command interfaces\'), unless the joint says mimic="false".',
-    fix='Delete the command interface; mimic="false" if the hardware drives both.',
-    bad=PAIR.format('<mimic joint="j"/>')
-    + SYSTEM.format(
-        '<joint name="j"/><joint name="k"><command_interface name="position"/></joint>'
+    why="From Jazzy on the controller manager rejects the description ('Activated mimic joints "
+    'cannot have command interfaces\'), unless the joint has mimic="false".',
+    fix='Delete the command interface; set mimic="false" if the hardware drives both.',
+    bad=a_pair('<mimic joint="j"/>')
+    + a_system(
+        '<joint name="j"/>',
+        block('<joint name="k">', '<command_interface name="position"/>'),
     ),
-    good=PAIR.format('<mimic joint="j"/>')
-    + SYSTEM.format('<joint name="j"/><joint name="k"><state_interface name="position"/></joint>'),
+    good=a_pair('<mimic joint="j"/>')
+    + a_system(
+        '<joint name="j"/>',
+        block('<joint name="k">', '<state_interface name="position"/>'),
+    ),
+    line=13,
 )
 def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints with a command interface of their own."""
     for it, other in _mimicking(subject):
         if it.find("command_interface") is not None:
             message = f"joint {it.get('name')!r} mimics {other!r} and has a command interface"
-            yield Problem(it, message, "name", 'delete the interface, or say mimic="false"')
+            yield Problem(it, message, "name", 'delete the interface, or set mimic="false"')
 
 
 @rule(
@@ -105,11 +111,12 @@ def commanded_mimic(subject: Subject) -> Iterator[Problem]:
     "mimic-without-its-joint",
     WARNING,
     what="A joint in <ros2_control> mimics one that is not in the same <ros2_control>.",
-    why="From Jazzy on the controller manager refuses the description ('Mimic joint ... not found "
+    why="From Jazzy on the controller manager rejects the description ('Mimic joint ... not found "
     "in <ros2_control> tag').",
-    fix='Put both joints in one <ros2_control>, or say mimic="false".',
-    bad=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="k"/>'),
-    good=PAIR.format('<mimic joint="j"/>') + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
+    fix='Put both joints in one <ros2_control>, or set mimic="false".',
+    bad=a_pair('<mimic joint="j"/>') + a_system('<joint name="k"/>'),
+    good=a_pair('<mimic joint="j"/>') + a_system('<joint name="j"/>', '<joint name="k"/>'),
+    line=12,
 )
 def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     """Mimicking joints whose leader is not in the same <ros2_control>."""
@@ -120,7 +127,9 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
         if system not in beside:
             beside[system] = {name_of(joint) for joint in system.iterchildren("joint")}
         if other not in beside[system]:
-            message = f"joint {it.get('name')!r} mimics {other!r}, which is not in here"
+            message = (
+                f"joint {it.get('name')!r} mimics {other!r}, which is not in this <ros2_control>"
+            )
             yield Problem(it, message, "name", "put both in one <ros2_control>")
 
 
@@ -128,15 +137,17 @@ def mimic_without_its_joint(subject: Subject) -> Iterator[Problem]:
     "MB228",
     "undriven-joint",
     NOTE,
-    what="Other joints are driven by <ros2_control>, transmissions or plugins, and this one is not.",
-    why="Nothing moves it; unless somebody publishes its state all the same, "
-    "robot_state_publisher does not send its transform and tf has no link behind it.",
-    fix="Add it to <ros2_control>; if it is passive, let somebody publish its state.",
-    bad=PAIR.format("") + SYSTEM.format('<joint name="j"/>'),
-    good=PAIR.format("") + SYSTEM.format('<joint name="j"/><joint name="k"/>'),
+    what="Other joints are driven by <ros2_control>, transmissions or plugins, but this one is "
+    "not.",
+    why="Nothing moves it. Unless a node publishes its state, robot_state_publisher does not send "
+    "its transform and the links below it have no frame in tf.",
+    fix="Add it to <ros2_control>; if it is passive, publish its state in joint_states.",
+    bad=a_pair() + a_system('<joint name="j"/>'),
+    good=a_pair() + a_system('<joint name="j"/>', '<joint name="k"/>'),
+    line=7,
 )
 def undriven_joint(subject: Subject) -> Iterator[Problem]:
-    """One finding a robot: the joints that were forgotten, or are passive."""
+    """One finding per robot: the joints that were forgotten, or are passive."""
     if not subject.elements.tops("ros2_control", "transmission"):
         return
     claims = subject.inventory.claims
@@ -146,8 +157,10 @@ def undriven_joint(subject: Subject) -> Iterator[Problem]:
     left = [it for it in subject.robot.joints if it.name not in named and _needs_a_drive(it)]
     if left and len(left) < sum(map(_needs_a_drive, subject.robot.joints)):
         names = ", ".join(it.name for it in left[:5]) + (", ..." if len(left) > 5 else "")
-        message = f"{len(left)} joints that move are driven by nothing: {names}"
-        yield Problem(left[0].element, message, "name", "passive joints need a state, too")
+        message = f"nothing drives {len(left)} joints that move: {names}"
+        yield Problem(
+            left[0].element, message, "name", "passive joints need a published state as well"
+        )
 
 
 def _drives_a_joint(claim: Claim) -> bool:

@@ -1,4 +1,4 @@
-"""Frames that are no link of the robot."""
+"""Frames that are not links of the robot."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from multibot_rewrite.checks.references import COMPARED, HINTED, where
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.lookup import references
-from multibot_rewrite.lint.rules.references.shared import PLUGIN
+from multibot_rewrite.lint.rules.references.shared import a_plugin
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.nearest import fold
@@ -24,41 +25,47 @@ AT_RUN_TIME = ("odom", "map", "world")
     "misspelled-frame",
     WARNING,
     what="A frame is not declared, and a link has almost the same name.",
-    why="The data is stamped with a frame that tf does not have: every consumer drops it "
-    "('frame does not exist').",
-    fix="Correct the name; if another node publishes that frame, silence the finding.",
-    bad='<link name="base_link"/>'
-    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_lnik</frame_name>"),
-    good='<link name="base_link"/>'
-    + PLUGIN.format("gazebo_ros_p3d", "p", "<ros/><frame_name>base_link</frame_name>"),
+    why="The messages have a frame_id that tf does not have: every subscriber drops them ('frame "
+    "does not exist').",
+    fix="Correct the name; if another node publishes that frame, suppress the finding.",
+    bad=a_link("base_link")
+    + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_lnik</frame_name>"),
+    good=a_link("base_link")
+    + a_plugin("gazebo_ros_p3d", "p", "<ros/>", "<frame_name>base_link</frame_name>"),
+    line=5,
 )
 def misspelled_frame(subject: Subject) -> Iterator[Problem]:
     """Frames that differ from a link by one typing mistake."""
     for claim, name, near in _frames(subject):
         if near:
-            message = f"{where(claim)} names the frame {name!r}, which no link has"
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
             yield Problem(claim.element, message, claim.attribute, f"did you mean {near!r}?")
 
 
 @rule(
     "MB218",
-    "foreign-frame",
+    "frame-not-a-link",
     NOTE,
-    what="A sensor or plugin stamps its data with a frame that is no link of the robot.",
-    why="Unless another node publishes that frame, tf does not have it and every consumer drops "
-    "the data.",
-    fix="Name a link, or be sure that somebody publishes the frame.",
-    bad='<link name="a"/><gazebo reference="a"><sensor name="s" type="imu"><frame_id>imu_frame'
-    "</frame_id></sensor></gazebo>",
-    good='<link name="a"/><gazebo reference="a"><sensor name="s" type="imu"><frame_id>a</frame_id>'
-    "</sensor></gazebo>",
+    what="The frame of a sensor or plugin is not a link of the robot.",
+    why="Unless another node publishes that frame, tf does not have it and every subscriber drops "
+    "the messages.",
+    fix="Use the name of a link, or make sure that another node publishes the frame.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>imu_frame</frame_id></sensor>\n'
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="s" type="imu"><frame_id>a</frame_id></sensor>\n'
+    "</gazebo>\n",
+    line=3,
 )
-def foreign_frame(subject: Subject) -> Iterator[Problem]:
+def frame_not_a_link(subject: Subject) -> Iterator[Problem]:
     """Frames that the robot does not have, and that no localisation publishes."""
     for claim, name, near in _frames(subject):
         if not near and not claim.site.default and not name.endswith(AT_RUN_TIME):
-            message = f"{where(claim)} names the frame {name!r}, which no link has"
-            yield Problem(claim.element, message, claim.attribute, "somebody else must publish it")
+            message = f"{where(claim)} names the frame {name!r}, which is not a link"
+            yield Problem(claim.element, message, claim.attribute, "another node must publish it")
 
 
 def _frames(subject: Subject) -> Iterator[tuple[Claim, str, str]]:

@@ -46,14 +46,19 @@ SINGLE = {
     "MB203",
     "link-and-joint",
     WARNING,
-    what="A <gazebo reference> is the name of a link and of a joint.",
-    why="Both get the block where they can use it, and libsdformat refuses a model in which a link "
+    what="A <gazebo reference> is the name of both a link and a joint.",
+    why="Both get the block where they can use it, and libsdformat rejects a model in which a link "
     "and a joint share a name: Gazebo does not spawn the robot.",
     fix="Rename the joint.",
-    bad='<link name="a"/><link name="b"/><joint name="b" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint><gazebo reference="b"/>',
-    good='<link name="a"/><link name="b"/><joint name="b_joint" type="fixed"><parent link="a"/>'
-    '<child link="b"/></joint><gazebo reference="b"/>',
+    bad='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<gazebo reference="b"/>\n',
+    good='<link name="a"/>\n'
+    '<link name="b"/>\n'
+    '<joint name="b_joint" type="fixed"><parent link="a"/><child link="b"/></joint>\n'
+    '<gazebo reference="b"/>\n',
+    line=4,
 )
 def link_and_joint(subject: Subject) -> Iterator[Problem]:
     """Every such reference."""
@@ -66,14 +71,17 @@ def link_and_joint(subject: Subject) -> Iterator[Problem]:
     "MB210",
     "contradicting-blocks",
     NOTE,
-    what="Two <gazebo> blocks for one link or joint give one property two values.",
-    why="Gazebo takes the later one, with a warning at most: which that is hangs on the order of "
-    "the blocks.",
-    fix="Keep the one that is meant.",
-    bad='<link name="a"/><gazebo reference="a"><mu1>1</mu1></gazebo><gazebo reference="a">'
-    "<mu1>0.2</mu1></gazebo>",
-    good='<link name="a"/><gazebo reference="a"><mu1>1</mu1></gazebo><gazebo reference="a">'
-    "<mu2>0.2</mu2></gazebo>",
+    what="Two <gazebo> blocks for one link or joint give a property different values.",
+    why="Gazebo uses the later one, with a warning at most: the result depends on the order of the "
+    "blocks.",
+    fix="Keep the right one.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
+    '<gazebo reference="a"><mu1>0.2</mu1></gazebo>\n',
+    good='<link name="a"/>\n'
+    '<gazebo reference="a"><mu1>1</mu1></gazebo>\n'
+    '<gazebo reference="a"><mu2>0.2</mu2></gazebo>\n',
+    line=3,
 )
 def contradicting_blocks(subject: Subject) -> Iterator[Problem]:
     """Properties of which a link or joint has one."""

@@ -28,7 +28,7 @@ class References(NamedTuple):
 
 @memoized
 def references(subject: Subject) -> References:
-    """One pass over the document for all rules of this group.
+    """The references of a document, for all rules of this group.
 
     In a part of a description a name may be declared elsewhere; in what xacro has not expanded it
     may not be made yet.

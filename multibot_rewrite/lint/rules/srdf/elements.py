@@ -16,31 +16,32 @@ from multibot_rewrite.nearest import nearest
     "MB817",
     "srdf-incomplete",
     ERROR,
-    what="An element lacks an attribute without which it means nothing.",
-    why="srdfdom leaves the element out with an error; a joint_property without a joint_name ends "
+    what="A required attribute is missing.",
+    why="srdfdom skips the element with an error; a joint_property without a joint_name stops "
     "move_group.",
-    fix="Give the attribute.",
+    fix="Add the attribute.",
     bad=ARM + '<end_effector name="e" group="arm"/>',
     good=ARM + '<end_effector name="e" group="arm" parent_link="b"/>',
+    line=2,
 )
 def srdf_incomplete(subject: Subject) -> Iterator[Problem]:
     """Every attribute that srdfdom asks for."""
     for it, path in _elements(subject.document.root):
         for attribute in ELEMENTS[path][0]:
             if attribute not in it.attrib:
-                yield Problem(it, f"<{it.tag}> has no {attribute}", None, f"give {attribute}")
+                yield Problem(it, f"<{it.tag}> has no {attribute}", None, f"add {attribute}")
 
 
 @srdf_rule(
     "MB821",
     "srdf-misspelled",
     WARNING,
-    what="An element or attribute is not known, and one that is has almost the same name.",
-    why="srdfdom does not look at what it does not know, without a word: the group, pair or state "
-    "is not there.",
+    what="An unknown element or attribute whose name is almost that of a known one.",
+    why="srdfdom silently skips what it does not know: the group, pair or state does not exist.",
     fix="Correct the name.",
     bad=ARM + '<disable_collision link1="a" link2="b"/>',
     good=ARM + APART,
+    line=2,
 )
 def srdf_misspelled(subject: Subject) -> Iterator[Problem]:
     """Elements and attributes almost like a known one; all others belong to other tools."""

@@ -20,11 +20,12 @@ PROPERTIES = ("angular_distance_weight", "motion_model", "min_translational_dist
     "virtual-joint-not-at-root",
     WARNING,
     what="The child of a virtual joint is not the root link of the URDF.",
-    why="MoveIt leaves the joint out ('does not match the URDF frame'): the robot stands at the "
-    "origin of its model frame, which is the root link and not the frame that was meant.",
-    fix="Name the root link.",
+    why="MoveIt ignores the joint ('does not match the URDF frame'): the robot is at the origin of "
+    "its model frame, which is the root link and not the intended frame.",
+    fix="Use the root link.",
     bad=ARM + VIRTUAL.format("fixed", "b"),
     good=ARM + VIRTUAL.format("fixed", "a"),
+    line=2,
 )
 def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     """Virtual joints; a fixed one is right where the root link is ``world``, as Gazebo wants it."""
@@ -35,7 +36,7 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
         dummy = root == "world" and text_of(it, "type").lower() == "fixed"
         if robot and child in robot.link and child != root and not dummy:
             message = f"{child!r} is not the root link, which is {root!r}"
-            yield Problem(it, message, "child_link", f"child_link={root!r}")
+            yield Problem(it, message, "child_link", f"use {root!r}")
 
 
 @srdf_rule(
@@ -43,10 +44,11 @@ def virtual_joint_not_at_root(subject: Subject) -> Iterator[Problem]:
     "joint-property",
     WARNING,
     what="A joint_property has a name that MoveIt does not know.",
-    why="MoveIt logs 'Unknown joint property' and leaves it out.",
+    why="MoveIt logs 'Unknown joint property' and ignores it.",
     fix="Use angular_distance_weight, motion_model or min_translational_distance.",
     bad=ARM + '<joint_property joint_name="j" property_name="motion" value="holonomic"/>',
     good=ARM + '<joint_property joint_name="j" property_name="motion_model" value="holonomic"/>',
+    line=2,
 )
 def joint_property(subject: Subject) -> Iterator[Problem]:
     """Names of properties that MoveIt does not know."""
@@ -54,7 +56,7 @@ def joint_property(subject: Subject) -> Iterator[Problem]:
         name = text_of(it, "property_name")
         if name and name not in PROPERTIES:
             near = nearest(name, PROPERTIES)
-            hint = f"did you mean {near!r}?" if near else f"one of {', '.join(PROPERTIES)}"
+            hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(PROPERTIES)}"
             yield Problem(it, f"property {name!r} is not known", "property_name", hint)
 
 
@@ -63,10 +65,11 @@ def joint_property(subject: Subject) -> Iterator[Problem]:
     "virtual-joint-type",
     ERROR,
     what="The type of a virtual joint is not fixed, planar or floating.",
-    why="srdfdom takes it for fixed: a base that should drive stands still.",
-    fix="Write fixed, planar or floating.",
+    why="srdfdom treats it as fixed: a mobile base cannot move.",
+    fix="Use fixed, planar or floating.",
     bad=ARM + VIRTUAL.format("planer", "a"),
     good=ARM + VIRTUAL.format("planar", "a"),
+    line=2,
 )
 def virtual_joint_type(subject: Subject) -> Iterator[Problem]:
     """Types that are unknown in upper and lower case."""
@@ -74,8 +77,8 @@ def virtual_joint_type(subject: Subject) -> Iterator[Problem]:
         type_ = text_of(it, "type")
         if "type" in it.attrib and type_.lower() not in VIRTUAL_TYPES:
             near = nearest(type_, VIRTUAL_TYPES)
-            hint = f"did you mean {near!r}?" if near else f"one of {', '.join(VIRTUAL_TYPES)}"
-            yield Problem(it, f"type {type_!r} is taken for fixed", "type", hint)
+            hint = f"did you mean {near!r}?" if near else f"use one of {', '.join(VIRTUAL_TYPES)}"
+            yield Problem(it, f"type {type_!r} is treated as fixed", "type", hint)
 
 
 def _root(robot: Robot) -> str:

@@ -18,13 +18,13 @@ from multibot_rewrite.lint.rules.srdf.shared import ARM, srdf_rule
     NOTE,
     what="No URDF was found that has the SRDF's robot name and most of its links and joints, so "
     "they could not be checked.",
-    why="An SRDF says nothing by itself; MoveIt leaves out all that its URDF does not have.",
-    fix="Lint the URDF with it (the robot's name tells which), or give it with --urdf.",
+    why="An SRDF has no meaning by itself; MoveIt ignores everything that its URDF does not have.",
+    fix="Lint it together with its URDF (found by the robot's name), or give the URDF with --urdf.",
     bad=f'<robot name="other">{ARM}</robot>',
     good=ARM,
 )
 def srdf_without_urdf(subject: Subject) -> Iterator[Problem]:
-    """One finding a file."""
+    """One finding per file."""
     root = subject.document.root
     if subject.beside is None:
         message = f"no URDF of a robot {root.get('name', '')!r} with its links was found"
@@ -35,10 +35,10 @@ other_robot = srdf_rule(
     "MB802",
     "other-robot",
     WARNING,
-    what="The SRDF is for a robot of another name than that of its URDF.",
+    what="The SRDF and its URDF have different robot names.",
     why="srdfdom logs 'Semantic description is not specified for the same robot as the URDF': the "
-    "file may be that of another robot.",
-    fix="Give both one name.",
+    "file may belong to another robot.",
+    fix="Use the same name in both.",
     options={"urdf": "r.urdf"},
     bad=f'<robot name="other">{ARM}</robot>',
     good=ARM,
@@ -50,7 +50,7 @@ srdf_link = srdf_rule(
     ERROR,
     what="A group, chain, end effector or virtual joint names a link that the URDF does not have.",
     why="srdfdom leaves the link, chain, end effector or virtual joint out ('is not known to the "
-    "URDF'): the group is too small, or is not there.",
+    "URDF'): the group is too small, or does not exist.",
     fix="Correct the name.",
     bad='<group name="arm"><joint name="j"/><link name="bb"/></group>',
     good='<group name="arm"><joint name="j"/><link name="b"/></group>',
@@ -61,11 +61,12 @@ srdf_joint = srdf_rule(
     "srdf-joint",
     ERROR,
     what="A group, state or passive joint names a joint that the URDF does not have.",
-    why="srdfdom leaves the joint out ('is not known to the URDF'): the group does not move it, the "
-    "state has no value for it.",
+    why="srdfdom leaves the joint out ('is not known to the URDF'): the group does not move it, "
+    "the state has no value for it.",
     fix="Correct the name.",
     bad=ARM + '<passive_joint name="jj"/>',
     good=ARM + '<passive_joint name="j"/>',
+    line=2,
 )(partial(undeclared, "MB804"))
 
 srdf_group = srdf_rule(
@@ -78,6 +79,7 @@ srdf_group = srdf_rule(
     fix="Correct the name.",
     bad=ARM + '<group name="all"><group name="amr"/></group>',
     good=ARM + '<group name="all"><group name="arm"/></group>',
+    line=2,
 )(partial(undeclared, "MB805"))
 
 
@@ -85,12 +87,12 @@ srdf_group = srdf_rule(
     "MB806",
     "srdf-duplicate",
     ERROR,
-    what="Two groups, two end effectors or two virtual joints have one name.",
-    why="MoveIt does not add the second ('A group named ... already exists'): what is in it is "
-    "lost.",
-    fix="Rename one, or put both into one.",
+    what="Two groups, two end effectors or two virtual joints have the same name.",
+    why="MoveIt does not add the second ('A group named ... already exists'): its content is lost.",
+    fix="Rename one, or merge them.",
     bad=ARM * 2,
     good=ARM,
+    line=2,
 )
 def srdf_duplicate(subject: Subject) -> Iterator[Problem]:
     """Every declaration but the first."""

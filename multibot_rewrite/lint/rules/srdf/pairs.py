@@ -20,14 +20,15 @@ from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, SHOWN, srdf_rule
     "stale-pair",
     WARNING,
     what="A collision pair names a link that the URDF does not have.",
-    why="srdfdom ignores the line; where the link was renamed, the pair is now checked, and a robot "
+    why="srdfdom ignores the line. If the link was renamed, the pair is now checked, and a robot "
     "that touches itself there cannot plan.",
     fix="Delete the line, or correct the name.",
     bad=ARM + '<disable_collisions link1="a" link2="bb" reason="Adjacent"/>',
     good=ARM + APART,
+    line=2,
 )
 def stale_pair(subject: Subject) -> Iterator[Problem]:
-    """One finding a name, at its first pair."""
+    """One finding per name, at its first pair."""
     found = list(undeclared("MB807", subject))
     names = Counter(_link(it) for it in found)
     for it in found:
@@ -46,13 +47,14 @@ def _link(problem: Problem) -> str:
     "duplicate-pair",
     NOTE,
     what="Pairs of links are disabled twice.",
-    why="The second line changes nothing; a copy may have been meant for other links.",
+    why="The second line has no effect; it may have been meant for other links.",
     fix="Delete the second line.",
     bad=APART + '<disable_collisions link1="b" link2="a" reason="Never"/>',
     good=APART,
+    line=2,
 )
 def duplicate_pair(subject: Subject) -> Iterator[Problem]:
-    """One finding a file; the order of the two does not matter."""
+    """One finding per file; the order of the two does not matter."""
     first: dict[frozenset[str], _Element] = {}
     found = []
     for it in subject.document.root.iterchildren("disable_collisions"):
@@ -62,7 +64,7 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
     if found:
         names = [f"{text_of(it, 'link1')}-{text_of(it, 'link2')}" for it in found[:SHOWN]]
         more = ", ..." if len(found) > SHOWN else ""
-        message = f"{len(found)} pairs are disabled before: {', '.join(names)}{more}"
+        message = f"{len(found)} pairs are already disabled: {', '.join(names)}{more}"
         yield Problem(found[0], message, None, "delete the line")
 
 
@@ -70,9 +72,9 @@ def duplicate_pair(subject: Subject) -> Iterator[Problem]:
     "MB818",
     "self-pair",
     WARNING,
-    what="A collision pair is one link twice.",
-    why="A link never collides with itself, so the line does nothing; the pair that was meant is "
-    "still checked.",
+    what="A collision pair names the same link twice.",
+    why="A link never collides with itself, so the line has no effect; the intended pair is still "
+    "checked.",
     fix="Name the other link.",
     bad='<disable_collisions link1="a" link2="a" reason="Never"/>',
     good=APART,
@@ -90,14 +92,15 @@ def self_pair(subject: Subject) -> Iterator[Problem]:
     "pair-without-shape",
     NOTE,
     what="Collision pairs name links that have no collision geometry.",
-    why="MoveIt has nothing to check there, so the lines do nothing: often the geometry was "
+    why="MoveIt has nothing to check there, so the lines have no effect: often the geometry was "
     "forgotten, or the lines were made for another version of the URDF.",
     fix="Give the links a <collision>, or delete the lines.",
     bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',
     good=ARM + APART,
+    line=2,
 )
 def pair_without_shape(subject: Subject) -> Iterator[Problem]:
-    """One finding a link, at its first pair."""
+    """One finding per link, at its first pair."""
     robot = subject.beside
     reported = set()
     for it in subject.document.root.iterchildren("disable_collisions") if robot else ():
@@ -111,7 +114,7 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
             ):
                 reported.add(name)
                 message = f"{name!r} has no collision geometry"
-                yield Problem(it, message, attribute, "the pair does nothing")
+                yield Problem(it, message, attribute, "the pair has no effect")
 
 
 @srdf_rule(
@@ -119,14 +122,15 @@ def pair_without_shape(subject: Subject) -> Iterator[Problem]:
     "adjacent-links",
     NOTE,
     what="Links that a joint connects are checked for collision with each other.",
-    why="Their shapes mostly touch, then every state of the robot is in collision and nothing can "
+    why="Their shapes usually touch, so every state of the robot is in collision and no motion can "
     "be planned.",
-    fix="Disable the pair with the reason Adjacent, if it may touch.",
+    fix="Disable the pair with the reason Adjacent, if the links may touch.",
     bad=ARM + '<disable_collisions link1="a" link2="c" reason="Never"/>',
     good=ARM + APART,
+    line=2,
 )
 def adjacent_links(subject: Subject) -> Iterator[Problem]:
-    """One finding a file, if it disables any pair."""
+    """One finding per file, if it disables any pair."""
     root, robot = subject.document.root, subject.beside
     pairs = list(root.iterchildren("disable_collisions"))
     if robot is None or not pairs:

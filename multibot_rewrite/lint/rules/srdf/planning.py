@@ -14,10 +14,10 @@ from multibot_rewrite.lint.rules.srdf.shared import ARM, ELEMENTS, srdf_rule
     "MB810",
     "broken-chain",
     ERROR,
-    what="The base and tip of a chain are not connected, or are one link.",
-    why="srdfdom leaves the chain out ('do not form a chain'), or it has no joint: the group cannot "
-    "be planned for.",
-    fix="Name two links of one tree.",
+    what="The base and tip of a chain are not connected, or are the same link.",
+    why="srdfdom ignores the chain ('do not form a chain'), or it has no joint: MoveIt cannot plan "
+    "for the group.",
+    fix="Use two links of one tree.",
     bad='<group name="arm"><chain base_link="b" tip_link="b"/></group>',
     good='<group name="arm"><chain base_link="a" tip_link="b"/></group>',
 )
@@ -31,7 +31,7 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
             continue
         if not chain(robot, base, tip):
             fault = "are one link" if base == tip else "are not connected"
-            yield Problem(it, f"{base!r} and {tip!r} {fault}", None, "name two links of one tree")
+            yield Problem(it, f"{base!r} and {tip!r} {fault}", None, "use two links of one tree")
 
 
 @srdf_rule(
@@ -39,9 +39,9 @@ def broken_chain(subject: Subject) -> Iterator[Problem]:
     "empty-group",
     WARNING,
     what="A group has no joint.",
-    why="MoveIt does not add it ('must have at least one valid joint'): planning for it and its "
-    "states and end effectors are not there.",
-    fix="Give it a joint, link, chain or group, or delete it.",
+    why="MoveIt does not add it ('must have at least one valid joint'): there is no planning for "
+    "it, and its states and end effectors are lost.",
+    fix="Add a joint, link, chain or group, or delete it.",
     bad='<group name="arm"/>',
     good=ARM,
 )
@@ -49,7 +49,7 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
     """Groups with nothing in them."""
     for it in subject.document.root.iterchildren("group"):
         if not any(child.tag in ELEMENTS["group"][2] for child in it.iterchildren("*")):
-            yield Problem(it, f"group {text_of(it)!r} is empty", "name", "give it a joint")
+            yield Problem(it, f"group {text_of(it)!r} is empty", "name", "add a joint")
 
 
 @srdf_rule(
@@ -57,13 +57,16 @@ def empty_group(subject: Subject) -> Iterator[Problem]:
     "end-effector-parent",
     WARNING,
     what="The parent group of an end effector is its own group, or does not have its parent link.",
-    why="MoveIt says so and takes another group that has the link, or none: grasps are planned for "
+    why="MoveIt warns and uses another group that has the link, or none: grasps are planned for "
     "the wrong arm.",
-    fix="Name the group whose link carries the end effector.",
-    bad=ARM + '<group name="hand"><link name="c"/></group><end_effector name="e" group="hand" '
-    'parent_link="a" parent_group="arm"/>',
-    good=ARM + '<group name="hand"><link name="c"/></group><end_effector name="e" group="hand" '
-    'parent_link="b" parent_group="arm"/>',
+    fix="Use the group that has the parent link.",
+    bad=ARM
+    + '<group name="hand"><link name="c"/></group>\n'
+    + '<end_effector name="e" group="hand" parent_link="a" parent_group="arm"/>\n',
+    good=ARM
+    + '<group name="hand"><link name="c"/></group>\n'
+    + '<end_effector name="e" group="hand" parent_link="b" parent_group="arm"/>\n',
+    line=3,
 )
 def end_effector_parent(subject: Subject) -> Iterator[Problem]:
     """End effectors that name their parent group."""
@@ -72,7 +75,7 @@ def end_effector_parent(subject: Subject) -> Iterator[Problem]:
         parent, link = text_of(it, "parent_group"), text_of(it, "parent_link")
         if parent and parent == text_of(it, "group"):
             message = f"group {parent!r} is its own parent"
-            yield Problem(it, message, "parent_group", "name the group that carries it")
+            yield Problem(it, message, "parent_group", "use the group that carries it")
         elif (
             robot
             and parent in groups
@@ -80,4 +83,4 @@ def end_effector_parent(subject: Subject) -> Iterator[Problem]:
             and link not in links_of(parent, groups, robot)
         ):
             message = f"group {parent!r} does not have the parent link {link!r}"
-            yield Problem(it, message, "parent_group", "name the group that has it")
+            yield Problem(it, message, "parent_group", "use the group that has it")

@@ -37,9 +37,9 @@ URDF = """<robot name="r"><link name="a"><collision/></link><link name="b"><coll
 <joint name="k" type="fixed"><parent link="b"/><child link="c"/></joint></robot>"""
 BESIDE = {"r.urdf": URDF}
 # A complete SRDF for it.
-ARM = '<group name="arm"><joint name="j"/></group>'
-STATE = ARM + '<group_state name="home" group="arm">{}</group_state>'
+ARM = '<group name="arm"><joint name="j"/></group>\n'
+STATE = ARM + '<group_state name="home" group="arm">{}</group_state>\n'
 VIRTUAL = '<virtual_joint name="v" type="{}" parent_frame="world" child_link="{}"/>'
-APART = '<disable_collisions link1="a" link2="b" reason="Adjacent"/>'
+APART = '<disable_collisions link1="a" link2="b" reason="Adjacent"/>\n'
 # A rule about an SRDF: its examples have the URDF above beside them.
 srdf_rule = partial(rule, formats=(SRDF,), beside=BESIDE)

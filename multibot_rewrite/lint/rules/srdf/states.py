@@ -24,11 +24,12 @@ ROUNDING = 1e-4
     "MB808",
     "duplicate-state",
     WARNING,
-    what="Two states of one group have one name.",
+    what="Two states of one group have the same name.",
     why="MoveIt keeps the values of the last one only.",
     fix="Rename one.",
     bad=STATE.format("") + '<group_state name="home" group="arm"/>',
     good=STATE.format("") + '<group_state name="up" group="arm"/>',
+    line=3,
 )
 def duplicate_state(subject: Subject) -> Iterator[Problem]:
     """Every state but the first of its name."""
@@ -47,10 +48,11 @@ def duplicate_state(subject: Subject) -> Iterator[Problem]:
     "state-of-another-group",
     WARNING,
     what="A state has a value for a joint that is not in its group.",
-    why="MoveIt leaves the value out ('that joint is not part of group').",
-    fix="Take the joint out, or put it into the group.",
+    why="MoveIt ignores the value ('that joint is not part of group').",
+    fix="Remove the joint, or add it to the group.",
     bad=STATE.format('<joint name="k" value="0"/>'),
     good=STATE.format('<joint name="j" value="0"/>'),
+    line=2,
 )
 def state_of_another_group(subject: Subject) -> Iterator[Problem]:
     """Joints of states that exist and are not in the group."""
@@ -65,7 +67,7 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
         if group not in joints:
             joints[group] = frozenset(joints_of(group, groups, robot))
         if joint not in joints[group]:
-            yield Problem(it, f"joint {joint!r} is not in group {group!r}", "name", "take it out")
+            yield Problem(it, f"joint {joint!r} is not in group {group!r}", "name", "remove it")
 
 
 @srdf_rule(
@@ -73,10 +75,11 @@ def state_of_another_group(subject: Subject) -> Iterator[Problem]:
     "state-beyond-limits",
     WARNING,
     what="The value of a state is outside of the joint's limits.",
-    why="MoveIt refuses the state as a goal, and a plan that starts there is invalid.",
+    why="MoveIt rejects the state as a goal, and a plan that starts there is invalid.",
     fix="Correct the value or the limit.",
     bad=STATE.format('<joint name="j" value="1.5"/>'),
     good=STATE.format('<joint name="j" value="1"/>'),
+    line=2,
 )
 def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     """Joints of one value that have limits."""
@@ -97,12 +100,13 @@ def state_beyond_limits(subject: Subject) -> Iterator[Problem]:
     "MB814",
     "state-value",
     ERROR,
-    what="The value of a state is no number, or there are more or fewer than the joint has.",
-    why="srdfdom takes what is no number for 0, and MoveIt leaves out a joint with the wrong count "
-    "('requires ... variable values').",
-    fix="Give one number; three for a planar joint (x y theta), seven for a floating one.",
+    what="The value of a state is not a number, or it has more or fewer numbers than the joint.",
+    why="srdfdom reads a value that is not a number as 0, and MoveIt ignores a joint with the "
+    "wrong count ('requires ... variable values').",
+    fix="Write one number; three for a planar joint (x y theta), seven for a floating one.",
     bad=STATE.format('<joint name="j" value="half"/>'),
     good=STATE.format('<joint name="j" value="0.5"/>'),
+    line=2,
 )
 def state_value(subject: Subject) -> Iterator[Problem]:
     """Values of joints in states."""
@@ -115,10 +119,12 @@ def state_value(subject: Subject) -> Iterator[Problem]:
         numbers = None if text is None else _numbers(text)
         size = SIZES.get(types.get(name, ""), 1)
         if text is not None and numbers is None:
-            yield Problem(it, f"the value of {name!r} is {text!r}, no number", "value", "a number")
+            yield Problem(
+                it, f"the value of {name!r} is {text!r}, not a number", "value", "write a number"
+            )
         elif numbers is not None and name in types and size and len(numbers) != size:
             message = f"{name!r} has {len(numbers)} values, a {types[name]} joint has {size}"
-            yield Problem(it, message, "value", "one number for each degree of freedom")
+            yield Problem(it, message, "value", "write one number for each degree of freedom")
 
 
 def _states(root: _Element) -> Iterator[tuple[_Element, str, str]]:

@@ -30,12 +30,13 @@ FAR = 50.0
     "MB508",
     "joint-type",
     ERROR,
-    what="A joint has no type, or one that URDF does not know.",
-    why="urdfdom refuses the file ('has no known type'); it knows fixed, revolute, continuous, "
-    "prismatic, floating and planar, in small letters.",
-    fix="Write one of the six types.",
+    what="A joint has no type, or one that URDF does not have.",
+    why="urdfdom rejects the file ('has no known type'); it knows fixed, revolute, continuous, "
+    "prismatic, floating and planar, in lower case.",
+    fix="Use one of the six types.",
     bad=one_joint("Fixed"),
     good=one_joint("fixed"),
+    line=3,
 )
 def joint_type(subject: Subject) -> Iterator[Problem]:
     """Types that are not exactly one of the six."""
@@ -57,18 +58,19 @@ def joint_type(subject: Subject) -> Iterator[Problem]:
     "zero-axis",
     ERROR,
     what="The axis of a joint that moves is 0 0 0, or its <axis> has no xyz.",
-    why="sdformat refuses the file ('The norm of the xyz vector cannot be zero') and MuJoCo, too; "
-    "KDL divides by the length, so robot_state_publisher sends nan, which tf2 ignores.",
+    why="sdformat rejects the file ('The norm of the xyz vector cannot be zero'), and so does "
+    "MuJoCo; KDL divides by the length, so robot_state_publisher sends nan, which tf2 ignores.",
     fix='Write the axis: <axis xyz="0 0 1"/>; without <axis> it is 1 0 0.',
-    bad=one_joint("revolute", '<axis xyz="0 0 0"/>' + LIMIT),
-    good=one_joint("revolute", '<axis xyz="0 0 1"/>' + LIMIT),
+    bad=one_joint("revolute", '<axis xyz="0 0 0"/>', LIMIT),
+    good=one_joint("revolute", '<axis xyz="0 0 1"/>', LIMIT),
+    line=5,
 )
 def zero_axis(subject: Subject) -> Iterator[Problem]:
     """Axes of length 0."""
     for joint, axis, length in _axes(subject.robot):
         if length == 0:
-            said = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
-            yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {said}", "xyz")
+            fault = "is 0 0 0" if axis.get("xyz") else "has no xyz, which is 0 0 0"
+            yield Problem(axis, f"<axis> of {joint.type} joint {joint.name!r} {fault}", "xyz")
 
 
 def _not_unit(subject: Subject, *, types: tuple[str, ...]) -> Iterator[Problem]:
@@ -83,24 +85,26 @@ prismatic_axis_length = rule(
     "MB520",
     "prismatic-axis-length",
     WARNING,
-    what="The axis of a prismatic joint is not of length 1.",
-    why="KDL (robot_state_publisher), sdformat and pinocchio make it 1, MoveIt and yourdfpy go as "
-    "many times as far: the planner's robot is not the one in tf.",
+    what="The axis of a prismatic joint does not have length 1.",
+    why="KDL (robot_state_publisher), sdformat and pinocchio normalize it, MoveIt and yourdfpy "
+    "move the joint further by that factor: the planner's robot is not the one in tf.",
     fix="Divide the axis by its length.",
-    bad=one_joint("prismatic", '<axis xyz="0 0 2"/>' + LIMIT),
-    good=one_joint("prismatic", '<axis xyz="0 0 1"/>' + LIMIT),
+    bad=one_joint("prismatic", '<axis xyz="0 0 2"/>', LIMIT),
+    good=one_joint("prismatic", '<axis xyz="0 0 1"/>', LIMIT),
+    line=5,
 )(partial(_not_unit, types=("prismatic",)))
 
 axis_length = rule(
     "MB521",
     "axis-length",
     NOTE,
-    what="The axis of a revolute or continuous joint is not of length 1.",
-    why="KDL, sdformat, MoveIt and pinocchio make it 1; a reader that takes it as it is turns the "
-    "joint by another angle.",
+    what="The axis of a revolute or continuous joint does not have length 1.",
+    why="KDL, sdformat, MoveIt and pinocchio normalize it; a program that does not turns the joint "
+    "by another angle.",
     fix="Divide the axis by its length.",
-    bad=one_joint("revolute", '<axis xyz="0 1 1"/>' + LIMIT),
-    good=one_joint("revolute", '<axis xyz="0 0.7071 0.7071"/>' + LIMIT),
+    bad=one_joint("revolute", '<axis xyz="0 1 1"/>', LIMIT),
+    good=one_joint("revolute", '<axis xyz="0 0.7071 0.7071"/>', LIMIT),
+    line=5,
 )(partial(_not_unit, types=("revolute", "continuous")))
 
 
@@ -118,22 +122,21 @@ def _axes(robot: Robot) -> Iterator[tuple[Joint, _Element, float]]:
     "fixed-joint-ignores",
     NOTE,
     what="A fixed joint has a limit, a mimic or a safety controller.",
-    why="urdfdom reads them, and a joint that cannot move has no use for them.",
-    fix="Delete them, or give the joint the type that was meant.",
+    why="urdfdom reads them, but a joint that cannot move does not use them.",
+    fix="Delete them, or correct the type of the joint.",
     bad=one_joint("fixed", LIMIT),
     good=one_joint("fixed"),
+    line=5,
 )
 def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
-    """One finding a joint; exporters write <axis> and <dynamics> everywhere."""
+    """One finding per joint; exporters write <axis> and <dynamics> everywhere."""
     for joint in subject.robot.joints:
         if joint.type != "fixed":
             continue
         useless = [it for it in ("limit", "mimic", "safety_controller") if it in joint.parts]
         if useless:
-            words = ", ".join(f"<{it}>" for it in useless)
-            yield Problem(
-                joint.parts[useless[0]], f"fixed joint {joint.name!r} ignores its {words}"
-            )
+            tags = ", ".join(f"<{it}>" for it in useless)
+            yield Problem(joint.parts[useless[0]], f"fixed joint {joint.name!r} ignores its {tags}")
 
 
 @rule(
@@ -141,12 +144,13 @@ def fixed_joint_ignores(subject: Subject) -> Iterator[Problem]:
     "floating-or-planar",
     WARNING,
     what="A joint is floating or planar.",
-    why="robot_state_publisher sends no transform for a floating joint and a fixed one for a planar "
-    "joint; sdformat makes no joint of either and then refuses the link that hangs on it.",
-    fix="Make the link below the root: its pose comes from odometry or, in MoveIt, from a "
+    why="robot_state_publisher sends no transform for a floating joint and a fixed one for a "
+    "planar joint; sdformat creates neither and then rejects the link below it.",
+    fix="Make the link below it the root: its pose comes from odometry or, in MoveIt, from a "
     "<virtual_joint> of the SRDF.",
     bad=one_joint("floating"),
     good=one_joint("fixed"),
+    line=3,
 )
 def floating_or_planar(subject: Subject) -> Iterator[Problem]:
     """Joints of these two types."""
@@ -160,11 +164,12 @@ def floating_or_planar(subject: Subject) -> Iterator[Problem]:
     "MB524",
     "joint-origin-units",
     WARNING,
-    what="A joint stands very far from its parent link.",
-    why="URDF is in metres: the child is drawn, planned and simulated where the number says.",
-    fix="Divide by 1000 what is in millimetres.",
+    what="The origin of a joint is very far from its parent link.",
+    why="URDF uses metres: the child is drawn, planned and simulated at that distance.",
+    fix="Divide millimetres by 1000.",
     bad=one_joint("fixed", '<origin xyz="0 0 120"/>'),
     good=one_joint("fixed", '<origin xyz="0 0 0.12"/>'),
+    line=5,
 )
 def joint_origin_units(subject: Subject) -> Iterator[Problem]:
     """Origins that are farther away than any robot is long."""

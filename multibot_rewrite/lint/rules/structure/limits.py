@@ -33,10 +33,11 @@ LONG_WAY = 25.0
     "limit-missing",
     ERROR,
     what="A revolute or prismatic joint has no <limit>.",
-    why="urdfdom refuses the file ('is of type REVOLUTE but it does not specify limits').",
+    why="urdfdom rejects the file ('is of type REVOLUTE but it does not specify limits').",
     fix="Add <limit> with lower, upper, effort and velocity; a wheel's joint is continuous.",
     bad=one_joint("revolute"),
     good=one_joint("revolute", LIMIT),
+    line=3,
 )
 def limit_missing(subject: Subject) -> Iterator[Problem]:
     """Joints that need a <limit>."""
@@ -49,11 +50,12 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
     "MB510",
     "limit-incomplete",
     ERROR,
-    what="A <limit> says no effort or no velocity.",
-    why="urdfdom refuses the whole file ('joint limit: no effort'), whatever the joint's type.",
+    what="A <limit> has no effort or no velocity.",
+    why="urdfdom rejects the whole file ('joint limit: no effort'), whatever the joint's type.",
     fix="Add the attribute, or delete a <limit> that the type does not need.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     """Limits without the attributes that urdfdom requires."""
@@ -72,9 +74,10 @@ def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     what="A joint's lower limit is above its upper one.",
     why="No position is inside: MoveIt finds every state out of bounds, MuJoCo drops the limits, "
     "sdformat swaps them.",
-    fix="Swap them, or mend the sign.",
+    fix="Swap them, or correct the sign.",
     bad=one_joint("revolute", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
     """Lower limits above the upper one."""
@@ -88,13 +91,14 @@ def limits_inverted(subject: Subject) -> Iterator[Problem]:
     "MB512",
     "limits-zero-range",
     NOTE,
-    what="A joint's limits leave it no way to go.",
+    what="A joint's limits leave it no range.",
     why="robot_state_publisher still waits for its position in joint_states and sends no transform "
-    "without; MuJoCo takes equal limits for none and lets the joint go round.",
+    "without it; MuJoCo treats equal limits as none and lets the joint turn freely.",
     fix="Write the real limits, or make the joint fixed (<preserveFixedJoint> keeps its link in "
     "Gazebo).",
     bad=one_joint("revolute", '<limit lower="0" upper="0" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     """Equal limits: an exporter's mistake, or a frame that Gazebo should not merge."""
@@ -111,11 +115,12 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
     "limit-without-bounds",
     WARNING,
     what="A revolute or prismatic joint's <limit> has no lower or no upper.",
-    why="urdfdom reads 0; joint_state_publisher refuses the description and publishes no joint at "
+    why="urdfdom reads 0; joint_state_publisher rejects the description and publishes no joint at "
     "all ('\"lower\" limit must be specified').",
     fix="Write both.",
     bad=one_joint("revolute", '<limit upper="1" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     """Missing bounds, which are read as 0."""
@@ -132,13 +137,14 @@ def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     "MB514",
     "negative-limit",
     WARNING,
-    what="The greatest effort or velocity of a joint is below 0.",
-    why="pinocchio refuses the file ('Some components of min_effort are greater than max_effort'), "
-    "sdformat documents a negative effort as not enforced, ros2_control and MoveIt drop the sign of a "
-    "velocity.",
+    what="The greatest effort or velocity of a joint is negative.",
+    why="pinocchio rejects the file ('Some components of min_effort are greater than max_effort'), "
+    "sdformat documents a negative effort as not enforced, ros2_control and MoveIt drop the sign "
+    "of a velocity.",
     fix="Write the greatest absolute value.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="-5" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def negative_limit(subject: Subject) -> Iterator[Problem]:
     """Each such attribute."""
@@ -154,14 +160,15 @@ def negative_limit(subject: Subject) -> Iterator[Problem]:
     "zero-limit",
     NOTE,
     what="The greatest effort or velocity of a joint that moves is 0.",
-    why="ros2_control's joint limits take the 0 as it stands: no velocity is allowed; MoveIt takes "
-    "a velocity of 0 for no limit.",
+    why="ros2_control's joint limits use the 0 as it is: no velocity is allowed; MoveIt treats a "
+    "velocity of 0 as no limit.",
     fix="Write what the motor can do.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" effort="0" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def zero_limit(subject: Subject) -> Iterator[Problem]:
-    """One finding a joint; joints that mimic another one or cannot move need no effort."""
+    """One finding per joint; joints that mimic another one or cannot move need no effort."""
     for joint, limit in joints_with(subject.robot, "limit"):
         if joint.type not in ONE_AXIS or "mimic" in joint.parts or _cannot_move(joint, limit):
             continue
@@ -177,11 +184,13 @@ def zero_limit(subject: Subject) -> Iterator[Problem]:
     "continuous-limits",
     WARNING,
     what="A continuous joint has limits of less than a turn, which are ignored.",
-    why="sdformat, MoveIt and ros2_control read no bounds of a continuous joint: it goes on "
-    "turning.",
-    fix="Make it revolute, or prismatic if it slides; delete lower and upper if it does turn on.",
+    why="sdformat, MoveIt and ros2_control read no limits of a continuous joint: it turns without "
+    "end.",
+    fix="Make it revolute, or prismatic if it slides; delete lower and upper if it does turn "
+    "without end.",
     bad=one_joint("continuous", LIMIT),
     good=one_joint("revolute", LIMIT),
+    line=5,
 )
 def continuous_limits(subject: Subject) -> Iterator[Problem]:
     """Bounds of less than a turn: a whole turn means the same as continuous."""
@@ -199,13 +208,14 @@ def continuous_limits(subject: Subject) -> Iterator[Problem]:
     "prismatic-units",
     WARNING,
     what="The limits of a prismatic joint look like millimetres.",
-    why="URDF is in metres: planners and simulators let the joint go out of the room.",
+    why="URDF uses metres: planners and simulators let the joint move out of the room.",
     fix="Divide by 1000.",
     bad=one_joint("prismatic", '<limit lower="0" upper="40" effort="1" velocity="1"/>'),
     good=one_joint("prismatic", '<limit lower="0" upper="0.04" effort="1" velocity="1"/>'),
+    line=5,
 )
 def prismatic_units(subject: Subject) -> Iterator[Problem]:
-    """Long ways; the same to both sides is mostly a virtual joint without real limits."""
+    """Long ranges; one that is the same to both sides is mostly a virtual joint without real limits."""
     for joint, limit, lower, upper in _bounds(subject.robot):
         far = max(abs(lower), abs(upper))
         if joint.type == "prismatic" and LONG_WAY <= far < 1e4 and lower != -upper:
@@ -219,10 +229,11 @@ def prismatic_units(subject: Subject) -> Iterator[Problem]:
     "revolute-degrees",
     WARNING,
     what="A limit of a revolute joint looks like degrees.",
-    why="URDF is in radians: the joint turns many times before it meets the limit.",
+    why="URDF uses radians: the joint turns many times before it reaches the limit.",
     fix="Multiply by pi/180; xacro has radians().",
     bad=one_joint("revolute", '<limit lower="-90" upper="90" effort="1" velocity="1"/>'),
     good=one_joint("revolute", '<limit lower="-1.5708" upper="1.5708" effort="1" velocity="1"/>'),
+    line=5,
 )
 def revolute_degrees(subject: Subject) -> Iterator[Problem]:
     """Round numbers that are many turns in radians, and an angle in degrees."""

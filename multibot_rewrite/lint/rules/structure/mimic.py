@@ -9,6 +9,7 @@ from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import value_of
 from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_joint, a_link
 from multibot_rewrite.lint.rules.structure.shared import (
     LIMIT,
     ONE_AXIS,
@@ -23,11 +24,12 @@ from multibot_rewrite.lint.rules.structure.shared import (
     "MB525",
     "mimic-without-joint",
     ERROR,
-    what="A <mimic> does not say which joint it follows.",
-    why="urdfdom refuses the file ('joint mimic: no mimic joint specified').",
+    what="A <mimic> does not name the joint that it follows.",
+    why="urdfdom rejects the file ('joint mimic: no mimic joint specified').",
     fix='Add joint="...".',
     bad=two_joints("<mimic/>"),
     good=two_joints('<mimic joint="j"/>'),
+    line=11,
 )
 def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     """Mimics that name no joint."""
@@ -41,11 +43,12 @@ def mimic_without_joint(subject: Subject) -> Iterator[Problem]:
     "mimic-of-itself",
     ERROR,
     what="A joint mimics itself.",
-    why="Current sdformat refuses the joint ('cannot mimic itself'), MoveIt ignores every mimic of the "
-    "robot, joint_state_publisher ends ('Found an infinite recursive mimic chain').",
-    fix="Name the joint that it follows.",
+    why="Current sdformat rejects the joint ('cannot mimic itself'), MoveIt ignores every mimic of "
+    "the robot, joint_state_publisher stops ('Found an infinite recursive mimic chain').",
+    fix="Use the joint that it follows.",
     bad=two_joints('<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
+    line=11,
 )
 def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
     """Mimics of the joint they are in."""
@@ -58,46 +61,45 @@ def mimic_of_itself(subject: Subject) -> Iterator[Problem]:
     "MB527",
     "mimic-loop",
     ERROR,
-    what="Joints mimic each other in a circle.",
+    what="Joints mimic each other in a loop.",
     why="MoveIt ignores every mimic of the robot ('Cycle found in joint that mimic each other') "
-    "and joint_state_publisher ends ('Found an infinite recursive mimic chain').",
+    "and joint_state_publisher stops ('Found an infinite recursive mimic chain').",
     fix="Delete the <mimic> of the joint that is driven.",
     bad=two_joints('<mimic joint="j"/>', '<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
+    line=6,
 )
 def mimic_loop(subject: Subject) -> Iterator[Problem]:
-    """Each circle, at its first mimic."""
-    for circle in _circles(_leaders(subject.robot)):
-        if len(circle) > 1:
-            mimic = subject.robot.joint[circle[0]].parts["mimic"]
-            yield Problem(
-                mimic, f"joints mimic each other in a circle: {first_names(circle)}", "joint"
-            )
+    """Each loop, at its first mimic."""
+    for loop in _loops(_leaders(subject.robot)):
+        if len(loop) > 1:
+            mimic = subject.robot.joint[loop[0]].parts["mimic"]
+            yield Problem(mimic, f"joints mimic each other in a loop: {first_names(loop)}", "joint")
 
 
 @rule(
     "MB528",
     "mimic-chain",
     NOTE,
-    what="A joint mimics a joint that is a mimic, too.",
+    what="A joint mimics a joint that mimics another one.",
     why="MoveIt and joint_state_publisher follow the chain. robot_state_publisher goes through the "
-    "mimics once, by name: it sends no transform for one whose leader has the later name, unless "
-    "joint_states has the leader.",
-    fix="Name the first joint of the chain, and multiply the multipliers.",
+    "mimics once, by name: it sends no transform for one whose leader comes later in the alphabet, "
+    "unless joint_states has the leader.",
+    fix="Use the first joint of the chain, and multiply the multipliers.",
     bad=two_joints('<mimic joint="j"/>')
-    + '<link name="d"/><joint name="l" type="revolute"><parent link="c"/><child link="d"/>'
-    + LIMIT
-    + '<mimic joint="k"/></joint>',
+    + a_link("d")
+    + a_joint("l", "revolute", "c", "d", LIMIT, '<mimic joint="k"/>'),
     good=two_joints('<mimic joint="j"/>'),
+    line=17,
 )
 def mimic_chain(subject: Subject) -> Iterator[Problem]:
-    """Mimics of mimics; a circle is MB527."""
+    """Mimics of mimics; a loop is MB527."""
     leader = _leaders(subject.robot)
     chained = {name: follows for name, follows in leader.items() if follows in leader}
-    round_ = {name for circle in _circles(chained) for name in circle}
+    round_ = {name for loop in _loops(chained) for name in loop}
     for name, follows in chained.items():
         if name not in round_:
-            late = "; robot_state_publisher is too early for it" if name < follows else ""
+            late = "; robot_state_publisher sends no transform for it" if name < follows else ""
             message = f"joint {name!r} mimics {follows!r}, which mimics {leader[follows]!r}{late}"
             yield Problem(subject.robot.joint[name].parts["mimic"], message, "joint")
 
@@ -106,12 +108,13 @@ def mimic_chain(subject: Subject) -> Iterator[Problem]:
     "MB529",
     "mimic-of-fixed",
     ERROR,
-    what="A joint mimics one that has not one position: fixed, floating or planar.",
-    why="joint_state_publisher ends with a KeyError, MoveIt ignores the mimic ('different number "
+    what="A joint mimics one that does not have a single position: fixed, floating or planar.",
+    why="joint_state_publisher stops with a KeyError, MoveIt ignores the mimic ('different number "
     "of DOF'), and no joint_states message ever has the leader.",
-    fix="Name a joint that moves, or make this one fixed.",
+    fix="Use a joint that moves, or make this one fixed.",
     bad=two_joints('<mimic joint="j"/>').replace("revolute", "fixed", 1),
     good=two_joints('<mimic joint="j"/>'),
+    line=11,
 )
 def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     """Mimics of joints without one position; the mimic of a fixed joint does not matter."""
@@ -132,16 +135,17 @@ def mimic_of_fixed(subject: Subject) -> Iterator[Problem]:
     "mimic-multiplier-zero",
     WARNING,
     what="The multiplier of a <mimic> is 0.",
-    why="The joint stands still, whatever the other one does.",
+    why="The joint does not move, whatever the other one does.",
     fix="Write the ratio, or make the joint fixed.",
     bad=two_joints('<mimic joint="j" multiplier="0"/>'),
     good=two_joints('<mimic joint="j" multiplier="0.5"/>'),
+    line=11,
 )
 def mimic_multiplier_zero(subject: Subject) -> Iterator[Problem]:
     """Mimics whose joint never moves."""
     for joint, mimic in joints_with(subject.robot, "mimic"):
         if value_of(mimic, "multiplier", 1.0) == 0 and joint.type in ONE_AXIS:
-            message = f"joint {joint.name!r} mimics {mimic.get('joint')!r} 0 times: it never moves"
+            message = f"joint {joint.name!r} never moves: the multiplier of its mimic is 0"
             yield Problem(mimic, message, "multiplier")
 
 
@@ -154,8 +158,8 @@ def _leaders(robot: Robot) -> dict[str, str]:
     }
 
 
-def _circles(leader: Mapping[str, str]) -> list[list[str]]:
-    """The joints that follow each other in a circle."""
+def _loops(leader: Mapping[str, str]) -> list[list[str]]:
+    """The joints that follow each other in a loop."""
     done: set[str] = set()
     found = []
     for start in leader:

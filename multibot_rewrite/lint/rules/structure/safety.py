@@ -27,15 +27,17 @@ Range = tuple[float, float]
     "safety-without-k-velocity",
     ERROR,
     what="A <safety_controller> has no k_velocity.",
-    why="urdfdom refuses the file ('joint safety: no k_velocity').",
+    why="urdfdom rejects the file ('joint safety: no k_velocity').",
     fix="Add it, or delete the element.",
     bad=one_joint(
-        "revolute", LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/>'
+        "revolute", LIMIT, '<safety_controller soft_lower_limit="-1" soft_upper_limit="1"/>'
     ),
     good=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
     ),
+    line=6,
 )
 def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     """Safety controllers without the attribute that urdfdom requires."""
@@ -49,15 +51,17 @@ def safety_without_k_velocity(subject: Subject) -> Iterator[Problem]:
     "MB532",
     "soft-limits-empty",
     WARNING,
-    what="The soft limits of a <safety_controller> leave the joint no way to go.",
-    why="A missing soft limit is 0. MoveIt takes what is inside both kinds of limits: it cannot "
-    "plan for a joint that may only stand at 0.",
+    what="The soft limits of a <safety_controller> leave the joint no range.",
+    why="A missing soft limit is 0. MoveIt uses the range that is inside both kinds of limits: it "
+    "cannot plan for a joint that can only be at 0.",
     fix="Write soft_lower_limit and soft_upper_limit, or delete the element.",
-    bad=one_joint("revolute", LIMIT + '<safety_controller k_velocity="10"/>'),
+    bad=one_joint("revolute", LIMIT, '<safety_controller k_velocity="10"/>'),
     good=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
     ),
+    line=6,
 )
 def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     """Soft limits that leave no range where the hard ones do."""
@@ -65,7 +69,7 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
         low, high = max(soft[0], hard[0]), min(soft[1], hard[1])
         if low >= high and hard[0] < hard[1]:
             message = (
-                f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g} leave no way"
+                f"joint {joint.name!r}: the soft limits {soft[0]:g} to {soft[1]:g} leave no range"
             )
             yield Problem(safety, message)
 
@@ -74,20 +78,23 @@ def soft_limits_empty(subject: Subject) -> Iterator[Problem]:
     "MB533",
     "soft-limits-outside",
     NOTE,
-    what="A soft limit of a <safety_controller> is outside of the hard one.",
-    why="It has no effect: MoveIt, ros2_control and joint_state_publisher take the narrower one.",
-    fix="Put the soft limits inside of the hard ones.",
+    what="A soft limit of a <safety_controller> is outside of the joint's limits.",
+    why="It has no effect: MoveIt, ros2_control and joint_state_publisher use the narrower one.",
+    fix="Put the soft limits inside of lower and upper.",
     bad=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-2" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-2" soft_upper_limit="1" k_velocity="10"/>',
     ),
     good=one_joint(
         "revolute",
-        LIMIT + '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
+        LIMIT,
+        '<safety_controller soft_lower_limit="-1" soft_upper_limit="1" k_velocity="10"/>',
     ),
+    line=6,
 )
 def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
-    """One finding a joint."""
+    """One finding per joint."""
     for joint, safety, soft, hard in _soft_and_hard(subject.robot):
         if hard[0] < hard[1] and (soft[0] < hard[0] - TOLERANCE or soft[1] > hard[1] + TOLERANCE):
             message = (
@@ -102,11 +109,12 @@ def soft_limits_outside(subject: Subject) -> Iterator[Problem]:
     "dynamics-empty",
     ERROR,
     what="A <dynamics> has neither damping nor friction.",
-    why="urdfdom refuses the file ('joint dynamics element specified with no damping and no "
+    why="urdfdom rejects the file ('joint dynamics element specified with no damping and no "
     "friction').",
     fix="Add one of them, or delete the element.",
     bad=one_joint("continuous", "<dynamics/>"),
     good=one_joint("continuous", '<dynamics damping="0.1"/>'),
+    line=5,
 )
 def dynamics_empty(subject: Subject) -> Iterator[Problem]:
     """Dynamics without a value."""

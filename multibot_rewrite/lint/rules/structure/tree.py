@@ -10,6 +10,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.robot import loops, reached, roots
 from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.structure.shared import (
     SHOWN,
     TWO_LINKS,
@@ -30,13 +31,14 @@ WITHOUT_LINKS = frozenset(("material", "webots"))
     "several-roots",
     ERROR,
     what="More than one link has no parent: the robot is in several pieces.",
-    why="urdfdom refuses the file ('Two root links found'): no robot_state_publisher, no tf.",
-    fix="Add the joint that holds the pieces together.",
+    why="urdfdom rejects the file ('Two root links found'): no robot_state_publisher, no tf.",
+    fix="Add the joint that connects the pieces.",
     bad=TWO_LINKS,
     good=one_joint("fixed"),
+    line=2,
 )
 def several_roots(subject: Subject) -> Iterator[Problem]:
-    """Every root but the one with most links below it; a misspelled child link is MB202."""
+    """Every root except the one with the most links below it; a misspelled child link is MB202."""
     robot = subject.robot
     found = roots(robot)
     if len(found) < 2:
@@ -49,16 +51,16 @@ def several_roots(subject: Subject) -> Iterator[Problem]:
     for link in found:
         if link is main or nearest(link.name, search):
             continue
-        said = f"link {link.name!r} is a second root beside {main.name!r}: it is no joint's child"
-        yield Problem(link.element, said, "name", "add the joint that it hangs on")
+        message = f"link {link.name!r} has no parent joint, like the root {main.name!r}"
+        yield Problem(link.element, message, "name", "add a joint that connects it")
 
 
 @rule(
     "MB502",
     "no-link",
     WARNING,
-    what="The robot has no link. Files of materials alone or for Webots need none.",
-    why="urdfdom refuses the file ('No link elements found in urdf file').",
+    what="The robot has no link. Files with only materials, or for Webots, need none.",
+    why="urdfdom rejects the file ('No link elements found in urdf file').",
     fix="Add the links, directly below <robot>.",
     bad='<robot name="r"/>',
     good='<link name="a"/>',
@@ -78,15 +80,20 @@ def no_link(subject: Subject) -> Iterator[Problem]:
     "kinematic-loop",
     ERROR,
     what="Joints close a loop: a link is below itself.",
-    why="urdfdom accepts a loop beside the tree: nothing of it gets a frame in tf, and pinocchio "
-    "leaves it out; where all links are on loops it refuses the file ('No root link found').",
-    fix="Turn round or delete one joint; close a real loop in the simulator.",
-    bad='<link name="a"/><link name="b"/><link name="c"/>'
+    why="urdfdom accepts a loop beside the tree: its links get no frame in tf, and pinocchio "
+    "leaves them out; if all links are in loops it rejects the file ('No root link found').",
+    fix="Reverse or delete one joint; close a real loop in the simulator.",
+    bad=a_link("a")
+    + a_link("b")
+    + a_link("c")
     + fixed_joint("j", "b", "c")
     + fixed_joint("k", "c", "b"),
-    good='<link name="a"/><link name="b"/><link name="c"/>'
+    good=a_link("a")
+    + a_link("b")
+    + a_link("c")
     + fixed_joint("j", "a", "b")
     + fixed_joint("k", "b", "c"),
+    line=7,
 )
 def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     """Each loop, at the last of its joints in the file."""
@@ -96,11 +103,11 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
         last = max(joints, key=lambda it: order[it.element])
         at = joints.index(last) + 1
         names = [it.child for it in joints[at:] + joints[:at]]
-        way = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
+        path = " -> ".join(repr(it) for it in names[:SHOWN]) + (" -> ..." if names[SHOWN:] else "")
         yield Problem(
             last.element,
             f"joint {last.name!r} closes a loop of {len(joints)} joints: {last.child!r} is below "
-            f"itself ({names[-1]!r} -> {way})",
+            f"itself ({names[-1]!r} -> {path})",
         )
 
 
@@ -109,15 +116,16 @@ def kinematic_loop(subject: Subject) -> Iterator[Problem]:
     "several-parents",
     ERROR,
     what="A link is the child of two joints.",
-    why="urdfdom keeps one of the joints, by name; sdformat refuses the file (two links of one "
-    "name) and MuJoCo, too ('body has multiple parents').",
-    fix="Delete one of the joints, or add a link of its own for it.",
-    bad='<link name="a"/><link name="b"/>'
-    + fixed_joint("j", "a", "b")
-    + fixed_joint("k", "a", "b"),
-    good='<link name="a"/><link name="b"/><link name="c"/>'
+    why="urdfdom keeps one of the joints, by name; sdformat rejects the file (two links with one "
+    "name), and so does MuJoCo ('body has multiple parents').",
+    fix="Delete one of the joints, or add another link for it.",
+    bad=a_link("a") + a_link("b") + fixed_joint("j", "a", "b") + fixed_joint("k", "a", "b"),
+    good=a_link("a")
+    + a_link("b")
+    + a_link("c")
     + fixed_joint("j", "a", "b")
     + fixed_joint("k", "a", "c"),
+    line=7,
 )
 def several_parents(subject: Subject) -> Iterator[Problem]:
     """Every joint but the first that has the link as its child; copies of a joint are MB201."""
@@ -137,16 +145,20 @@ def several_parents(subject: Subject) -> Iterator[Problem]:
     "MB505",
     "unreachable-link",
     ERROR,
-    what="Links hang on a loop, or on a joint from a link to itself: no way leads to them from the "
-    "root.",
-    why="urdfdom accepts the file and nobody sees the links: they get no frame in tf, and Gazebo "
-    "and pinocchio leave them out.",
-    fix="Mend the loop that they hang on.",
-    bad='<link name="a"/><link name="b"/><link name="c"/><link name="d"/>'
+    what="Links are below a loop, or below a joint from a link to itself: they are not connected "
+    "to the root.",
+    why="urdfdom accepts the file, but the links are lost: they get no frame in tf, and Gazebo and "
+    "pinocchio leave them out.",
+    fix="Correct the loop above them.",
+    bad=a_link("a")
+    + a_link("b")
+    + a_link("c")
+    + a_link("d")
     + fixed_joint("j", "b", "c")
     + fixed_joint("k", "c", "b")
     + fixed_joint("l", "c", "d"),
-    good='<link name="a"/><link name="b"/>' + fixed_joint("j", "a", "b"),
+    good=a_link("a") + a_link("b") + fixed_joint("j", "a", "b"),
+    line=4,
 )
 def unreachable_link(subject: Subject) -> Iterator[Problem]:
     """One finding, at the first link; links in the loop itself are MB503."""
@@ -160,19 +172,20 @@ def unreachable_link(subject: Subject) -> Iterator[Problem]:
     lost = [it for name, it in robot.link.items() if name not in seen]
     if lost:
         names = first_names(it.name for it in lost)
-        yield Problem(lost[0].element, f"no way from the root leads to {names}", "name")
+        yield Problem(lost[0].element, f"not connected to the root: {names}", "name")
 
 
 @rule(
     "MB506",
     "joint-to-itself",
     ERROR,
-    what="A joint's parent is its child.",
-    why="For urdfdom the link has a parent and is no root: with the root it refuses the file ('No "
-    "root link found'), any other link is left out of tf and Gazebo.",
-    fix="Name the link that the joint hangs on as its parent.",
-    bad='<link name="a"/>' + fixed_joint("j", "a", "a"),
+    what="A joint's parent and child are the same link.",
+    why="For urdfdom the link has a parent and is not a root: if it should be the root, urdfdom "
+    "rejects the file ('No root link found'); any other link is left out of tf and Gazebo.",
+    fix="Correct the parent link.",
+    bad=a_link("a") + fixed_joint("j", "a", "a"),
     good=one_joint("fixed"),
+    line=3,
 )
 def joint_to_itself(subject: Subject) -> Iterator[Problem]:
     """Joints from a link to itself."""
@@ -186,8 +199,8 @@ def joint_to_itself(subject: Subject) -> Iterator[Problem]:
     "MB507",
     "joint-without-ends",
     ERROR,
-    what="A joint does not say its parent or its child link.",
-    why="urdfdom refuses the file ('missing a parent and/or child link specification').",
+    what="A joint has no parent link or no child link.",
+    why="urdfdom rejects the file ('missing a parent and/or child link specification').",
     fix='Add <parent link="..."/> and <child link="..."/>.',
     bad='<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>',
     good=one_joint("fixed"),

@@ -14,8 +14,8 @@ from multibot_rewrite.config import (
     type_name,
 )
 from multibot_rewrite.findings.selection import OFF
-from multibot_rewrite.lint.settings import EVERY_FILE, ArgumentSet, Settings, matches
-from multibot_rewrite.lint.values import (
+from multibot_rewrite.lint.config.settings import EVERY_FILE, ArgumentSet, Settings, matches
+from multibot_rewrite.lint.config.values import (
     FIELDS,
     READERS,
     Given,
@@ -30,16 +30,16 @@ from multibot_rewrite.nearest import nearest
 __all__ = ["Configured", "check_codes", "configured", "is_excluded", "with_options"]
 OWN, PROJECT, TABLE = "urdf-lint.toml", "pyproject.toml", "urdf-lint"
 MARKS = (b"urdf-lint", b"urdf_lint")
-NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics")
-DEFAULT_NAMING: Mapping[str, Any] = {"layout": "frames-per-robot"}
+NAMING = ("layout", "affix", "topics", "separators", "shared_frames", "shared_topics", "groups")
+DEFAULT_NAMING: Mapping[str, Any] = {}
 
 
 class Configured(NamedTuple):
-    """The settings, and what a command does with files and findings.
+    """The settings, and how a command treats files and findings.
 
     ``exclude`` are patterns for ``is_excluded``; ``fail_on`` is the lowest level that makes a lint
-    fail; ``file`` is where this was read, empty for nowhere; ``naming`` are the words that
-    ``make_naming`` made the settings' naming of.
+    fail; ``file`` is where this was read, empty for nowhere; ``naming`` are the options that
+    ``make_naming`` made the settings' naming from.
     """
 
     settings: Settings = Settings()
@@ -51,10 +51,10 @@ class Configured(NamedTuple):
 
 
 def configured(near: str, file: str | None) -> Configured:
-    """What ``file`` says or, without one, the nearest configuration above ``near``.
+    """The configuration in ``file`` or, without one, the nearest above ``near``.
 
     In one folder a urdf-lint.toml comes before a pyproject.toml, which counts where it has a table
-    ``[tool.urdf-lint]``. Raises UsageError, naming the file, for whatever is wrong in it.
+    ``[tool.urdf-lint]``. Raises UsageError, naming the file, for anything that is wrong in it.
     """
     path = file or next(_above(near), "")
     result = _configured(path, _table(path)) if path else Configured()
@@ -68,7 +68,7 @@ def _above(near: str) -> Iterator[str]:
         own, project = os.path.join(folder, OWN), os.path.join(folder, PROJECT)
         if os.path.isfile(own):
             yield own
-        # Parsing costs more than the rest of a start: most projects do not hold the word.
+        # Parsing is slow compared with the rest of a start, and most projects do not have the table.
         data = read(project) if os.path.isfile(project) else b""
         if any(mark in data for mark in MARKS) and _in_project(project, data) is not None:
             yield project
@@ -104,26 +104,26 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
             raise UsageError(f"{path}: unknown key {key!r}{_meant(key, READERS)}")
         field = FIELDS.get(key, key.replace("-", "_"))
         values[field] = READERS[key](Given(f"{path}: {key}", folder, value))
-    words = {name: values.pop(name) for name in NAMING if name in values}
+    naming_options = {name: values.pop(name) for name in NAMING if name in values}
     own = {name: values.pop(name) for name in Configured._fields if name in values}
     result = Configured(Settings(**values), file=path, **own)
     try:
-        return _named(result, words)
+        return _named(result, naming_options)
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
 
 
-def _named(it: Configured, words: Mapping[str, Any]) -> Configured:
-    """The same with other words for the naming."""
-    if not words:
+def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
+    """The same with other options for the naming."""
+    if not naming_options:
         return it
-    naming = {**it.naming, **words}
+    naming = {**it.naming, **naming_options}
     settings = it.settings._replace(naming=make_naming(**naming))
     return it._replace(settings=settings, naming=naming)
 
 
-def _meant(word: str, known: Iterable[str]) -> str:
-    near = nearest(word.replace("_", "-"), list(known))
+def _meant(key: str, known: Iterable[str]) -> str:
+    near = nearest(key.replace("_", "-"), list(known))
     return f", did you mean {near!r}?" if near else f", use one of {', '.join(known)}"
 
 
@@ -133,24 +133,26 @@ def is_excluded(path: str, it: Configured) -> bool:
 
 
 def with_options(it: Configured, **given: Any) -> Configured:
-    """What the command line says on top of a configuration; None and empty are not said.
+    """A configuration with the options of the command line; None and empty mean not given.
 
     ``ignore``, ``vocabulary``, ``roots`` and ``arguments`` (pairs) add to it; all else replaces it.
-    Codes that ``select`` names are on, whatever the configuration says of just these codes.
+    Codes in ``select`` are on, whatever the configuration says about exactly these codes.
     """
-    said = {name: value for name, value in given.items() if value not in (None, (), "")}
-    words = {name: said.pop(name) for name in NAMING if name in said}
-    if "target" in said:
-        said["targets"] = targets(Given("--target", "", list(said.pop("target"))))
-    if "robots" in said:
-        said["robots"] = checked_robots(said["robots"], "--robots")
-    if "fail_on" in said:
-        said["fail_on"] = READERS["fail-on"](Given("--fail-on", "", said["fail_on"]))
+    options = {name: value for name, value in given.items() if value not in (None, (), "")}
+    naming_options = {name: options.pop(name) for name in NAMING if name in options}
+    if "target" in options:
+        options["targets"] = targets(Given("--target", "", list(options.pop("target"))))
+    if "robots" in options:
+        options["robots"] = checked_robots(options["robots"], "--robots")
+    if "fail_on" in options:
+        options["fail_on"] = READERS["fail-on"](Given("--fail-on", "", options["fail_on"]))
     for name in ("select", "ignore"):
-        check_codes(said.get(name, ()), f"--{name}")
-    own = {name: said.pop(name) for name in ("exclude", "baseline", "fail_on") if name in said}
-    settings = _added(_selected(it.settings, said.pop("select", ())), said)
-    return _named(it._replace(settings=settings, **own), words)
+        check_codes(options.get(name, ()), f"--{name}")
+    own = {
+        name: options.pop(name) for name in ("exclude", "baseline", "fail_on") if name in options
+    }
+    settings = _added(_selected(it.settings, options.pop("select", ())), options)
+    return _named(it._replace(settings=settings, **own), naming_options)
 
 
 def _selected(settings: Settings, select: tuple[str, ...]) -> Settings:
@@ -161,10 +163,10 @@ def _selected(settings: Settings, select: tuple[str, ...]) -> Settings:
     return settings._replace(select=tuple(select), ignore=ignore, levels=levels)
 
 
-def _added(settings: Settings, said: dict[str, Any]) -> Settings:
-    if "arguments" in said:
-        said["arguments"] = (ArgumentSet(EVERY_FILE, tuple(said["arguments"])),)
+def _added(settings: Settings, options: dict[str, Any]) -> Settings:
+    if "arguments" in options:
+        options["arguments"] = (ArgumentSet(EVERY_FILE, tuple(options["arguments"])),)
     for name in ("ignore", "vocabulary", "roots", "arguments"):
-        if name in said:
-            said[name] = (*getattr(settings, name), *said[name])
-    return settings._replace(**said)
+        if name in options:
+            options[name] = (*getattr(settings, name), *options[name])
+    return settings._replace(**options)

@@ -1,4 +1,4 @@
-"""Values of a configuration file -> what the settings hold; a wrong one is told in one line."""
+"""Values of a configuration file -> settings; a wrong value is a UsageError in one line."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.config import listed_files, type_name
+from multibot_rewrite.findings.codes import known_beginnings, no_rule
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.selection import OFF
 from multibot_rewrite.lint.config.patterns import anchored, with_folders
-from multibot_rewrite.lint.registry import GROUPS, RULES
-from multibot_rewrite.lint.settings import EVERY_FILE, TARGETS, ArgumentSet
+from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
+from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rosnames.names import check_robot_name
 
 
@@ -58,23 +58,10 @@ def _codes(given: Given) -> tuple[str, ...]:
 
 def check_codes(codes: Sequence[str], where: str) -> None:
     """Raise UsageError for what is neither a rule's code nor the beginning of one."""
-    whole = (*RULES, *(start for start, *_ in GROUPS))
-    known = {code[:size] for code in whole for size in range(2, len(code) + 1)}
+    known = known_beginnings(RULES)
     wrong = next((it for it in codes if it not in known), None)
     if wrong is not None:
-        near = _near_code(wrong, known)
-        hint = f"did you mean {near!r}?" if near else "urdf-lint --list-rules tells them"
-        raise UsageError(
-            f"{where}: no rule has the code {wrong!r}, and none begins with it; {hint}"
-        )
-
-
-def _near_code(wrong: str, known: set[str]) -> str:
-    """The code of a rule's name, the longest code that this begins with, or one like it."""
-    named = (code for code, it in RULES.items() if it.name == wrong)
-    begun = (wrong[:size].upper() for size in range(len(wrong), 2, -1))
-    found = next(named, "") or next((it for it in begun if it in known), "")
-    return found or nearest(wrong.upper(), sorted(known))
+        raise UsageError(f"{where}: {no_rule(wrong, RULES, 'urdf-lint --list-rules')}")
 
 
 def _levels(given: Given) -> dict[str, str]:
@@ -188,7 +175,7 @@ def _argument_set(given: Given) -> Iterator[ArgumentSet]:
 
 
 def _argument(given: Given) -> str:
-    """As xacro's command line would have it: text."""
+    """The value as text, as on xacro's command line."""
     value = given.value
     if isinstance(value, bool):
         return str(value).lower()
@@ -206,6 +193,7 @@ READERS: Mapping[str, Callable[[Given], object]] = {
     "layout": _text,
     "affix": _text,
     "topics": _text,
+    "groups": _text,
     "separators": _separators,
     "shared-frames": _texts,
     "shared-topics": _texts,
@@ -219,5 +207,5 @@ READERS: Mapping[str, Callable[[Given], object]] = {
     "fail-on": _level,
     "seconds": _seconds,
 }
-# Keys that the records call otherwise.
+# Keys whose field has another name.
 FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}

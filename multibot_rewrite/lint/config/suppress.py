@@ -1,4 +1,4 @@
-"""Comments and settings that keep the lint silent, and comments that need not be there."""
+"""Findings that comments and settings suppress, and comments that suppress nothing."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.directives import (
-    ALWAYS_TOLD,
+    ALWAYS_REPORTED,
     IGNORE_FILE,
     MARK,
     Code,
     Directive,
     read_directives,
 )
+from multibot_rewrite.lint.config.settings import Settings, is_silent
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.lint.settings import Settings, is_silent
 from multibot_rewrite.model import Edit
 from multibot_rewrite.steps.document import locate
 
 UNUSED, BROKEN = "MB002", "MB003"
-# With one of them the file was not looked at to its end.
-_UNFINISHED = ALWAYS_TOLD - {UNUSED, BROKEN}
+# With one of these the file was not checked completely.
+_UNFINISHED = ALWAYS_REPORTED - {UNUSED, BROKEN}
 _CALL = lazy_compile(r"(.*):(\d+): ")
 # A xacro file whose root has no name is a part of another one.
 _NAMED = lazy_compile(rb"<robot\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?\bname\s*=")
@@ -43,19 +43,19 @@ class Comment(NamedTuple):
 def unsuppressed(
     findings: Sequence[Finding], sources: Mapping[str, bytes], settings: Settings
 ) -> list[Finding]:
-    """The findings that no comment and no per-file setting silences, and those about comments.
+    """The findings that no comment and no per-file setting suppresses, and those about comments.
 
     The first of ``sources`` is the file that is linted, the others are those it includes.
     """
     comments = [it for file, source in sources.items() for it in _comments(file, source)]
-    told = [it for it in findings if not is_silent(settings, _file(it), it.code)]
+    reported = [it for it in findings if not is_silent(settings, _file(it), it.code)]
     if not comments:
-        return told
-    left, used = _apply(told, comments)
-    left += _told(_broken(comments), BROKEN, settings)
+        return reported
+    left, used = _apply(reported, comments)
+    left += _selected(_broken(comments), BROKEN, settings)
     if _UNFINISHED.isdisjoint(it.code for it in findings):
         own = [it for it in comments if it.file == next(iter(sources)) and _is_whole(it, settings)]
-        left += _told(_unused(own, used, settings), UNUSED, settings)
+        left += _selected(_unused(own, used, settings), UNUSED, settings)
     return left
 
 
@@ -73,7 +73,7 @@ def _comments(file: str, source: bytes) -> Iterator[Comment]:
 def _apply(
     findings: Iterable[Finding], comments: Iterable[Comment]
 ) -> tuple[list[Finding], set[tuple[str, int]]]:
-    """The findings that are left, and the codes that silenced one, by file and offset."""
+    """The findings that are left, and the codes that suppressed one, by file and offset."""
     by_code: dict[str, list[tuple[Comment, Code]]] = {}
     for comment in comments:
         for code in comment.it.codes:
@@ -88,7 +88,7 @@ def _apply(
 
 
 def _reaches(comment: Comment, finding: Finding) -> bool:
-    """What a macro call makes is where the macro is written, and where the call stands."""
+    """A comment at a macro definition or at its call reaches findings in the macro's output."""
     if comment.it.word == IGNORE_FILE:
         return _file(finding) == comment.file
     if finding.file == comment.file and _holds(comment, (finding.line, finding.column)):
@@ -110,7 +110,7 @@ def _holds_line(comment: Comment, line: int) -> bool:
     return any(first <= line <= last for first, last in spans)
 
 
-def _told(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:
+def _selected(found: Iterable[Finding], code: str, settings: Settings) -> Iterator[Finding]:
     if not is_on(settings, code):
         return
     level = level_of(settings, code, RULES[code].level)
@@ -127,7 +127,7 @@ def _broken(comments: Iterable[Comment]) -> Iterator[Finding]:
 
 
 def _is_whole(comment: Comment, settings: Settings) -> bool:
-    """Is all that the comment reaches in every expansion of its file, and is the file expanded?"""
+    """Do all expansions of its file have what the comment is about, and is the file expanded?"""
     if comment.file in settings.included:
         return False
     if not comment.file.endswith(".xacro"):
@@ -144,20 +144,20 @@ def _unused(
         idle = [it for it in idle if comment.it.idle or _is_asked(it.text, comment.file, settings)]
         for code, edits in zip(idle, _removals(comment, idle), strict=True):
             line, column = locate(comment.source, code.start)
-            message = f"nothing of {code.text} is found where this comment silences it"
+            message = f"this comment suppresses no {code.text} finding"
             hint = "delete it" if not comment.it.idle else "put it on the line above the element"
             yield Finding(UNUSED, "", message, hint, comment.file, line, column, edits=edits)
 
 
 def _is_asked(code: str, file: str, settings: Settings) -> bool:
-    """Is a rule on, in that file, with the settings that it hangs on and without other files?"""
+    """Is a rule on in that file, with the settings that it needs and without other files?"""
     rule = RULES[code]
-    alone = not rule.beside and all(getattr(settings, it, True) for it in rule.options)
-    return alone and is_on(settings, code) and not is_silent(settings, file, code)
+    possible = not rule.beside and all(getattr(settings, it, True) for it in rule.options)
+    return possible and is_on(settings, code) and not is_silent(settings, file, code)
 
 
 def _removals(comment: Comment, idle: Sequence[Code]) -> Iterator[tuple[Edit, ...]]:
-    """For each of the codes the edit that takes it out; they can all be made together."""
+    """For each of the codes the edit that removes it; all can be applied together."""
     codes = comment.it.codes
     if comment.it.faults or len(idle) == len(codes):
         yield from [() if comment.it.faults else _removal(comment)] * len(idle)
@@ -165,13 +165,13 @@ def _removals(comment: Comment, idle: Sequence[Code]) -> Iterator[tuple[Edit, ..
     kept = next(at for at, it in enumerate(codes) if it not in idle)
     for code in idle:
         at = codes.index(code)
-        # With the blanks to the next code, or behind the first that stays from the one before.
+        # With the spaces up to the next code; after the first code that stays, from the one before.
         span = (code.start, codes[at + 1].start) if at < kept else (codes[at - 1].end, code.end)
         yield (Edit(*span, b"", None),)
 
 
 def _removal(comment: Comment) -> tuple[Edit, ...]:
-    """The whole comment, with its line where it stands alone; none where it is amid a text."""
+    """The whole comment, with its line if nothing else is on it; none where it is inside a text."""
     source, it = comment.source, comment.it
     start = len(source[: it.start].rstrip())
     end = len(source) - len(source[it.end :].lstrip())

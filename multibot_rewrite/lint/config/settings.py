@@ -1,4 +1,4 @@
-"""What a description is linted with, whoever says so: a command, a configuration file, a test."""
+"""What a description is linted with: the settings of a command, a configuration file or a test."""
 
 from __future__ import annotations
 
@@ -30,14 +30,14 @@ class Settings(NamedTuple):
     """``select`` and ``ignore`` are codes or their beginnings; the longer one wins.
 
     ``levels`` maps them to levels or ``OFF``. ``per_file`` are (pattern, codes): rules that are
-    silent in files that the pattern ``matches``. Each of ``arguments`` is one more expansion of a
-    xacro file, beside the default one. ``robots`` are who will share a system, spelled by
-    ``naming``; without robots nothing is asked that hangs on them. ``targets`` are other formats
-    the names must suit (``TARGETS``). ``roots`` are folders in which ``package://NAME`` is looked
-    for. ``urdf`` is the description that SRDF files belong to, where it is not the one with the
-    same robot name; ``urdfs`` are the names and paths of robots linted beside them. ``included``
-    are xacro files that are linted through those which include them. ``seconds`` is what one file
-    may take.
+    off in files that the pattern ``matches``. Each of ``arguments`` is one more expansion of a
+    xacro file, in addition to the default one. ``robots`` will share a system, renamed by
+    ``naming``; without robots the rules that depend on them find nothing. ``targets`` are other
+    formats in which the names must be valid (``TARGETS``). ``roots`` are folders in which
+    ``package://NAME`` is looked up. ``urdf`` is the description that SRDF files belong to, where it
+    is not the one with the same robot name; ``urdfs`` are the names and paths of robots that are
+    linted together with them. ``included`` are xacro files that are linted through those which
+    include them. ``seconds`` is the time limit for one file.
     """
 
     select: tuple[str, ...] = ALL
@@ -46,7 +46,7 @@ class Settings(NamedTuple):
     per_file: tuple[tuple[str, tuple[str, ...]], ...] = ()
     arguments: tuple[ArgumentSet, ...] = ()
     robots: tuple[str, ...] = ()
-    naming: Naming = make_naming("frames-per-robot")
+    naming: Naming = make_naming()
     vocabulary: tuple[str, ...] = ()
     targets: tuple[str, ...] = ()
     roots: tuple[str, ...] = ()
@@ -62,7 +62,7 @@ def matches(path: str, pattern: str) -> bool:
 
 
 def is_silent(settings: Settings, file: str, code: str) -> bool:
-    """Do the settings silence a rule in that one file?"""
+    """Do the settings switch a rule off in that one file?"""
     return any(
         matched(codes, code) >= 0 and matches(file, pattern) for pattern, codes in settings.per_file
     )

@@ -1,0 +1,10 @@
+"""``python -m multibot_rewrite`` is ``multibot``."""
+
+from __future__ import annotations
+
+import sys
+
+from multibot_rewrite.cli.multibot import main
+
+if __name__ == "__main__":
+    sys.exit(main())

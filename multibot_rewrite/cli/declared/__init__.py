@@ -1,0 +1,32 @@
+"""Every command line of the package: what it takes, what it is for, what its exit codes mean."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from multibot_rewrite.cli.declared.description import LINT, POSTFIX
+from multibot_rewrite.cli.declared.fleet import BUILD, PLAN, REHEARSE, REMAP
+from multibot_rewrite.cli.declared.graph import CHECK, LEARN, SNAPSHOT
+from multibot_rewrite.cli.declared.knowledge import COVERAGE, EXPLAIN, HELP, VOCABULARY_LOOKUP
+from multibot_rewrite.cli.options import Command
+
+PROGRAMS = (POSTFIX, LINT)
+COMMANDS: Mapping[str, Command] = MappingProxyType(
+    {
+        it.name: it
+        for it in (
+            BUILD,
+            CHECK,
+            COVERAGE,
+            EXPLAIN,
+            HELP,
+            LEARN,
+            PLAN,
+            REHEARSE,
+            REMAP,
+            SNAPSHOT,
+            VOCABULARY_LOOKUP,
+        )
+    }
+)

@@ -1,0 +1,161 @@
+"""``urdf-postfix`` and ``urdf-lint``."""
+
+from __future__ import annotations
+
+from multibot_rewrite.cli import values
+from multibot_rewrite.cli.declared.shared import (
+    EXPLAIN_OPTION,
+    FINDINGS,
+    FINDINGS_OUTPUT,
+    GENERAL,
+    NAMING,
+    ROBOTS,
+    URDF,
+    VOCABULARY,
+)
+from multibot_rewrite.cli.options import (
+    Command,
+    Example,
+    Group,
+    argument,
+    output,
+    several,
+    switch,
+    value,
+)
+from multibot_rewrite.findings.finding import ERROR
+
+POSTFIX = Command(
+    "urdf-postfix",
+    "rewrite",
+    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "Rewrite a robot description for one robot or many, and prove nothing was missed.",
+    (
+        Example("urdf-postfix rover.urdf robot1", "to standard output"),
+        Example("urdf-postfix rover.urdf robot1 -o robot1.urdf"),
+        Example("urdf-postfix rover.urdf.xacro robot1 robot2 -o 'out/{robot}.urdf' use_sim:=true"),
+        Example("urdf-postfix rover.urdf robot1 --layout frames-per-robot --affix prefix"),
+        Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
+        Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
+        Example("urdf-postfix robot1.urdf robot1 --strip", "undo it"),
+        Example("urdf-postfix --why rover.urdf:34", "why is this (not) renamed?"),
+        Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
+    ),
+    (
+        Group(
+            "input",
+            (
+                argument("input", "INPUT", "URDF, SDF model, SRDF, xacro of one, or -", "?"),
+                argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                ROBOTS,
+                URDF,
+                VOCABULARY,
+            ),
+        ),
+        Group(
+            "output",
+            (
+                output("write the result there; {robot} stands for the robot's name"),
+                switch("--in-place", about="write the result over the input file"),
+                switch("--diff", about="print a unified diff instead of the result"),
+                value(
+                    "--changes",
+                    metavar="FILE",
+                    about="write every change as JSON",
+                    type=values.path,
+                ),
+            ),
+        ),
+        Group(
+            "other jobs",
+            (
+                switch("--strip", about="undo a rewrite; give the options it was made with"),
+                switch("--again", about="rewrite although it was rewritten for this robot"),
+                value(
+                    "--why",
+                    metavar="FILE:LINE",
+                    about="show which rule reads the values in that line, and why",
+                ),
+                EXPLAIN_OPTION,
+            ),
+        ),
+        NAMING,
+        FINDINGS,
+        GENERAL,
+    ),
+    "0 done; 1 findings at the level of --fail-on, nothing was written; 2 wrong use or unreadable"
+    " input",
+    more="Findings go to standard error; with a --format other than text they go to standard output,"
+    " and the result needs -o or --in-place.",
+    fail_on=ERROR,
+)
+
+LINT = Command(
+    "urdf-lint",
+    "lint",
+    "%(prog)s PATH... [NAME:=VALUE...] [options]",
+    "Find what is wrong with robot descriptions, alone and among other robots.",
+    (
+        Example("urdf-lint urdf/", "every .urdf, .xacro and .srdf below it"),
+        Example("urdf-lint rover.urdf --select MB2,MB5", "references and structure only"),
+        Example("urdf-lint rover.urdf.xacro sim:=gz", "with xacro arguments, too"),
+        Example("urdf-lint rover.urdf --robots robot1,robot2 --layout frames-per-robot"),
+        Example("urdf-lint urdf/ --format sarif -o out/lint.sarif"),
+        Example("urdf-lint rover.urdf --fix --diff", "show what --fix would change"),
+        Example("urdf-lint --explain MB202"),
+    ),
+    (
+        Group(
+            "input",
+            (
+                argument("words", "PATH", "files, folders, or -; NAME:=VALUE is for xacro", "*"),
+                value(
+                    "--config",
+                    metavar="FILE",
+                    about="urdf-lint.toml or pyproject.toml; default: the nearest one above",
+                ),
+                value(
+                    "--changed-since", metavar="REV", about="only files that git shows as changed"
+                ),
+                several("--roots", "A,B", "folders to look for package://NAME and $(find NAME) in"),
+                URDF,
+                VOCABULARY,
+            ),
+        ),
+        Group(
+            "output",
+            (
+                FINDINGS_OUTPUT,
+                switch("--fix", about="apply the safe fixes"),
+                switch("--diff", about="with --fix: print what would change, write nothing"),
+            ),
+        ),
+        Group(
+            "checks",
+            (
+                ROBOTS,
+                several("--target", "A,B", "names must suit these formats, too: usd, mjcf"),
+                value("--baseline", metavar="FILE", about="report only findings not in FILE"),
+                value(
+                    "--write-baseline",
+                    metavar="FILE",
+                    about="write today's findings, for --baseline",
+                    type=values.path,
+                ),
+                value(
+                    "--jobs",
+                    metavar="N",
+                    about="processes; default: one for each processor",
+                    type=values.count,
+                ),
+            ),
+        ),
+        NAMING,
+        FINDINGS,
+        Group("rules", (EXPLAIN_OPTION, switch("--list-rules", about="list all rules"))),
+        GENERAL,
+    ),
+    "0 nothing found (notes do not count); 1 findings; 2 wrong use, nothing to lint, or a rule that"
+    " crashed",
+    findings_first=True,
+)

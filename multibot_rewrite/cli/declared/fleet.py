@@ -1,0 +1,158 @@
+"""The commands about a fleet: build, plan, rehearse, remap."""
+
+from __future__ import annotations
+
+from multibot_rewrite.cli import values
+from multibot_rewrite.cli.declared.shared import (
+    FINDINGS,
+    FINDINGS_OUTPUT,
+    GENERAL,
+    LIVE,
+    LIVE_CODES,
+    NAMING,
+    PICTURES,
+    RESULT_OUTPUT,
+    ROBOTS,
+    VOCABULARY,
+)
+from multibot_rewrite.cli.options import (
+    Command,
+    Example,
+    Group,
+    argument,
+    form,
+    output,
+    output_group,
+    several,
+    switch,
+    value,
+)
+from multibot_rewrite.findings.finding import ERROR
+
+# Those of ``remap.table_formats``, which a help text does not import.
+REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
+
+_DESCRIPTION = Group(
+    "input",
+    (
+        argument("input", "INPUT", "the robot's description before any rewrite, or a fleet file"),
+        argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+        ROBOTS,
+        several("--stack", "NAME", "nodes that every robot runs (docs/stacks.md)", []),
+        value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
+        VOCABULARY,
+    ),
+)
+_FLEET_FILE = "A fleet file (*.yaml) has its own robots, stacks and layout."
+_TABLE_CODES = "0 done; 1 findings at the level of --fail-on; 2 wrong use or unreadable input"
+_BESIDE = (
+    " Findings go to standard error; with a --format other than text they go to standard output, and"
+    " the result needs -o."
+)
+BUILD = Command(
+    "build",
+    "build",
+    "%(prog)s FLEET -o FOLDER [options]",
+    "Make everything a fleet needs from its fleet file.",
+    (
+        Example("multibot build fleet.yaml -o out/", "everything, one folder a robot"),
+        Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
+    ),
+    (
+        Group("input", (argument("fleet", "FLEET", "the fleet file, YAML"),)),
+        output_group(
+            output("write everything into that folder", required=True),
+            switch("--check", about="list what is stale, write nothing"),
+            switch("--force", about="overwrite files that no build made"),
+        ),
+        FINDINGS,
+        GENERAL,
+    ),
+    "0 done; 1 findings at the level of --fail-on, nothing was written, or with --check something is"
+    " stale; 2 wrong use or unreadable input",
+    fail_on=ERROR,
+)
+PLAN = Command(
+    "plan",
+    "plan",
+    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "Write what the ROS graph of a fleet should look like, for multibot check.",
+    (
+        Example("multibot plan fleet.yaml -o plan.yaml"),
+        Example("multibot plan rover.urdf robot1 robot2 --stack nav2 -o plan.yaml"),
+    ),
+    (_DESCRIPTION, output_group(RESULT_OUTPUT), NAMING, FINDINGS, GENERAL),
+    _TABLE_CODES,
+    more=_FLEET_FILE + _BESIDE,
+    fail_on=ERROR,
+)
+REHEARSE = Command(
+    "rehearse",
+    "rehearse",
+    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "Try the plan of a fleet on a real ROS graph, without robot or simulator.",
+    (
+        Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2"),
+        Example("multibot rehearse rover.urdf robot1 robot2 --stack nav2 --report nav2.html"),
+        Example(
+            "multibot rehearse rover.urdf robot1 robot2 --stack nav2 --without-rules",
+            "which names would collide?",
+        ),
+    ),
+    (
+        _DESCRIPTION,
+        output_group(
+            FINDINGS_OUTPUT,
+            value(
+                "--save-snapshot",
+                metavar="FILE",
+                about="write the graph that came up, as multibot snapshot does",
+                type=values.path,
+            ),
+        ),
+        Group(
+            "rehearsal",
+            (switch("--without-rules", about="start nodes with namespace and name alone"),),
+        ),
+        PICTURES,
+        LIVE,
+        NAMING,
+        FINDINGS,
+        GENERAL,
+    ),
+    LIVE_CODES,
+    more=_FLEET_FILE + " Starts a stub for every node of each robot's plugins and stack with the"
+    " names of its code, applies the rules of multibot remap, and looks at the graph as multibot"
+    " check does. A type that is not installed is replaced. robot_state_publisher is added where no"
+    " stack has it.",
+    fail_on=ERROR,
+    findings_first=True,
+)
+
+REMAP = Command(
+    "remap",
+    "remap",
+    "%(prog)s INPUT ROBOT... [NAME:=VALUE...] [options]",
+    "List what every node of every robot must be remapped to.",
+    (
+        Example("multibot remap rover.urdf robot1 robot2 --stack nav2 --layout frames-per-robot"),
+        Example("multibot remap rover.urdf robot1 --stack nav2,slam_toolbox --form ros-args"),
+        Example("multibot remap rover.urdf robot1 robot2 --form launch -o remaps.py"),
+    ),
+    (
+        _DESCRIPTION,
+        output_group(
+            RESULT_OUTPUT,
+            form(
+                REMAP_FORMS,
+                "how rules are written (launch is for launch_ros, bridge for ros_gz_bridge)",
+            ),
+        ),
+        NAMING,
+        FINDINGS,
+        GENERAL,
+    ),
+    _TABLE_CODES,
+    more=_FLEET_FILE + _BESIDE,
+    fail_on=ERROR,
+)

@@ -1,0 +1,150 @@
+"""The commands about the live graph: check, learn, snapshot."""
+
+from __future__ import annotations
+
+from multibot_rewrite.cli import values
+from multibot_rewrite.cli.declared.shared import (
+    FINDINGS,
+    FINDINGS_OUTPUT,
+    GENERAL,
+    LIVE,
+    LIVE_CODES,
+    PICTURES,
+    RESULT_OUTPUT,
+)
+from multibot_rewrite.cli.options import (
+    Command,
+    Example,
+    Group,
+    argument,
+    output,
+    output_group,
+    several,
+    switch,
+    value,
+)
+from multibot_rewrite.findings.finding import ERROR
+
+CHECK = Command(
+    "check",
+    "check",
+    "%(prog)s PLAN [options]",
+    "Compare the running system with its plan.",
+    (
+        Example("multibot check plan.yaml", "the graph that runs now"),
+        Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
+        Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
+    ),
+    (
+        Group(
+            "input",
+            (
+                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
+                value(
+                    "--snapshot",
+                    metavar="FILE",
+                    about="what multibot snapshot wrote, instead of the live graph",
+                    type=values.path,
+                ),
+            ),
+        ),
+        output_group(
+            FINDINGS_OUTPUT,
+            switch("--watch", about="show every change until Ctrl-C or --timeout"),
+        ),
+        PICTURES,
+        LIVE,
+        FINDINGS,
+        GENERAL,
+    ),
+    f"{LIVE_CODES}. With --watch it is the worst that was seen; what was missing before everything"
+    " was there once does not count",
+    fail_on=ERROR,
+    findings_first=True,
+)
+LEARN = Command(
+    "learn",
+    "learn",
+    "%(prog)s [options]",
+    "Make a file of nodes and stacks, for remap and plan, from nodes that are running now.",
+    (
+        Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
+        Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
+        Example("multibot learn --snapshot graph.json --stack mine", "needs no ROS"),
+        Example("multibot remap rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
+    ),
+    (
+        Group(
+            "input",
+            (
+                several(
+                    "--node",
+                    "NODE",
+                    "full names of nodes; default: all but tools",
+                    [],
+                    values.full_names,
+                ),
+                value(
+                    "--namespace",
+                    metavar="NS",
+                    about="the robot's namespace, which its nodes are in",
+                    type=values.full_name,
+                ),
+                value(
+                    "--snapshot",
+                    metavar="FILE",
+                    about="what multibot snapshot wrote, instead of the live graph",
+                    type=values.path,
+                ),
+            ),
+        ),
+        output_group(
+            RESULT_OUTPUT,
+            value(
+                "--stack",
+                metavar="NAME",
+                about="name of the new stack; default: learned",
+                type=values.word,
+                default="learned",
+            ),
+        ),
+        LIVE,
+        GENERAL,
+    ),
+    "0 done; 2 wrong use, unreadable input, or a node that is not there or there twice; 3 the view"
+    " may be incomplete, what is seen is written all the same; 4 rclpy or its RMW is missing or does"
+    " not start",
+)
+SNAPSHOT = Command(
+    "snapshot",
+    "snapshot",
+    "%(prog)s [options]",
+    "Show what runs in the ROS graph now: nodes, endpoints, tf, environment.",
+    (
+        Example("multibot snapshot", "a table"),
+        Example(
+            "multibot snapshot -o graph.json --expect /robot1/amcl", "JSON, for multibot check"
+        ),
+    ),
+    (
+        output_group(
+            output("write JSON there (- is standard output), not a table"),
+        ),
+        LIVE._replace(
+            options=(
+                several(
+                    "--expect", "NODE", "stop when these nodes are there", [], values.full_names
+                ),
+                several(
+                    "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
+                ),
+                *LIVE.options,
+            )
+        ),
+        GENERAL,
+    ),
+    "0 done; 2 wrong use; 3 something may be missing in the view, which is written all the same;"
+    " 4 rclpy or its RMW is missing or does not start",
+    more="The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.",
+)

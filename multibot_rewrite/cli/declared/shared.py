@@ -1,0 +1,150 @@
+"""The options that several commands share: each means the same everywhere."""
+
+from __future__ import annotations
+
+from multibot_rewrite.cli import values
+from multibot_rewrite.cli.options import Group, choice, output, several, switch, value
+from multibot_rewrite.findings.finding import LEVELS
+from multibot_rewrite.findings.formats import FORMATS
+from multibot_rewrite.naming import (
+    DEFAULT_LAYOUT,
+    LAYOUTS,
+    SEPARATORS,
+    SHARED_FRAMES,
+    SHARED_TOPICS,
+)
+
+_LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
+_LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
+_SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
+
+NAMING = Group(
+    "names of a robot",
+    (
+        choice("--layout", "NAME", _LAYOUT_NAMES, f"{_LAYOUTS}; default: {DEFAULT_LAYOUT}"),
+        choice(
+            "--affix",
+            "SIDE",
+            ("postfix", "prefix"),
+            "the robot's name goes behind names (postfix, the default) or in front (prefix)",
+        ),
+        choice(
+            "--topics",
+            "HOW",
+            ("postfix", "prefix", "namespace"),
+            "postfix, prefix or namespace; default: what the layout implies",
+        ),
+        several(
+            "--separator",
+            "KIND=SEP",
+            "what stands between a name and the robot's; SEP alone is for all names of the"
+            f" description, not for ROS nodes and topics; defaults: {_SEPARATORS}",
+            [],
+        ),
+        several(
+            "--shared-frames",
+            "A,B",
+            f"frames that all robots share; default: {','.join(SHARED_FRAMES)}",
+        ),
+        several(
+            "--shared-topics",
+            "A,B",
+            f"topics that all robots share; default: {','.join(SHARED_TOPICS)}",
+        ),
+        choice(
+            "--groups",
+            "HOW",
+            ("keep", "rename"),
+            "groups and end effectors of an SRDF: keep (default) or rename",
+        ),
+    ),
+)
+ROBOTS = several("--robots", "A,B", "names of robots", [])
+VOCABULARY = several(
+    "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
+)
+URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
+FINDINGS = Group(
+    "findings",
+    (
+        several("--select", "CODES", "only these codes, or codes that begin so: MB2,MG102", []),
+        several("--ignore", "CODES", "not these; the longer of two that match wins", []),
+        choice(
+            "--fail-on",
+            "LEVEL",
+            LEVELS,
+            "the lowest level that makes the exit code 1: error (default; urdf-lint: warning),"
+            " warning or note",
+        ),
+        choice(
+            "--format",
+            "FORMAT",
+            tuple(FORMATS),
+            f"how findings are written: {', '.join(FORMATS)}; default: text",
+            default="text",
+        ),
+    ),
+)
+GENERAL = Group(
+    "general",
+    (
+        switch("-q", "--quiet", about="findings and errors only: no summary, no notes"),
+        switch(
+            "-v",
+            "--verbose",
+            about="each robot's findings by themselves, the files written, the time it took",
+        ),
+        choice(
+            "--color",
+            "WHEN",
+            ("auto", "always", "never"),
+            "auto (default: on a terminal, unless NO_COLOR is set), always or never",
+            default="auto",
+        ),
+    ),
+)
+LIVE = Group(
+    "live graph",
+    (
+        value(
+            "--timeout",
+            metavar="S",
+            about="look S seconds (default: 15)",
+            type=values.seconds,
+        ),
+        value(
+            "--domain",
+            metavar="N",
+            about=f"instead of ROS_DOMAIN_ID, 0 to {values.MAX_DOMAIN}",
+            type=values.domain,
+        ),
+    ),
+)
+
+
+EXPLAIN_OPTION = value(
+    "--explain", metavar="CODE", about="explain a finding's code, as multibot explain does"
+)
+FINDINGS_OUTPUT = output("write the findings there, not to standard output")
+
+LIVE_CODES = (
+    "0 as planned; 1 findings at the level of --fail-on; 2 wrong use or unreadable input;"
+    " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW is missing or does not start"
+)
+PICTURES = Group(
+    "pictures",
+    (
+        value(
+            "--report", metavar="FILE", about="write a page to look at, one HTML file",
+            type=values.path,
+        ),
+        value(
+            "--mermaid", metavar="FILE", about="write a flowchart for a page of Markdown",
+            type=values.path,
+        ),
+        value("--dot", metavar="FILE", about="write a graph for Graphviz", type=values.path),
+    ),
+)  # fmt: skip
+
+
+RESULT_OUTPUT = output("write the result there, not to standard output")

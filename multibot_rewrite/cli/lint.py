@@ -1,0 +1,173 @@
+"""``urdf-lint``: find what is wrong with robot descriptions."""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Sequence
+from functools import partial
+
+from multibot_rewrite.cli.diffs import diff
+from multibot_rewrite.cli.lint_use import check_use, given
+from multibot_rewrite.cli.output import (
+    note,
+    print_bytes,
+    prints_colour,
+    watched,
+    write_files,
+)
+from multibot_rewrite.cli.parser import UNUSABLE
+from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.report import About, by_themselves, report_first
+from multibot_rewrite.cli.usage import plain_words
+from multibot_rewrite.cli.walk import check_folder, check_target, find_files, standard_input
+from multibot_rewrite.findings.finding import LEVELS, Finding
+from multibot_rewrite.findings.selection import fails
+from multibot_rewrite.lint.config.configured import (
+    Configured,
+    configured,
+    is_excluded,
+    with_options,
+)
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.lint.registry import RULES
+from multibot_rewrite.lint.run import among, lint_files
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
+
+SUFFIXES = (".urdf", ".xacro", ".srdf")
+STDIN = "-"
+CRASHED = "MB001"
+
+
+def run(options: argparse.Namespace) -> int:
+    """Lint, fix or explain; returns the exit code."""
+    if options.list_rules or options.explain:
+        from multibot_rewrite.cli import explain  # a lint does not need it
+
+        return (
+            explain.list_rules(options, RULES) if options.list_rules else explain.of_option(options)
+        )
+    check_use(options)
+    config = with_options(configured(".", options.config), **given(options))
+    paths, unreadable = _files(options, config)
+    _check_targets(options, paths)
+    findings = [*unreadable, *_lint(options, config.settings, paths)]
+    if options.write_baseline:
+        return _write_baseline(options, findings)
+    return _conclude(options, config, paths, findings)
+
+
+def _files(options: argparse.Namespace, config: Configured) -> tuple[list[str], list[Finding]]:
+    """What is to be linted, and findings for folders that cannot be looked into."""
+    paths = plain_words(options)
+    if paths == [STDIN]:
+        return paths, []
+    refused: list[Finding] = []
+    level = RULES["MB102"].level
+
+    def refuse(error: OSError) -> None:
+        message = f"cannot be read: {error.strerror}"
+        refused.append(Finding("MB102", level, message, "", error.filename, 1, 1))
+
+    found = find_files(paths, SUFFIXES, refuse)
+    # What is found below "." is named as git names it.
+    if "." in paths:
+        found = [path if path in paths else path.removeprefix("./") for path in found]
+    kept = [path for path in found if path in paths or not is_excluded(path, config)]
+    if not kept:
+        raise UsageError(f"{', '.join(paths)}: exclude leaves no file to lint")
+    if not options.changed_since:
+        return kept, refused
+    from multibot_rewrite.lint.config.changed import changed_since  # a plain run needs no git
+
+    return changed_since(options.changed_since, kept), refused
+
+
+def _check_targets(options: argparse.Namespace, paths: Sequence[str]) -> None:
+    """Before the work: nothing that is linted is written over."""
+    for option in ("--output", "--write-baseline"):
+        target = getattr(options, option[2:].replace("-", "_"))
+        if target and target != STDIN:
+            check_target(target, paths, option)
+            check_folder(target)
+
+
+def _lint(options: argparse.Namespace, settings: Settings, paths: Sequence[str]) -> list[Finding]:
+    if list(paths) == [STDIN]:
+        from multibot_rewrite.lint.check import lint_data
+
+        return lint_data("<stdin>", standard_input(), settings)
+    watch = partial(watched, total=len(paths), doing="linting")
+    findings = lint_files(paths, settings, jobs=options.jobs or 0, watch=watch)
+    if not options.fix or not _fixed(options, among(paths, settings), findings):
+        return findings
+    # Anew, and all: what is written in one file is found through others.
+    return lint_files(paths, settings, jobs=options.jobs or 0)
+
+
+def _fixed(options: argparse.Namespace, settings: Settings, findings: list[Finding]) -> list[str]:
+    """The files that are fixed. With --diff none is, and the changes are printed."""
+    from multibot_rewrite.lint.fix import fix
+    from multibot_rewrite.sources.read import read_file
+
+    files = sorted({it.file for it in findings if it.edits})
+    old = {file: read_file(file) for file in files}
+    new = {file: fix(file, old[file], settings) for file in files}
+    if options.diff:
+        for file, (data, _) in new.items():
+            print_bytes(diff(old[file], data, file, f"{file} fixed", prints_colour(options)))
+        return []
+    write_files(options, ((file, data) for file, (data, _) in new.items()))
+    if files:
+        note(options, f"fixed {', '.join(files)}")
+    return files
+
+
+def _write_baseline(options: argparse.Namespace, findings: Sequence[Finding]) -> int:
+    from multibot_rewrite.lint.config.baseline import baseline_text
+
+    text = baseline_text(findings, options.write_baseline)
+    write_files(options, [(options.write_baseline, text)])
+    note(options, f"{options.write_baseline}: {_count(findings)} are known from now on")
+    return DONE
+
+
+def _conclude(
+    options: argparse.Namespace,
+    config: Configured,
+    paths: Sequence[str],
+    findings: Sequence[Finding],
+) -> int:
+    stale = 0
+    if config.baseline:
+        from multibot_rewrite.lint.config.baseline import beyond, read_baseline
+
+        known = read_baseline(config.baseline)
+        findings, stale = beyond(findings, known, config.baseline, paths)
+    options.fail_on = config.fail_on
+    about = About(paths, by_themselves(config.settings.robots))
+    if options.fix and options.diff:
+        failed = fails(findings, config.fail_on)
+    else:
+        failed = report_first(options, findings, about, RULES)
+    note(options, _summary(options, paths, findings, stale))
+    if any(it.code == CRASHED for it in findings):
+        return UNUSABLE
+    return STOPPED if failed else DONE
+
+
+def _summary(
+    options: argparse.Namespace, paths: Sequence[str], findings: Sequence[Finding], stale: int
+) -> str:
+    files = plural(len(paths), "file")
+    changed = f" changed since {options.changed_since}" if options.changed_since else ""
+    fixable = sum(bool(it.edits) for it in findings)
+    hint = f"; --fix fixes {fixable}" if fixable and not options.fix else ""
+    old = f"; {stale} in the baseline are gone" if stale else ""
+    return f"{files}{changed}: {_count(findings)}{hint}{old}"
+
+
+def _count(findings: Sequence[Finding]) -> str:
+    counts = Counter(it.level for it in findings)
+    return ", ".join(plural(counts[it], it) for it in LEVELS if counts[it]) or "no findings"

@@ -1,0 +1,42 @@
+"""The options of ``urdf-lint``: which do not go together, and what they say of the settings."""
+
+from __future__ import annotations
+
+import argparse
+
+from multibot_rewrite.cli.usage import plain_words, policy
+from multibot_rewrite.model import UsageError
+
+_LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
+_PLAIN = ("urdf", "baseline", "fail_on")
+
+
+def check_use(options: argparse.Namespace) -> None:
+    """Raise UsageError for what cannot be meant."""
+    paths = plain_words(options)
+    if not paths:
+        raise UsageError("no PATH given; for example: urdf-lint urdf/")
+    if "" in paths:
+        raise UsageError("the name of a file is empty")
+    if "-" in paths and (len(paths) > 1 or options.fix or options.changed_since):
+        raise UsageError("standard input is linted alone, without --fix and --changed-since")
+    if options.diff and not options.fix:
+        raise UsageError("--diff shows what --fix would change: give both")
+    if options.diff and options.output:
+        raise UsageError("--diff prints to standard output: leave out --output")
+    if options.write_baseline and (options.fix or options.baseline or options.output):
+        raise UsageError("--write-baseline takes neither --fix, --baseline nor --output")
+
+
+def given(options: argparse.Namespace) -> dict[str, object]:
+    """What the command line says about the settings, by the names of ``with_options``."""
+    said: dict[str, object] = {
+        name: tuple(value) for name in _LISTS if (value := getattr(options, name))
+    }
+    said |= {name: value for name in _PLAIN if (value := getattr(options, name))}
+    pairs = [word.partition(":=") for word in options.words if ":=" in word]
+    return {
+        **policy(options),
+        **said,
+        "arguments": tuple((name, value) for name, _, value in pairs),
+    }

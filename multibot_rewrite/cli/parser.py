@@ -1,0 +1,155 @@
+"""A command as argparse reads it: options in groups, help with an example first, "did you mean"."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Iterable, Sequence
+from functools import partial
+from itertools import pairwise, takewhile
+from typing import NoReturn
+
+from multibot_rewrite.cli.options import Command, Example, Group
+from multibot_rewrite.cli.terminal import AUTO, is_coloured
+from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.version import __version__
+
+UNUSABLE = 2
+# Help is not wider than this, however wide the terminal: long lines are hard to read.
+WIDEST = 120
+_HEADING = lazy_compile(r"^([a-z][^\n:]*:)(?=$| )", re.MULTILINE)
+_NAME = lazy_compile(r"^(  (?:-\w, )?--[\w-]+)", re.MULTILINE)
+
+
+class Parser(argparse.ArgumentParser):
+    """Reports a mistake in one line, with the nearest word that is known."""
+
+    colour = AUTO
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(UNUSABLE, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+    def format_help(self) -> str:
+        import shutil  # only a help text needs the terminal's width
+
+        width = min(shutil.get_terminal_size().columns, WIDEST)
+        self.formatter_class = partial(_Formatter, width=width)
+        return painted(super().format_help(), is_coloured(self.colour, sys.stdout))
+
+    def known(self) -> list[str]:
+        """The names of all options."""
+        return [name for action in self._actions for name in action.option_strings]
+
+
+class _Formatter(argparse.RawDescriptionHelpFormatter):
+    """``-o, --output PATH`` on one line, the same in every release of Python."""
+
+    def _format_action_invocation(self, action: argparse.Action) -> str:
+        if not action.option_strings or action.nargs == 0:
+            return super()._format_action_invocation(action)
+        value = self._format_args(action, str(action.metavar))
+        return f"{', '.join(action.option_strings)} {value}"
+
+
+# argparse asks for a formatter at every option; a given width spares it the import of shutil.
+_plain = partial(_Formatter, width=96)
+
+
+def painted(text: str, colour: bool) -> str:
+    """A help text with bold headings and coloured names of options."""
+    if not colour:
+        return text
+    return _NAME.sub("\033[36m\\1\033[0m", _HEADING.sub("\033[1m\\1\033[0m", text))
+
+
+def make_parser(command: Command, prog: str = "") -> Parser:
+    """The parser of a command; ``prog`` is how it is called, if not by its name."""
+    result = Parser(
+        prog=prog or command.name,
+        usage=command.usage,
+        formatter_class=_plain,
+        allow_abbrev=False,
+        add_help=False,
+    )
+    declare(result, command)
+    return result
+
+
+def declare(parser: argparse.ArgumentParser, command: Command) -> None:
+    """Give a parser the options and the help text of a command."""
+    parser.description = "\n\n".join(_head(command))
+    parser.epilog = f"exit codes:\n  {_codes(command)}"
+    for group in command.groups:
+        _add(parser, group)
+    general = parser._action_groups[-1]
+    version = f"{parser.prog} {__version__}"
+    general.add_argument("--version", action="version", version=version, help="show the version")
+    general.add_argument("-h", "--help", action="help", help="show this help")
+    parser.set_defaults(command=command.name, findings_first=command.findings_first)
+    if command.fail_on:
+        parser.set_defaults(fail_on=command.fail_on)
+
+
+def _head(command: Command) -> Iterable[str]:
+    yield command.about
+    yield "examples:\n" + "\n".join(_example(it) for it in command.examples)
+    if command.more:
+        yield wrapped(command.more)
+
+
+def _example(example: Example) -> str:
+    about = f"    # {example.about}" if example.about else ""
+    one = f"  {example.command}{about}"
+    return one if len(one) <= 80 or not about else f"  # {example.about}\n  {example.command}"
+
+
+def _codes(command: Command) -> str:
+    return "\n  ".join(command.exit_codes.split("; "))
+
+
+def wrapped(text: str, width: int = 80) -> str:
+    """A paragraph in lines of that width."""
+    lines = [""]
+    for word in text.split():
+        if len(lines[-1]) + len(word) >= width:
+            lines.append("")
+        lines[-1] += f" {word}" if lines[-1] else word
+    return "\n".join(lines)
+
+
+def _add(parser: argparse.ArgumentParser, group: Group) -> None:
+    section = parser.add_argument_group(group.title)
+    for option in group.options:
+        text = option.help.replace("%", "%%")
+        section.add_argument(*option.names, help=text, **option.keywords)
+
+
+def parsed(parser: Parser, words: Sequence[str]) -> argparse.Namespace:
+    """What the words say; a mistake ends the process with one line."""
+    parser.colour = _colour_asked(words)
+    wrong = _unknown_option(words, parser.known())
+    if wrong:
+        parser.error(wrong)
+    options, unknown = parser.parse_known_intermixed_args(words)
+    if unknown:
+        parser.error(f"unexpected {' '.join(unknown)}; a list is written A,B")
+    options.program = parser.prog.partition(" ")[0]
+    return options
+
+
+def _colour_asked(words: Sequence[str]) -> str:
+    """``--color``, which ``--help`` may come before."""
+    asked = [it for name, it in pairwise(words) if name == "--color"]
+    asked += [it.partition("=")[2] for it in words if it.startswith("--color=")]
+    return asked[-1] if asked else AUTO
+
+
+def _unknown_option(words: Sequence[str], known: Sequence[str]) -> str:
+    """What is wrong with the first option that is not known; empty where all are."""
+    before_end = takewhile(lambda word: word != "--", words)
+    names = (word.partition("=")[0] for word in before_end if word.startswith("--"))
+    wrong = next((name for name in names if name not in known), "")
+    near = did_you_mean_one_of(wrong, known)
+    return f"unknown option {wrong}{'; ' * bool(near)}{near}" if wrong else ""

@@ -1,0 +1,107 @@
+"""The findings of a command: selected, grouped over robots, in the format asked for, where they go."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple
+
+from multibot_rewrite.cli.output import deliver, print_bytes, prints_colour
+from multibot_rewrite.cli.terminal import is_coloured
+from multibot_rewrite.findings.codes import known_beginnings, no_rule
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.formats import Report, rendered
+from multibot_rewrite.findings.grouping import grouped
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.findings.selection import Selection, fails, selected
+from multibot_rewrite.model import UsageError
+
+TEXT = "text"
+# How the codes of all rules begin.
+GROUPS = ("MB", "MF", "MG", "MR")
+NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
+NO_RULES: Mapping[str, Rule] = MappingProxyType({})
+
+
+class About(NamedTuple):
+    """What findings are about: the files that were read, and the words that stand for robots in
+    texts (a name, a prefix), each with its robot."""
+
+    files: Sequence[str]
+    robots: Mapping[str, str] = NO_ROBOTS
+
+
+def by_themselves(robots: Iterable[str]) -> dict[str, str]:
+    """Robots whose names are the only words for them."""
+    return {it: it for it in robots}
+
+
+def check_report(options: argparse.Namespace, printed: bool) -> None:
+    """Raise UsageError for a code that no rule has, or where findings and a result would both go to
+    standard output; ``printed`` is whether the result does."""
+    for option, codes in (("--select", options.select), ("--ignore", options.ignore)):
+        _check_codes(option, codes)
+    if printed and options.format != TEXT:
+        raise UsageError(
+            f"--format {options.format} prints the findings; name a file for the result with -o"
+        )
+
+
+def _check_codes(option: str, codes: Sequence[str]) -> None:
+    if not codes:
+        return
+    from multibot_rewrite.catalogue import rules  # it imports every check
+
+    known = known_beginnings(rules())
+    # A group of which no rule is declared yet.
+    undeclared = set(GROUPS) - known
+    for code in codes:
+        if code not in known and code[:2] not in undeclared:
+            raise UsageError(f"{option}: {no_rule(code, rules(), 'multibot explain')}")
+
+
+def chosen(options: argparse.Namespace, findings: Iterable[Finding]) -> list[Finding]:
+    """The findings that ``--select`` and ``--ignore`` ask for."""
+    codes = tuple(options.select) or Selection().select
+    return selected(findings, Selection(codes, tuple(options.ignore)))
+
+
+def report_first(
+    options: argparse.Namespace,
+    findings: Sequence[Finding],
+    about: About,
+    rules: Mapping[str, Rule] = NO_RULES,
+) -> bool:
+    """Write the findings, which are the result; are there some at the level of ``--fail-on``?"""
+    text = _text(options, findings, about, rules, colour=prints_colour(options))
+    deliver(options, text.encode())
+    return fails(findings, options.fail_on)
+
+
+def report_beside(options: argparse.Namespace, findings: Sequence[Finding], about: About) -> bool:
+    """Write the findings beside the result: as text to standard error, else to standard output."""
+    if options.format == TEXT:
+        colour = is_coloured(options.color, sys.stderr)
+        sys.stderr.write(_text(options, findings, about, NO_RULES, colour=colour))
+    else:
+        print_bytes(_text(options, findings, about, NO_RULES, colour=False).encode())
+    return fails(findings, options.fail_on)
+
+
+def _text(
+    options: argparse.Namespace,
+    findings: Sequence[Finding],
+    about: About,
+    rules: Mapping[str, Rule],
+    *,
+    colour: bool,
+) -> str:
+    shown = findings if options.verbose else grouped(findings, about.robots)
+    if options.format != TEXT and not rules:
+        from multibot_rewrite.catalogue import rules as all_rules  # it imports every check
+
+        rules = all_rules()
+    made_by = f"{options.program} {options.command}".removesuffix(f" {options.program}")
+    return rendered(options.format, shown, Report(made_by, about.files, rules), colour=colour)

@@ -1,0 +1,138 @@
+"""``urdf-postfix``: rewrite a robot description for one robot or many, or undo that."""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Iterable
+from itertools import chain
+
+from multibot_rewrite.cli.diffs import diff
+from multibot_rewrite.cli.output import (
+    STANDARD,
+    note,
+    print_bytes,
+    prints_colour,
+    say,
+    watched,
+    write_files,
+)
+from multibot_rewrite.cli.process import DONE, STOPPED
+from multibot_rewrite.cli.report import (
+    About,
+    by_themselves,
+    chosen,
+    report_beside,
+)
+from multibot_rewrite.cli.rewrite_use import check_use, input_name, target_path
+from multibot_rewrite.cli.usage import policy, robots, xacro_args
+from multibot_rewrite.cli.walk import standard_input
+from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.library import Rewrite, rewrite_all, strip
+from multibot_rewrite.naming import SEPARATORS
+from multibot_rewrite.plural import plural
+from multibot_rewrite.sources.read import Source, read_source
+
+
+def run(options: argparse.Namespace) -> int:
+    """Rewrite, undo or explain; returns the exit code."""
+    if options.explain is not None:
+        from multibot_rewrite.cli import explain  # a rewrite does not need it
+
+        return explain.of_option(options)
+    if options.why is not None:
+        from multibot_rewrite.cli import why
+
+        return why.run(options)
+    options.output = None if options.output == STANDARD else options.output
+    names = robots(options)
+    check_use(options, names)
+    options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
+    source: Source = standard_input() if options.input == "-" else options.input
+    return (_undo if options.strip else _rewrite)(options, source, names)
+
+
+def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    (robot,) = names
+    # Read once: it may be a pipe, and --diff shows it again.
+    before, _ = read_source(source, xacro_args(options))
+    _deliver(options, [(robot, _strip(options, before, robot))], [], before, 1)
+    note(options, f"{robot} taken out, proved by rewriting again")
+    return DONE
+
+
+def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> int:
+    rewrites = rewrite_all(
+        source,
+        names,
+        **policy(options),
+        urdf=options.urdf,
+        xacro_args=xacro_args(options),
+        vocabulary=options.vocabulary,
+        again=options.again,
+        file=input_name(options),
+    )
+    first = next(rewrites)
+    about = About([input_name(options)], by_themselves(names))
+    if report_beside(options, chosen(options, first.findings), about):
+        say(f"--fail-on {options.fail_on}: nothing was written", options.program)
+        return STOPPED
+    results = ((it.robot, it.data) for it in chain([first], rewrites))
+    changes = [(options.changes, changes_json(first, names))] if options.changes else []
+    _deliver(options, results, changes, first.template.inventory.document.source, len(names))
+    note(options, summary(first, names))
+    return DONE
+
+
+def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
+    name, vocabulary = input_name(options), options.vocabulary
+    extra = policy(options)
+    return strip(source, robot, urdf=options.urdf, vocabulary=vocabulary, file=name, **extra)
+
+
+def _deliver(
+    options: argparse.Namespace,
+    results: Iterable[tuple[str, bytes]],
+    more: list[tuple[str, bytes]],
+    before: bytes,
+    total: int,
+) -> None:
+    """Print or write the results as they are made, and ``more`` files with them."""
+    target = options.input if options.in_place else options.output
+    if target:
+        files = ((target_path(target, robot), data) for robot, data in results)
+        write_files(options, watched(chain(more, files), total, "writing"))
+        return
+    write_files(options, more)
+    colour = prints_colour(options)
+    for robot, data in results:
+        name = input_name(options)
+        text = diff(before, data, name, f"{name} for {robot}", colour) if options.diff else data
+        print_bytes(text)
+
+
+def changes_json(first: Rewrite, robots: list[str]) -> bytes:
+    """Every change for every robot, as ``--changes`` writes it."""
+    import json
+
+    rewrites = [first._replace(robot=robot) for robot in robots]
+    table = {
+        "file": first.template.inventory.document.file,
+        "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
+    }
+    return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
+
+
+def summary(first: Rewrite, robots: list[str]) -> str:
+    """One line: how many names of each kind were spelled."""
+    inventory, plan = first.template.inventory, first.template.plan
+    names = {
+        (kind, claim.value)
+        for claim, spelling in zip(inventory.claims, plan.renames.values, strict=True)
+        for kind, *_ in spelling
+    }
+    counts = Counter(kind for kind, _ in names)
+    known = [plural(counts[kind], kind) for kind in SEPARATORS if counts[kind]]
+    inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
+    who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
+    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"

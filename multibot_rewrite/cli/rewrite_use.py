@@ -1,0 +1,85 @@
+"""Which options of ``urdf-postfix`` do not go together, and which files it may write."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+
+from multibot_rewrite.cli.report import check_report
+from multibot_rewrite.cli.usage import xacro_args
+from multibot_rewrite.model import UsageError
+
+PLACEHOLDER = "{robot}"
+
+
+def check_use(options: argparse.Namespace, names: list[str]) -> None:
+    """Raise UsageError for what cannot be meant."""
+    if options.input == "":
+        raise UsageError("the name of the input is empty")
+    if options.input is None:
+        raise UsageError("no INPUT and no ROBOT given; see urdf-postfix --help")
+    if not names:
+        raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
+    _check_together(options)
+    inputs = (options.input, options.urdf or "")
+    if xacro_args(options) and not any(path.endswith(".xacro") for path in inputs):
+        raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is not named *.xacro")
+    if len(names) > 1 and (options.strip or options.in_place):
+        raise UsageError("--strip and --in-place take one robot at a time")
+    check_report(options, printed=not (options.output or options.in_place))
+    _check_path("--output", options.output, PLACEHOLDER)
+    _check_path("--changes", options.changes, "")
+    if len(names) > 1 and not options.diff and PLACEHOLDER not in (options.output or ""):
+        raise UsageError("several robots need one file each: -o 'out/{robot}.urdf'")
+    _check_targets(
+        options, [target_path(options.output, robot) for robot in names if options.output]
+    )
+
+
+def _check_together(options: argparse.Namespace) -> None:
+    """Options of which one would silently do nothing beside the other."""
+    if options.output is not None and options.in_place:
+        raise UsageError("--output and --in-place exclude each other")
+    if options.diff and (options.output is not None or options.in_place):
+        raise UsageError("--diff prints to standard output: leave out --output and --in-place")
+    if options.strip and options.changes is not None:
+        raise UsageError("--changes lists what a rewrite changes, it cannot go with --strip")
+    if options.in_place and (options.input == "-" or options.input.endswith(".xacro")):
+        raise UsageError("--in-place needs a URDF file, not standard input or xacro")
+
+
+def _check_path(option: str, path: str | None, known: str) -> None:
+    unknown = [word for word in re.findall(r"\{.*?\}", path or "") if word != known]
+    if unknown:
+        hint = f"only {known} is filled in" if known else "one file serves all robots"
+        raise UsageError(f"{option} {path}: unknown placeholder {unknown[0]}, {hint}")
+
+
+def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
+    """No result may land on the input, nor the list of changes on a result."""
+    changes = [options.changes] if options.changes else []
+    for path in [*targets, *changes]:
+        if os.path.isfile(path) and _same_file(path, options.input):
+            raise UsageError(f"{path} is the input file; choose another name, or --in-place")
+        if os.path.isfile(path) and _same_file(path, options.urdf or ""):
+            raise UsageError(f"{path} is the file of --urdf; choose another name")
+    if changes and os.path.realpath(changes[0]) in {os.path.realpath(path) for path in targets}:
+        raise UsageError(f"{changes[0]}: the result and --changes need a file each")
+
+
+def _same_file(path: str, other: str) -> bool:
+    return os.path.isfile(other) and os.path.samefile(path, other)
+
+
+def target_path(output: str, robot: str) -> str:
+    """The output file of one robot."""
+    return output.replace(PLACEHOLDER, robot)
+
+
+def input_name(options: argparse.Namespace) -> str:
+    """The input as messages call it."""
+    if options.input == "-":
+        return "<stdin>"
+    expanded = " (expanded)" if options.input.endswith(".xacro") else ""
+    return f"{options.input}{expanded}"

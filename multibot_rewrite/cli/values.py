@@ -1,0 +1,103 @@
+"""What the values of options are read as: functions for ``type=`` of argparse."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Callable, Collection
+
+from multibot_rewrite.nearest import did_you_mean_one_of
+
+MAX_SECONDS = 3600
+# The highest ROS_DOMAIN_ID that rcl takes.
+MAX_DOMAIN = 232
+_WORD = re.compile(r"[A-Za-z0-9_.-]+")
+
+
+def names(text: str) -> list[str]:
+    """``a,b`` as two names; an empty text is none."""
+    found = [part.strip() for part in text.split(",")] if text else []
+    if "" in found:
+        raise argparse.ArgumentTypeError(f"{text!r} has an empty part, write A,B")
+    return found
+
+
+def full_names(text: str) -> list[str]:
+    """``/a,/b`` as two names of nodes or topics."""
+    return [full_name(it) for it in names(text)]
+
+
+def full_name(text: str) -> str:
+    """The name of a node or a topic with its namespace."""
+    if not text.startswith("/"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a full name, give for example /{text}")
+    return text
+
+
+def path(text: str) -> str:
+    """The name of a file or folder."""
+    if not text:
+        raise argparse.ArgumentTypeError("the name is empty, give the name of a file")
+    return text
+
+
+def one_of(known: Collection[str]) -> Callable[[str], str]:
+    """One of the words that are known; another one is refused with the nearest of them."""
+
+    def read(text: str) -> str:
+        if text in known:
+            return text
+        near = did_you_mean_one_of(text, known)
+        hint = f"; {near}" if near else ""
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not known, use one of {', '.join(known)}{hint}"
+        )
+
+    return read
+
+
+def word(text: str) -> str:
+    """One word, as the name of a stack is."""
+    if not _WORD.fullmatch(text):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a name of a stack, give one word")
+    return text
+
+
+def seconds(text: str) -> float:
+    """A time."""
+    value = _number(text)
+    if not 0 < value <= MAX_SECONDS:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is not a time, give seconds up to {MAX_SECONDS}"
+        )
+    return value
+
+
+def domain(text: str) -> int:
+    """A ROS_DOMAIN_ID."""
+    if not text.isdecimal() or int(text) > MAX_DOMAIN:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a domain, give 0 to {MAX_DOMAIN}")
+    return int(text)
+
+
+def count(text: str) -> int:
+    """A number, 0 or more."""
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number, give 0 or more")
+    return int(text)
+
+
+def percent(text: str) -> float:
+    """A percentage, with or without the sign."""
+    value = _number(text.removesuffix("%"))
+    if not 0 <= value <= 100:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a percentage, give 0 to 100")
+    return value
+
+
+def _number(text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        return math.nan

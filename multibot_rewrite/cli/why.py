@@ -1,0 +1,73 @@
+"""``urdf-postfix --why FILE:LINE``: which rewriter claims a value, and why."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+
+from multibot_rewrite.cli.output import deliver
+from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.usage import policy, robots, xacro_args
+from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.library import explain
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.reports.explain import Explanation
+
+EXAMPLE_ROBOT = "robot1"
+
+
+def run(options: argparse.Namespace) -> int:
+    """Print an explanation of every value on the line."""
+    path, line = _place(options.why)
+    # The file is in the option: what stands first is a robot or a xacro argument.
+    options.words[:0] = [options.input] if options.input else []
+    robot = next(iter(robots(options)), EXAMPLE_ROBOT)
+    found = explain(
+        path,
+        line,
+        robot,
+        urdf=options.urdf,
+        xacro_args=xacro_args(options),
+        vocabulary=[*configured_vocabulary(path), *options.vocabulary],
+        **policy(options),
+    )
+    if not found:
+        raise UsageError(f"{options.why}: no value starts on this line")
+    deliver(
+        options, "".join(f"{line}\n" for it in found for line in _lines(it, path, robot)).encode()
+    )
+    return DONE
+
+
+def _place(text: str) -> tuple[str, int]:
+    path, colon, line = text.rpartition(":")
+    if not colon or not line.isdigit() or not path:
+        raise UsageError(f"--why {text}: write FILE:LINE, for example rover.urdf:34")
+    return path, int(line)
+
+
+def _lines(item: Explanation, path: str, robot: str) -> Iterator[str]:
+    yield f"{path}:{item.line}:{item.column}: {item.path}"
+    yield from _facts(item, robot)
+
+
+def _facts(item: Explanation, robot: str) -> Iterator[str]:
+    """The facts about one value, indented below its place."""
+    if item.inserted:
+        yield f"  [{item.value}] gets for {robot}: {item.reason}"
+        yield from (f"    {element}" for element in item.inserted)
+        return
+    site = item.site
+    yield f"  value: {item.value!r}"
+    if site is None:
+        yield f"  claimed by no rewriter: {item.reason}"
+        return
+    by = f"[{site.section}] {site.file}:{site.line}"
+    if site.role == "keep":
+        yield f"  kept by {by}: {item.reason}"
+        return
+    form = "" if site.form == "whole" else f" ({site.form})"
+    note = f"; {site.note}" if site.note else ""
+    yield f"  claimed by {by}: {site.path} {site.role} {' '.join(site.kinds)}{form}{note}"
+    yield f"  is: {item.reason}"
+    yield f"  for {robot}: {item.new!r}" if item.new != item.value else "  stays as it is"

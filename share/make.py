@@ -1,0 +1,91 @@
+"""Makes the shell completions and manual pages in this folder: ``python share/make.py``.
+
+Needs shtab and argparse-manpage, which the extra ``test`` brings. The files are kept in the
+repository, so that no build needs either; a test reports when they are out of date.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import shtab
+from argparse_manpage.manpage import Manpage
+
+from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.parser import Parser, declare, make_parser
+from multibot_rewrite.version import __version__
+
+HERE = Path(__file__).parent
+BASH = "bash-completion/completions/{}"
+ZSH = "zsh/site-functions/_{}"
+MAN = "man/man1/{}.1"
+ABOUT = "Many robots in one ROS 2 system: rewrite, plan, build and check a fleet."
+# What an argument called so is completed with.
+COMPLETED = dict.fromkeys(("FILE", "PATH", "INPUT", "PLAN", "FLEET", "FILE:LINE"), shtab.FILE)
+
+
+def made() -> dict[str, str]:
+    """Every file, by its path below this folder."""
+    parsers = {"multibot": multibot, **{it.name: lambda it=it: make_parser(it) for it in PROGRAMS}}
+    files = {}
+    for name, parser in parsers.items():
+        files[BASH.format(name)] = shtab.complete(completed(parser()), "bash")
+        files[ZSH.format(name)] = shtab.complete(completed(parser()), "zsh")
+    for page in pages():
+        files[MAN.format(page.prog)] = manual(page)
+    return {path: f"{text.rstrip()}\n" for path, text in files.items()}
+
+
+def multibot() -> argparse.ArgumentParser:
+    """The command with all its commands, as nothing but this module needs it."""
+    result = Parser(prog="multibot", description=ABOUT)
+    result.add_argument("--version", action="version", version=__version__, help="show the version")
+    below = result.add_subparsers(metavar="COMMAND", dest="command")
+    for command in COMMANDS.values():
+        declare(below.add_parser(command.name, help=command.about, add_help=False), command)
+    return result
+
+
+def completed(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    """The same, with names of files where one is asked for."""
+    for action in parser._actions:
+        if action.metavar in COMPLETED and not action.choices:
+            action.complete = COMPLETED[action.metavar]  # type: ignore[attr-defined]
+        if isinstance(action, argparse._SubParsersAction):
+            for one in action.choices.values():
+                completed(one)
+    return parser
+
+
+def pages() -> Iterator[argparse.ArgumentParser]:
+    """What has a manual page of its own: each program, and each command as ``multibot-NAME``."""
+    yield Parser(prog="multibot", usage="multibot COMMAND [options]", description=_overview())
+    yield from map(make_parser, PROGRAMS)
+    for command in COMMANDS.values():
+        page = make_parser(command, f"multibot-{command.name}")
+        page.usage = command.usage.replace("%(prog)s", f"multibot {command.name}")
+        yield page
+
+
+def _overview() -> str:
+    rows = [f"multibot {it.name}: {it.about}" for it in COMMANDS.values()]
+    return "\n\n".join((ABOUT, *rows, "Each has a page of its own: man multibot-build."))
+
+
+def manual(parser: argparse.ArgumentParser) -> str:
+    """A page in the language of man; without a date, which would be that of the day it was made."""
+    about = str(parser.description).partition("\n")[0]
+    known = {"project_name": "multibot_rewrite", "version": __version__, "date": " "}
+    page = Manpage(parser, {**known, "description": about, "manual_title": "multibot_rewrite"})
+    return str(page)
+
+
+if __name__ == "__main__":
+    for path, text in made().items():
+        target = HERE / path
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(text)
+    sys.exit()

@@ -1,0 +1,189 @@
+"""--select, --ignore, --fail-on and --format on every command that reports findings."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+from graph_cases import as_planned, without_node
+from junitparser import JUnitXml
+from paths import FIXTURES
+
+from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
+from multibot_rewrite.findings.formats import FORMATS
+from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.snapshot import to_json
+
+ROVER = str(FIXTURES / "robots" / "rover.urdf")
+SIBLINGS = str(FIXTURES / "robots" / "siblings.urdf")
+TWENTY = [f"robot{number}" for number in range(1, 21)]
+Said = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def said(capsys: pytest.CaptureFixture[str]) -> Said:
+    """Runs one of the three programs; exit code, standard output, standard error."""
+    programs = {"urdf-postfix": urdf_postfix.main, "urdf-lint": urdf_lint.main}
+
+    def run(*words: str) -> tuple[int, str, str]:
+        capsys.readouterr()
+        code = programs.get(words[0], multibot.main)(words[1:])
+        return code, *capsys.readouterr()
+
+    return run
+
+
+@pytest.fixture
+def siren(tmp_path: Path) -> list[str]:
+    """Options for a node that publishes one topic for all robots, which is an error."""
+    own = tmp_path / "own.yaml"
+    own.write_text(
+        "nodes:\n  siren:\n    package: siren\n    publishes:\n"
+        "      /alarm: {type: std_msgs/msg/String, fixed: it is written in its code}\n"
+        "stacks:\n  mine: {nodes: [siren]}\n"
+    )
+    return ["--nodes", str(own), "--stack", "mine", "--layout", "L2"]
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> Path:
+    """A fleet file whose description has a warning."""
+    path = tmp_path / "fleet.yaml"
+    path.write_text(f"robots:\n  - {{name: robot1, description: {SIBLINGS}}}\n")
+    return path
+
+
+@pytest.fixture
+def check(tmp_path: Path, said: Said) -> list[str]:
+    """A check of twenty robots, each without its robot_state_publisher."""
+    plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
+    words = ["plan", ROVER, *TWENTY, "--stack", "robot_state", "--layout", "L2", "-o", str(plan)]
+    assert said("multibot", *words)[0] == 0
+    wanted = from_yaml(plan.read_bytes(), "plan")
+    found = as_planned(wanted)
+    for robot in TWENTY:
+        found = without_node(found, f"/{robot}/robot_state_publisher")
+    graph.write_bytes(to_json(found))
+    return ["multibot", "check", str(plan), "--snapshot", str(graph)]
+
+
+def codes(text: str) -> list[str]:
+    return [it["code"] for it in json.loads(text)["findings"]]
+
+
+def commands(tmp_path: Path, fleet: Path) -> dict[str, list[str]]:
+    """A command line of each kind with findings, its result in a file."""
+    out = str(tmp_path / "out")
+    return {
+        "urdf-postfix": ["urdf-postfix", SIBLINGS, "robot1", "-o", out],
+        "build": ["multibot", "build", str(fleet), "-o", out],
+        "urdf-lint": ["urdf-lint", SIBLINGS, "--robots", "robot1"],
+    }
+
+
+@pytest.mark.parametrize("name", ["urdf-postfix", "build", "urdf-lint"])
+def test_a_description_s_findings(name: str, tmp_path: Path, fleet: Path, said: Said) -> None:
+    words = commands(tmp_path, fleet)[name]
+    _, out, _ = said(*words, "--format", "json")
+    assert "MB405" in codes(out)
+    assert codes(said(*words, "--format", "json", "--select", "MB405")[1]) == ["MB405"]
+    assert "MB405" not in codes(said(*words, "--format", "json", "--ignore", "MB4,MB1")[1])
+    only = ("--select", "MB405", "--ignore", "MB4")
+    assert codes(said(*words, "--format", "json", *only)[1]) == ["MB405"]
+    assert said(*words, "--fail-on", "warning", "--select", "MB405")[0] == 1
+    assert said(*words, "--fail-on", "error", "--select", "MB405")[0] == 0
+    assert said(*words, "--fail-on", "note", "--ignore", "MB")[0] == 0
+
+
+@pytest.mark.parametrize("name", ["urdf-postfix", "build"])
+def test_nothing_is_written_at_the_level_of_fail_on(
+    name: str, tmp_path: Path, fleet: Path, said: Said
+) -> None:
+    code, out, err = said(*commands(tmp_path, fleet)[name], "--fail-on", "warning")
+    assert (code, out) == (1, "")
+    assert "nothing was written" in err
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("name", ["urdf-postfix", "build", "urdf-lint"])
+def test_every_format_tells_the_finding(
+    form: str, name: str, tmp_path: Path, fleet: Path, said: Said
+) -> None:
+    _, out, err = said(*commands(tmp_path, fleet)[name], "--format", form)
+    text = err if form == "text" and name != "urdf-lint" else out
+    assert text.count("MB405") >= 1
+
+
+def test_a_refused_rewrite_is_reported_in_the_format_too(tmp_path: Path, said: Said) -> None:
+    twice = tmp_path / "twice.urdf"
+    twice.write_text('<robot name="r"><link name="a"/><link name="a"/></robot>')
+    words = ("urdf-postfix", str(twice), "robot1", "-o", str(tmp_path / "out"))
+    code, out, _ = said(*words, "--format", "json", "--ignore", "MB2")
+    assert (code, codes(out)) == (1, ["MB201"])
+    code, out, err = said(*words)
+    assert (code, out, err.count("MB201")) == (1, "", 1)
+
+
+# ---------------------------------------------------------------- tables and graphs
+
+
+def test_twenty_robots_are_one_line(check: Sequence[str], said: Said) -> None:
+    code, out, err = said(*check)
+    assert code == 1
+    (line,) = (it for it in out.splitlines() if "MG101" in it)
+    assert line.startswith("/robot1/robot_state_publisher: error: MG101 ")
+    assert "; the same for robot2 and 18 more" in line
+    assert err.startswith("multibot: 20 robots, ")
+    each = [it for it in said(*check, "--verbose")[1].splitlines() if "MG101" in it]
+    assert [it.split("/")[1] for it in each] == TWENTY
+
+
+def test_twenty_robots_are_one_finding_in_every_format(check: Sequence[str], said: Said) -> None:
+    only = ("--select", "MG101", "--format")
+    (finding,) = json.loads(said(*check, *only, "json")[1])["findings"]
+    assert (finding["robot"], finding["others"]) == ("robot1", TWENTY[1:])
+    assert said(*check, *only, "github")[1].count("::error ") == 1
+    assert len(json.loads(said(*check, *only, "gitlab")[1])) == 1
+    (run,) = json.loads(said(*check, *only, "sarif")[1])["runs"]
+    assert [it["ruleId"] for it in run["results"]] == ["MG101"]
+    cases = [case for suite in JUnitXml.fromstring(junit(check, said)) for case in suite]
+    assert len(cases) == 1
+    assert said(*check, *only, "markdown")[1].count("and 18 more") == 1
+
+
+def junit(check: Sequence[str], said: Said) -> bytes:
+    return said(*check, "--select", "MG101", "--format", "junit")[1].encode()
+
+
+def test_a_check_fails_by_what_is_selected(check: Sequence[str], said: Said) -> None:
+    assert said(*check, "--select", "MG101")[0] == 1
+    assert said(*check, "--ignore", "MG")[:2] == (0, "")
+    assert said(*check, "--ignore", "MG1,MG2", "--fail-on", "note")[0] == 0
+
+
+def test_a_report_of_a_check_goes_to_a_file(
+    check: Sequence[str], tmp_path: Path, said: Said
+) -> None:
+    target = tmp_path / "ci" / "check.xml"
+    code, out, _ = said(*check, "--format", "junit", "-o", str(target))
+    assert (code, out) == (1, "")
+    suites: Any = JUnitXml.fromstring(target.read_bytes())
+    assert suites.failures > 0
+
+
+@pytest.mark.parametrize("command", ["remap", "plan"])
+def test_a_table_s_findings(command: str, tmp_path: Path, siren: list[str], said: Said) -> None:
+    words = ["multibot", command, ROVER, "r1", "r2", *siren, "-o", str(tmp_path / "result")]
+    code, out, err = said(*words)
+    assert (code, out) == (0, "")
+    assert "siren: warning: MR101 " in err
+    assert codes(said(*words, "--format", "json")[1]) == ["MR101"]
+    assert said(*words, "--fail-on", "warning")[0] == 1
+    code, _, err = said(*words, "--fail-on", "warning", "--ignore", "MR101")
+    assert (code, err) == (0, "")
+    # The table is written all the same: it shows what the finding is about.
+    assert (tmp_path / "result").stat().st_size > 100

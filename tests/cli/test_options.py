@@ -1,0 +1,377 @@
+"""Options mean the same on every command that has them, and a mistake says what was meant."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import subprocess
+import sys
+from collections import defaultdict
+from collections.abc import Sequence
+from pathlib import Path
+
+import pytest
+from paths import FIXTURES
+
+from multibot_rewrite.catalogue import rules
+from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
+from multibot_rewrite.cli.declared import COMMANDS, PROGRAMS
+from multibot_rewrite.cli.declared.fleet import REMAP_FORMS
+from multibot_rewrite.cli.declared.knowledge import SECTION_TYPES
+from multibot_rewrite.cli.options import Command
+from multibot_rewrite.cli.parser import make_parser, parsed
+from multibot_rewrite.cli.usage import policy, robots, separators
+from multibot_rewrite.cli.values import MAX_DOMAIN
+from multibot_rewrite.graph import environment
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.naming import DEFAULT_LAYOUT, LAYOUTS
+from multibot_rewrite.plural import plural
+from multibot_rewrite.remap.table_formats import FORMS
+from multibot_rewrite.rewriters.vocabulary.grammar import TYPES
+
+ROVER = str(FIXTURES / "robots" / "rover.urdf")
+ALL = {**COMMANDS, **{it.name: it for it in PROGRAMS}}
+EVERY = {"-q", "--quiet", "-v", "--verbose", "--color", "--version", "-h", "--help"}
+OUTPUT = {"-o", "--output"}
+NAMING = {
+    "--layout",
+    "--affix",
+    "--topics",
+    "--separator",
+    "--shared-frames",
+    "--shared-topics",
+    "--groups",
+}
+FINDINGS = {"--select", "--ignore", "--fail-on", "--format"}
+DESCRIPTION = ("urdf-postfix", "urdf-lint", "plan", "remap", "rehearse")
+# The options of a command; `help` has no result.
+HAS = {
+    **{name: EVERY | OUTPUT for name in ALL if name != "help"},
+    "help": EVERY,
+}
+REPORTS = (*DESCRIPTION, "build", "check")
+
+
+def names(command: Command) -> set[str]:
+    return set(make_parser(command).known())
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_command_has_the_options_that_all_have(name: str) -> None:
+    wanted = set(HAS[name])
+    wanted |= NAMING | {"--robots", "--vocabulary"} if name in DESCRIPTION else set()
+    wanted |= FINDINGS if name in REPORTS else set()
+    assert wanted - names(ALL[name]) == set()
+
+
+def test_an_option_has_one_help_wherever_it_is() -> None:
+    texts: dict[str, set[str]] = defaultdict(set)
+    for command in ALL.values():
+        for action in make_parser(command)._actions:
+            for option in action.option_strings:
+                texts[option].add(str(action.help))
+    # What is written is another thing on every command; --stack learns or uses one.
+    own = OUTPUT | {"--form", "--stack", "--diff"}
+    assert [it for it, told in texts.items() if len(told) > 1 and it not in own] == []
+    assert all(text.endswith("missing folders are made") for text in texts["--output"])
+
+
+def test_the_choices_are_those_of_the_modules_that_know_them() -> None:
+    assert ("table", *FORMS, "bridge") == REMAP_FORMS
+    assert SECTION_TYPES == TYPES
+    assert MAX_DOMAIN == environment.MAX_DOMAIN
+    layouts = {name for it in LAYOUTS for name in (it.name, it.short)}
+    for name in DESCRIPTION:
+        (action,) = (
+            it for it in make_parser(ALL[name])._actions if "--layout" in it.option_strings
+        )
+        assert set(action.choices or ()) == layouts
+        assert f"default: {DEFAULT_LAYOUT}" in str(action.help)
+
+
+def given(name: str, *words: str) -> argparse.Namespace:
+    return parsed(make_parser(ALL[name]), words)
+
+
+@pytest.mark.parametrize("name", ["urdf-postfix", "plan", "remap", "rehearse"])
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("a", "b", "c"),
+        ("--robots", "a,b,c"),
+        ("--robots", "a", "--robots", "b,c"),
+        ("a", "--robots", "b, c"),
+        ("a", "x:=1", "b", "--robots=c"),
+    ],
+)
+def test_robots_are_words_or_a_list(name: str, words: Sequence[str]) -> None:
+    assert robots(given(name, ROVER, *words)) == ["a", "b", "c"]
+
+
+@pytest.mark.parametrize("name", DESCRIPTION)
+def test_the_naming_options_mean_the_same_everywhere(name: str) -> None:
+    words = ["--layout", "L2", "--affix", "prefix", "--separator", "link=_,joint=/"]
+    words += ["--shared-frames", "world", "--shared-frames", "odom", "--groups", "rename"]
+    assert policy(given(name, ROVER, *words)) == {
+        "layout": "L2",
+        "affix": "prefix",
+        "separators": {"link": "_", "joint": "/"},
+        "shared_frames": ["world", "odom"],
+        "groups": "rename",
+    }
+    assert policy(given(name, ROVER)) == {}
+
+
+def test_a_separator_alone_is_for_the_names_of_the_description() -> None:
+    found = separators(given("urdf-postfix", "--separator", "_", "--separator", "joint=/"))
+    assert found["joint"] == "/"
+    assert {found[it] for it in ("link", "frame", "sensor", "model", "transmission")} == {"_"}
+    assert not {"topic", "service", "node", "namespace"} & found.keys()
+
+
+def said(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str, str]:
+    """Exit code and output of one of the three programs, run in this process."""
+    programs = {"urdf-postfix": urdf_postfix.main, "urdf-lint": urdf_lint.main}
+    program = programs.get(words[0], multibot.main)
+    capsys.readouterr()
+    try:
+        code = program(words[1:])
+    except SystemExit as end:
+        code = int(str(end.code))
+    return code, *capsys.readouterr()
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        ("multibot chek", "unknown command 'chek'; did you mean 'check'?"),
+        ("multibot remap --layuot L1", "unknown option --layuot; did you mean '--layout'?"),
+        ("urdf-postfix a b --stripp", "unknown option --stripp; did you mean '--strip'?"),
+        ("urdf-lint a --formt json", "unknown option --formt; did you mean '--format'?"),
+        ("multibot check p --format jsno", "'jsno' is not known"),
+        ("multibot check p --format jsno", "did you mean 'json'?"),
+        ("multibot remap a b --form ros_args", "did you mean 'ros-args'?"),
+        ("urdf-postfix a b --layout frames", "did you mean 'frames-per-robot'?"),
+        ("urdf-postfix a b --fail-on eror", "did you mean 'error'?"),
+        ("multibot build --color", "argument --color: expected one argument"),
+        ("urdf-postfix a b --select MB9999", "did you mean 'MB9'?"),
+        ("multibot remap a b --ignore undeclared-link", "did you mean 'MB202'?"),
+        ("multibot explain MB20X", "did you mean 'MB20'?"),
+        ("urdf-postfix --explain rover.urdf:3", "for a line: urdf-postfix --why rover.urdf:3"),
+        ("multibot snapshot --expect /a /b", "unexpected /b; a list is written A,B"),
+        ("urdf-postfix a --separator link=_ frame=_", "write --separator link=_,frame=_"),
+        ("urdf-postfix a b --separator link", "write KIND=SEP, for example link=_"),
+        ("urdf-postfix a b --separator lnk=_", "'link'"),
+        ("multibot help chek", "did you mean 'check'?"),
+        ("multibot plan fleet.yaml --layout L1", "leave out --layout"),
+        ("multibot plan fleet.yaml robot1", "leave out ROBOT"),
+        ("multibot check p --watch --format json", "leave out --select, --ignore and --format"),
+        (f"urdf-postfix {ROVER} r1 --format json", "name a file for the result with -o"),
+        (f"multibot plan {ROVER} r1 --format sarif", "name a file for the result with -o"),
+    ],
+)
+def test_a_mistake_is_one_line_with_a_hint(
+    line: str, hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, out, err = said(capsys, *line.split())
+    assert (code, out, err.count("\n")) == (2, "", 1)
+    assert hint in err
+
+
+def test_an_unknown_layout_is_refused_by_the_library_too() -> None:
+    from multibot_rewrite.naming import make_naming
+
+    with pytest.raises(UsageError, match="frames-per-robot"):
+        make_naming("frames")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("urdf-postfix", ROVER, "r1"),
+        ("urdf-lint", ROVER),
+        ("multibot", "plan", ROVER, "r1"),
+        ("multibot", "remap", ROVER, "r1"),
+        ("multibot", "coverage", ROVER),
+        ("multibot", "vocabulary", "--suggest", ROVER),
+        ("multibot", "explain", "MB202"),
+    ],
+    ids=" ".join,
+)
+def test_o_makes_folders_and_holds_what_would_be_printed(
+    words: Sequence[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, printed, _ = said(capsys, *words)
+    target = tmp_path / "new" / "deep" / "result"
+    assert said(capsys, *words, "-o", str(target))[:2] == (code, "")
+    assert target.read_text() == printed
+    assert said(capsys, *words, "-o", "-")[:2] == (code, printed)
+    code, out, err = said(capsys, *words, "-o", str(target), "-v", "-q")
+    assert (out, "wrote" in err) == ("", False)
+    assert f"wrote {target}" in said(capsys, *words, "-o", str(target), "-v")[2]
+
+
+def test_a_folder_is_not_left_behind_where_nothing_is_written(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    words = ("urdf-postfix", ROVER, "r1", "--changes", str(tmp_path / "file" / "c.json"))
+    assert said(capsys, *words, "-o", str(tmp_path / "new" / "x.urdf"))[0] == 2
+    assert [it.name for it in tmp_path.iterdir()] == ["file"]
+
+
+def test_the_plan_knows_the_names_that_a_rewrite_with_the_same_options_makes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["--affix", "prefix", "--separator", "_", "--shared-frames", "base_footprint"]
+    assert said(capsys, "urdf-postfix", ROVER, "left", *options, "-o", str(tmp_path / "a"))[0] == 0
+    assert 'name="left_base_link"' in (tmp_path / "a").read_text()
+    code, out, _ = said(capsys, "multibot", "plan", ROVER, "left", *options, "--stack", "nav2")
+    assert code == 0
+    assert "left_base_link" in out
+    assert "left_base_footprint" not in out
+
+
+def test_a_vocabulary_reaches_every_command_that_reads_a_description(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    more = tmp_path / "bad.vocab"
+    more.write_text("[plugin acme]\nx uses wheel\n")
+    for words in (["plan", ROVER, "r"], ["remap", ROVER, "r"], ["coverage", ROVER]):
+        code, _, err = said(capsys, "multibot", *words, "--vocabulary", str(more))
+        assert (code, "bad.vocab:2: unknown kind 'wheel'" in err) == (2, True), words
+
+
+# ---------------------------------------------------------------- help, explain, start
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_help_begins_with_an_example_that_the_parser_takes(name: str) -> None:
+    command = ALL[name]
+    text = make_parser(command).format_help()
+    first = command.examples[0].command
+    assert text.index(first) < text.index("\ngeneral:") < text.index("exit codes:")
+    for example in command.examples:
+        program, *words = example.command.partition(" | ")[2].split() or example.command.split()
+        called = COMMANDS[words.pop(0)] if program == "multibot" else ALL[program]
+        assert parsed(make_parser(called), [it.strip("'") for it in words])
+
+
+@pytest.mark.parametrize("width", [60, 100])
+def test_help_is_as_wide_as_the_terminal(width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    text = make_parser(ALL["remap"]).format_help()
+    options = text.partition("\ninput:")[2].partition("\nexit codes:")[0]
+    longest = max(map(len, options.splitlines()))
+    assert width - 12 < longest <= width
+
+
+def test_help_in_colour(capsys: pytest.CaptureFixture[str]) -> None:
+    plain = said(capsys, "multibot", "remap", "--help")[1]
+    painted = said(capsys, "multibot", "remap", "--color", "always", "--help")[1]
+    assert "\033[1mexamples:\033[0m" in painted
+    assert "\033[36m  -o, --output\033[0m PATH" in painted
+    assert "\033" not in plain
+
+
+def test_help_of_a_command_by_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert said(capsys, "multibot", "help", "remap") == said(capsys, "multibot", "remap", "--help")
+    assert said(capsys, "multibot", "help") == said(capsys, "multibot", "--help")
+
+
+def test_every_code_is_explained_by_code_name_and_beginning(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for rule in rules().values():
+        code, out, _ = said(capsys, "multibot", "explain", rule.code)
+        assert (code, out.startswith(f"{rule.code} {rule.name} (")) == (0, True)
+        assert all(text in out for text in (rule.what, rule.why, rule.fix))
+    one = said(capsys, "multibot", "explain", "MB202")
+    assert said(capsys, "multibot", "explain", "undeclared-link") == one
+    assert said(capsys, "urdf-lint", "--explain", "MB202") == one
+    assert said(capsys, "urdf-postfix", "--explain", "MB202") == one
+    group = said(capsys, "multibot", "explain", "MB20")[1]
+    assert group.count("\nWhy: ") == sum(code.startswith("MB20") for code in rules()) > 3
+    listed = said(capsys, "multibot", "explain")[1].splitlines()
+    assert [line.split()[0] for line in listed] == list(rules())
+
+
+def python(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout
+
+
+def test_the_package_is_a_program() -> None:
+    command = [sys.executable, "-m", "multibot_rewrite", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout.startswith("multibot ")
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_help_imports_nothing_heavy(name: str) -> None:
+    """A help text needs the options alone: not the modules that do the work."""
+    module = name.replace("-", "_") if "-" in name else "multibot"
+    words = ["--help"] if "-" in name else [name, "--help"]
+    code = (
+        f"import sys, contextlib\nfrom multibot_rewrite.cli.{module} import main\n"
+        f"with contextlib.suppress(SystemExit): main({words})\n"
+        "print(*sys.modules, file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    there = set(done.stderr.split())
+    assert f"multibot_rewrite.cli.{module}" in there
+    heavy = {"lxml", "yaml", "rich", "json", "xacro", "multibot_rewrite.library"}
+    rooms = {"lint", "graph", "remap", "fleets", "companions", "rewriters", "steps", "checks"}
+    assert there & (heavy | {f"multibot_rewrite.{room}" for room in rooms}) == set()
+
+
+# ---------------------------------------------------------------- counts and colour
+
+
+def test_one_is_not_many(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert (plural(1, "robot"), plural(2, "robot"), plural(0, "file")) == (
+        "1 robot",
+        "2 robots",
+        "0 files",
+    )
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(f"robots:\n  - {{name: robot1, description: {ROVER}}}\n")
+    code, _, err = said(capsys, "multibot", "build", str(fleet), "-o", str(tmp_path / "out"))
+    assert (code, err.startswith("multibot: 1 robot, ")) == (0, True), err
+
+
+@pytest.mark.parametrize(
+    ("environment", "option", "coloured"),
+    [
+        ({}, [], False),
+        ({"FORCE_COLOR": "1"}, [], True),
+        ({"FORCE_COLOR": "1", "NO_COLOR": "1"}, [], False),
+        ({"NO_COLOR": "1"}, ["--color", "always"], True),
+        ({"FORCE_COLOR": "1"}, ["--color", "never"], False),
+    ],
+)
+def test_colour_is_asked_for_or_not(
+    environment: dict[str, str],
+    option: list[str],
+    coloured: bool,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    for name in ("FORCE_COLOR", "NO_COLOR"):
+        monkeypatch.delenv(name, raising=False)
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    lines = (
+        ("urdf-postfix", ROVER, "r", "--diff"),
+        ("urdf-lint", ROVER),
+        ("multibot", "vocabulary", "--type", "block"),
+    )
+    for words in lines:
+        assert ("\033[" in said(capsys, *words, *option)[1]) == coloured, words
+
+
+def test_json_goes_to_a_file_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    target = tmp_path / "lint.json"
+    words = ("urdf-lint", ROVER, "--format", "json", "--color", "always", "-o", str(target))
+    assert said(capsys, *words)[0] == 0
+    assert json.loads(target.read_text())["tool"] == "urdf-lint"
