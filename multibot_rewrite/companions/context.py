@@ -10,7 +10,7 @@ from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileT
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.remap.table import placed
+from multibot_rewrite.remap.targets import placed
 from multibot_rewrite.rewriters.forms import Declared
 
 JAZZY, KILTED = "jazzy", "kilted"

@@ -18,7 +18,7 @@ from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC
-from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.steps.collect import Inventory
 
 NODE = "start_pose"

@@ -23,8 +23,8 @@ from multibot_rewrite.remap.records import (
     ResolvedName,
     Table,
 )
-from multibot_rewrite.remap.table import ACTION_PARTS
 from multibot_rewrite.remap.table_formats import arguments
+from multibot_rewrite.remap.targets import ACTION_PARTS
 
 TF = "tf2_msgs/msg/TFMessage"
 # The types used in place of one that is not installed.

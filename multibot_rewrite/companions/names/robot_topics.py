@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from multibot_rewrite.companions.names.rename_map import RenameMap
 from multibot_rewrite.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.remap.records import ACTION, TOPIC, NodeFacts, Table
-from multibot_rewrite.remap.table import target_of
+from multibot_rewrite.remap.targets import target_of
 from multibot_rewrite.rosnames import check_topic_name, expand
 
 NOTHING: Mapping[str, str] = {}
