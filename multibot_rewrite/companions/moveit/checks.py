@@ -100,7 +100,7 @@ UNDECLARED = declare(
     why="It stays unchanged, and nothing has that name: move_group does not use the limits of "
     "such a joint or the solver of such a group, and sends no trajectory to a controller of such "
     "joints.",
-    fix="Correct the name; the message has the nearest one.",
+    fix="Correct the name; the hint has the nearest one.",
     bad="""\
 joint_limits:
   whel_joint: {max_velocity: 1.0}
