@@ -53,6 +53,7 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
         node=blank(finding.node),
         robot=_SLOT,
         names=tuple(map(blank, finding.names)),
+        others=(),
     )
 
 
