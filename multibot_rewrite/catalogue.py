@@ -70,6 +70,21 @@ HOMES: tuple[Home, ...] = (
         ),
     ),
     Home(
+        "MF2",
+        "RViz",
+        (
+            "companions.rviz.window_checks",
+            "companions.rviz.display_checks",
+            "companions.rviz.name_checks",
+        ),
+    ),
+    Home(
+        "MF3",
+        "MoveIt",
+        ("companions.moveit.checks", "companions.moveit.controller_manager"),
+    ),
+    Home("MF4", "behavior trees and Lua", ("companions.behavior_tree.checks", "companions.lua")),
+    Home(
         "MF5",
         "bridges",
         ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),

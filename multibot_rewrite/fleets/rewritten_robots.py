@@ -10,12 +10,13 @@ from multibot_rewrite.companions.names.rename_map import RenameMap
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
-from multibot_rewrite.job import Job, read_job
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.sources.job import Job, read_job
 from multibot_rewrite.steps.collect import NOTHING
+from multibot_rewrite.steps.template import Template
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
@@ -126,9 +127,7 @@ def _kinds(naming: Naming, graph: bool) -> Naming:
     return naming._replace(separators=kept)
 
 
-def _half(
-    source: bytes, file: str, robot: str, naming: Naming, template: pipeline.Template
-) -> bytes:
+def _half(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))

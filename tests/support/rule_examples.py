@@ -11,6 +11,7 @@ import yaml
 from graph_examples import read_example
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
+from multibot_rewrite.companions.lua import frames_to_edit
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
@@ -18,6 +19,7 @@ from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
@@ -114,7 +116,14 @@ def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     _write(folder, {file: example})
     named = rule.options.get("companions", {})
     assert isinstance(named, dict)
-    return _fleet(rule, {"companions": {**named, key: [file]}}, folder)
+    return _fleet(rule, {"companions": {**named, key: file}}, folder)
+
+
+def lua_by_hand_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The Lua file of a fleet that does not rewrite it."""
+    _write(folder, {"robot.urdf": DESCRIPTION, "fleet.yaml": yaml.safe_dump(FLEET)})
+    (group,) = group_robots(plan_fleet(read_fleet(str(folder / "fleet.yaml"))))
+    return list(frames_to_edit(example, str(folder / "example.lua"), group.context))
 
 
 def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
@@ -164,6 +173,7 @@ def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
+    "lua by hand": lua_by_hand_example,
     "rewrite": rewrite_example,
     "fleet": fleet_example,
     "fleet-urdf": description_example,
