@@ -9,8 +9,8 @@ from multibot_rewrite.findings.rule import Rule
 
 # What an example is written in -> how a Markdown page colours it; XML where it is not here.
 _LANGUAGES = {
-    **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet"), "yaml"),
-    **dict.fromkeys(("graph", "remap"), "text"),
+    **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet", "remap"), "yaml"),
+    "graph": "text",
     "lua": "lua",
 }
 

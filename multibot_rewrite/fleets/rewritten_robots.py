@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
 from multibot_rewrite.library import Rewrite, rewrite_job
@@ -45,6 +46,15 @@ class RewrittenRobot(NamedTuple):
     semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
+
+
+def at_robot(
+    rule: Rule, robot: RewrittenRobot, message: str, hint: str, level: str = ""
+) -> Finding:
+    """A finding of ``rule`` in the robot's line of the fleet file; ``level`` is the rule's if empty."""
+    spec = robot.spec
+    place: dict[str, Any] = {"file": spec.file, "line": spec.line, "column": 1}
+    return rule.finding(message, hint, level=level or rule.level, **place)
 
 
 def read_jobs(

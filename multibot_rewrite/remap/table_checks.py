@@ -98,6 +98,7 @@ nodes:
     options={
         "robots": ("robot1", "left_robot1"),
         "layout": "postfix",
+        "affix": "postfix",
         "separators": {"topic": "_"},
     },
 )
