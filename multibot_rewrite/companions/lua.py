@@ -64,7 +64,7 @@ class Token(NamedTuple):
     at: int
 
 
-class Option(NamedTuple):
+class LuaOption(NamedTuple):
     """An assignment to one of the frames; ``value`` is None if it is not a plain string."""
 
     name: Token
@@ -104,14 +104,14 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
             yield Token(kind, found[0], found.start())
 
 
-def _options(tokens: Sequence[Token]) -> Iterator[Option]:
+def _options(tokens: Sequence[Token]) -> Iterator[LuaOption]:
     for at, token in enumerate(tokens):
         name, behind = _assigned(tokens, at)
         if name not in FRAMES or behind >= len(tokens):
             continue
         value = tokens[behind]
         simple = value.kind == "string" and "\\" not in value.text and _ends(tokens, behind + 1)
-        yield Option(token, value if simple else None)
+        yield LuaOption(token, value if simple else None)
 
 
 def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
@@ -171,7 +171,7 @@ options = {
 )
 
 
-def _change(context: Context, option: Option) -> _Problem | None:
+def _change(context: Context, option: LuaOption) -> _Problem | None:
     there = _splice(context, option.value) if option.value else None
     if option.value is None or there is None:
         return None
@@ -225,7 +225,7 @@ options = {
 )
 
 
-def _about(context: Context, options: Sequence[Option]) -> Iterator[_Problem]:
+def _about(context: Context, options: Sequence[LuaOption]) -> Iterator[_Problem]:
     for name, value in options:
         if value is None:
             if frames_differ(context):
@@ -289,7 +289,7 @@ options = {tracking_frame = "base_link"}
 
 
 def _mentions(
-    context: Context, tokens: Sequence[Token], options: Sequence[Option]
+    context: Context, tokens: Sequence[Token], options: Sequence[LuaOption]
 ) -> Iterator[_Problem]:
     names = renamed_names(context)
     claimed = {it.value.at for it in options if it.value}

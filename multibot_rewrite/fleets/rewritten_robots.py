@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
-from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
@@ -41,8 +41,8 @@ class RewrittenRobot(NamedTuple):
     spec: RobotSpec
     description: bytes
     srdf: bytes
-    names: RenameMap
-    topics: RenameMap
+    names: CompanionNames
+    topics: CompanionNames
     semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
@@ -104,8 +104,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             robot,
             data,
             _final(semantic, robot, naming) if semantic else b"",
-            RenameMap(declared, naming, robot.tag),
-            RenameMap(declared, naming, robot.namespace),
+            CompanionNames(declared, naming, robot.tag),
+            CompanionNames(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag),
             (*text.findings, *(semantic.findings if semantic else ())),

@@ -20,7 +20,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     NodeTable,
-    ResolvedName,
+    EndpointName,
     Table,
 )
 from multibot_rewrite.remap.table_formats import arguments
@@ -90,7 +90,7 @@ def _merged(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
     return found.values()
 
 
-def _stub_endpoint(name: ResolvedName, types: Mapping[str, str]) -> StubEndpoint:
+def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint:
     kind, role, own, type_, *_ = name.endpoint
     # A topic without a role is nearly always a sensor's output.
     return StubEndpoint(

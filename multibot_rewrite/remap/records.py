@@ -83,7 +83,7 @@ class NodeRule(NamedTuple):
     why: str
 
 
-class ResolvedName(NamedTuple):
+class EndpointName(NamedTuple):
     """An endpoint of a robot's node, and its name with the remap rules.
 
     ``node`` and ``name`` are absolute.
@@ -114,5 +114,5 @@ class Table(NamedTuple):
 
     layout: str
     nodes: tuple[NodeTable, ...]
-    names: tuple[ResolvedName, ...]
+    names: tuple[EndpointName, ...]
     problems: tuple[Finding, ...]

@@ -17,7 +17,7 @@ from multibot_rewrite.remap.records import (
     NodeRule,
     NodeTable,
     Pairs,
-    ResolvedName,
+    EndpointName,
     Table,
 )
 from multibot_rewrite.remap.table_checks import PROBE, collisions, unreachable, useless_rules
@@ -70,7 +70,7 @@ def _build(
 def joined(table: Table, other: Table, naming: Naming) -> Table:
     """Two tables of different robots as one; nodes for all robots are in it once."""
     names = tuple(dict.fromkeys((*table.names, *other.names)))
-    by_robot: dict[str, list[ResolvedName]] = {}
+    by_robot: dict[str, list[EndpointName]] = {}
     for name in names:
         if name.robot:
             by_robot.setdefault(name.robot, []).append(name)
@@ -80,10 +80,10 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
     return Table(table.layout, tuple(dict.fromkeys((*table.nodes, *other.nodes))), names, problems)
 
 
-def _renamed(names: Iterable[ResolvedName], robot: str) -> list[ResolvedName]:
+def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:
     """The probe's names, renamed for another robot."""
     return [
-        ResolvedName(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
+        EndpointName(robot, node.replace(PROBE, robot), endpoint, name.replace(PROBE, robot))
         for _, node, endpoint, name in names
     ]
 
@@ -145,7 +145,7 @@ def parsed(rules: Iterable[NodeRule]) -> tuple[RemapRule, ...]:
     return tuple(rule for rule in found if rule is not None)
 
 
-def names_of(pairs: Pairs) -> Iterator[ResolvedName]:
+def names_of(pairs: Pairs) -> Iterator[EndpointName]:
     """The resolved names of these nodes."""
     for node, table in pairs:
         bound = bind(table.name, table.namespace, parsed(table.rules))
@@ -154,4 +154,4 @@ def names_of(pairs: Pairs) -> Iterator[ResolvedName]:
         for endpoint in (it for it in node.endpoints if "<" not in it.name):
             kind = TOPIC if endpoint.kind == ACTION else endpoint.kind
             found = resolve_bound(endpoint.name, kind, bare if endpoint.fixed else bound)
-            yield ResolvedName(table.robot, f"{root}/{table.name}", endpoint, found)
+            yield EndpointName(table.robot, f"{root}/{table.name}", endpoint, found)

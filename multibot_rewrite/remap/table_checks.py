@@ -13,7 +13,7 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     NodeFacts,
     Pairs,
-    ResolvedName,
+    EndpointName,
 )
 from multibot_rewrite.remap.targets import expanded, target_of
 from multibot_rewrite.rosnames import bind, resolve_bound
@@ -104,9 +104,9 @@ nodes:
 )
 
 
-def collisions(names: dict[str, list[ResolvedName]], naming: Naming) -> Iterator[Finding]:
+def collisions(names: dict[str, list[EndpointName]], naming: Naming) -> Iterator[Finding]:
     """Names that two robots would have though they are not shared."""
-    first: dict[tuple[str, str], ResolvedName] = {}
+    first: dict[tuple[str, str], EndpointName] = {}
     reported = set()
     shared = {f"/{topic}" for topic in naming.shared_topics}
     for name in (name for found in names.values() for name in found):
