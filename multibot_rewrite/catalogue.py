@@ -36,6 +36,11 @@ tools (RViz, rqt, ros2 CLI, rosbag2, bridges, teleop, containers, Gazebo's own n
 declared link whose names begin like the link's (`camera_link` has `camera_depth_frame`).
 """
 
+BUILT_INTRO = """\
+`multibot build` checks all files once more before it writes them. Each kind of mistake is reported once
+for a file, with the number of lines.
+"""
+
 
 class Home(NamedTuple):
     """Rules whose codes begin with ``start``, and the modules (below the package) that declare them.
@@ -65,6 +70,33 @@ HOMES: tuple[Home, ...] = (
         ),
     ),
     Home(
+        "MF2",
+        "RViz",
+        (
+            "companions.rviz.window_checks",
+            "companions.rviz.display_checks",
+            "companions.rviz.name_checks",
+        ),
+    ),
+    Home(
+        "MF3",
+        "MoveIt",
+        ("companions.moveit.checks", "companions.moveit.controller_manager"),
+    ),
+    Home("MF4", "behavior trees and Lua", ("companions.behavior_tree.checks", "companions.lua")),
+    Home(
+        "MF5",
+        "bridges",
+        ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),
+    ),
+    Home(
+        "MF6",
+        "what was built",
+        ("fleets.consistency", "fleets.value_checks", "fleets.tf_conflicts"),
+        BUILT_INTRO,
+    ),
+    Home("MF7", "start poses and spawning", ("fleets.start_poses", "fleets.spawn")),
+    Home(
         "MG1",
         "nodes, topics and services",
         (
@@ -77,6 +109,7 @@ HOMES: tuple[Home, ...] = (
         GRAPH_INTRO,
     ),
     Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
+    Home("MR1", "remap tables", ("remap.table_checks",)),
 )
 
 

@@ -3,21 +3,51 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.arguments import checked
-from multibot_rewrite.job import Job, Prepared, read_job
 from multibot_rewrite.model import Change, Finding, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
+from multibot_rewrite.sources.job import Job, read_job
 from multibot_rewrite.sources.read import Source
-from multibot_rewrite.steps.collect import collect
+from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.steps.template import Template
 
 if TYPE_CHECKING:
     from multibot_rewrite.reports.explain import Explanation
+
+
+class Prepared:
+    """A job and its template. A copy and a pickle hold the job alone: lxml's elements cannot be
+    copied to another process, and the template is made again when something asks for it."""
+
+    def __init__(self, job: Job) -> None:
+        self.job = job
+
+    @cached_property
+    def template(self) -> Template:
+        """The description ready for any number of robots; raises as ``pipeline.prepare``."""
+        data, file, naming, _, urdf = self.job
+        tree = self.job.tree
+        beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
+        return pipeline.prepare(data, file, naming, tree, beside)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Prepared) and self.job == other.job
+
+    def __hash__(self) -> int:
+        return hash((self.job.file, self.job.data))
+
+    def __repr__(self) -> str:
+        return f"Prepared({self.job.file!r})"
+
+    def __reduce__(self) -> tuple[type[Prepared], tuple[Job]]:
+        return Prepared, (self.job,)
 
 
 class Rewrite(NamedTuple):
@@ -34,7 +64,7 @@ class Rewrite(NamedTuple):
     prepared: Prepared
 
     @property
-    def template(self) -> pipeline.Template:
+    def template(self) -> Template:
         """What the text was made from. A copy makes it again: it raises as ``rewrite`` does where
         a vocabulary file is gone."""
         return self.prepared.template

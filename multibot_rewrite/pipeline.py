@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
-from multibot_rewrite.checks.mentions import find_mentions
+from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
+from multibot_rewrite.checks.problem import to_findings
 from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -16,26 +17,11 @@ from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
-from multibot_rewrite.steps.plan import Plan, make_plan
+from multibot_rewrite.steps.plan import make_plan
 from multibot_rewrite.steps.renames import RenameMap, make_renames, respelled_names
 from multibot_rewrite.steps.strip import strip_edits
+from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
-
-# Kinds whose names are looked for in values without a site.
-MENTIONED = ("link", "joint")
-
-
-class Template(NamedTuple):
-    """A description ready for any number of robots: parsed, planned and cut once."""
-
-    inventory: Inventory
-    plan: Plan
-    values: list[str]
-    pieces: list[bytes]
-    findings: list[Finding]
-    naming: Naming
-    tree: Tree
-    urdf_declarations: Declared
 
 
 def prepare(
@@ -56,11 +42,6 @@ def prepare(
     return Template(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
 
 
-def declarations(source: bytes, file: str, tree: Tree) -> Declared:
-    """What a description declares, by kind and name."""
-    return collect(read_document(source, file), tree).declared
-
-
 def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
     """An SRDF names what its URDF declares: neither makes sense without the other."""
     file = inventory.document.file
@@ -78,10 +59,14 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     """
     inventory, plan, values, *_ = prepared
     renames = plan.renames
-    found = checks.collisions(inventory, renames, robots)
-    found += checks.meeting(inventory, renames, overlap(prepared.naming, robots))
-    found += checks.already_rewritten(inventory, renames, robots, again)
-    _stop_on_errors(found)
+    document = inventory.document
+    taken = checks.taken_names(inventory, renames, robots)
+    whole = chain(
+        checks.meeting(inventory, renames, overlap(prepared.naming, robots)),
+        checks.already_rewritten(inventory, renames, robots, again),
+    )
+    at_start = to_findings(document, whole, ERROR, of_file=True)
+    _stop_on_errors([*to_findings(document, taken, ERROR), *at_start])
     for number, robot in enumerate(robots):
         output = fill(prepared.pieces, robot)
         if number == 0:

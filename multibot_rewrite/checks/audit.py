@@ -3,23 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
+
+from lxml.etree import _Element
 
 from multibot_rewrite.checks.hazards import hazards
+from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.references import (
     ambiguous,
     doubtful,
     duplicates,
     loose_ends,
-    remarks,
+    undeclared_names,
 )
-from multibot_rewrite.checks.remarks import Remark, to_findings
 from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.document import Document, finding
+from multibot_rewrite.steps.document import Document
 from multibot_rewrite.steps.renames import RenameMap
 
 __all__ = ["audit", "is_unknown", "unknown_hardware", "unknown_plugins"]
@@ -29,8 +32,8 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
     """All findings that do not depend on the robot's name, in source order."""
     document = inventory.document
     found = [
-        *leftover_xacro(inventory),
-        *worlds(inventory),
+        *to_findings(document, leftover_xacro(inventory), ERROR),
+        *to_findings(document, worlds(inventory), ERROR),
         *to_findings(document, duplicates(inventory), ERROR),
         *to_findings(document, undeclared(inventory, renames.naming), WARNING),
         *to_findings(document, ambiguous(inventory), WARNING),
@@ -41,31 +44,28 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 
 
-def leftover_xacro(inventory: Inventory) -> Iterator[Finding]:
-    """Elements and substitutions that only xacro understands."""
+def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
+    """The first element or substitution that only xacro understands."""
     document = inventory.document
     source = document.source
     hint = "expand it first: name the file ….xacro, or run xacro"
-    elements = document.root.iter("*") if uses_xacro(document) else iter(())
-    tags = ((str(e.tag), start) for e, start in zip(elements, document.starts, strict=False))
-    tag, start = next(((tag, start) for tag, start in tags if "/xacro}" in tag), ("", 0))
-    if tag:
-        message = f"xacro element <{tag.rpartition('}')[2]}>"
-        yield finding(document, start, "MB105", ERROR, message, hint)
+    elements = document.elements if uses_xacro(document) else ()
+    element = next((it for it in elements if "/xacro}" in str(it.tag)), None)
+    if element is not None:
+        message = f"xacro element <{str(element.tag).rpartition('}')[2]}>"
+        yield Problem(element, message, None, hint, (), "MB105")
     elif b"${" in source or b"$(arg" in source:
-        value, start = next(_substitutions(document), ("", 0))
-        if value:
-            message = f"xacro substitution {value!r}"
-            yield finding(document, start, "MB105", ERROR, message, hint)
+        for element, value in islice(_substitutions(document), 1):
+            yield Problem(element, f"xacro substitution {value!r}", None, hint, (), "MB105")
 
 
-def _substitutions(document: Document) -> Iterator[tuple[str, int]]:
-    """Values that hold one, claimed or not, and their elements; comments do not count."""
-    for element, start in zip(document.root.iter("*"), document.starts, strict=True):
+def _substitutions(document: Document) -> Iterator[tuple[_Element, str]]:
+    """Elements and values that hold one, claimed or not; comments do not count."""
+    for element in document.elements:
         values = (*element.values(), element.text or "", *(c.tail or "" for c in element))
         for value in values:
             if "${" in value or "$(arg" in value:
-                yield " ".join(str(value).split()), start
+                yield element, " ".join(str(value).split())
 
 
 def uses_xacro(document: Document) -> bool:
@@ -75,21 +75,19 @@ def uses_xacro(document: Document) -> bool:
     return any(prefix.encode() in document.source for prefix in prefixes | {"<xacro:"})
 
 
-def worlds(inventory: Inventory) -> Iterator[Finding]:
+def worlds(inventory: Inventory) -> Iterator[Problem]:
     """A world holds several models: it is not known which one is the robot."""
-    document = inventory.document
-    starts = zip(document.root.iter("*"), document.starts, strict=True)
-    for element, start in starts if document.root.tag == "sdf" else ():
-        if element.tag == "world":
-            message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
-            hint = "give the model.sdf of the robot, and <include> the results in the world"
-            yield finding(document, start, "MB109", ERROR, message, hint)
+    root = inventory.document.root
+    for element in root.iter("world") if root.tag == "sdf" else ():
+        message = f"world {element.get('name', '')!r} cannot be rewritten for one robot"
+        hint = "give the model.sdf of the robot, and <include> the results in the world"
+        yield Problem(element, message, None, hint, (), "MB109")
 
 
-def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def undeclared(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Uses of a link or joint that nothing declares: they are not renamed."""
     loose = loose_ends(doubtful(inventory), inventory.declared, naming.shared_frames)
-    for it in remarks(loose, inventory.declared):
+    for it in undeclared_names(loose, inventory.declared):
         yield it._replace(message=f"{it.message}: it is not renamed")
 
 
@@ -98,7 +96,7 @@ def is_unknown(section: VocabularySection) -> bool:
     return section.select == "plugin" or section.names[0] == ANY_WITH_ROS
 
 
-def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
+def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Plugins no section knows: what their parameters name can only be guessed."""
     known = {}
     for host in inventory.hosts:
@@ -109,17 +107,12 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
         if name not in known:
             known[name] = nearest(library_key(name), tree.vocabulary.names("plugin"))
         near = known[name]
-        yield Remark(
-            host.element,
-            host.start,
-            None,
-            "MB902",
-            f"plugin {name!r} is not in the vocabulary: its own parameters are not renamed",
-            f"did you mean {near!r}?" if near else "",
-        )
+        message = f"plugin {name!r} is not in the vocabulary: its own parameters are not renamed"
+        hint = f"did you mean {near!r}?" if near else ""
+        yield Problem(host.element, message, None, hint, (), "MB902")
 
 
-def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
+def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
     for host in inventory.hosts:
         section = host.node.section
@@ -129,11 +122,8 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Remark]:
         if not name or host.element.find("hardware/param") is None:
             continue
         near = nearest(name, tree.vocabulary.names("hardware"))
-        yield Remark(
-            host.element,
-            host.start,
-            None,
-            "MB903",
-            f"hardware class {name!r} is not in the vocabulary: its own parameters are not renamed",
-            f"did you mean {near!r}?" if near else "",
+        message = (
+            f"hardware class {name!r} is not in the vocabulary: its own parameters are not renamed"
         )
+        hint = f"did you mean {near!r}?" if near else ""
+        yield Problem(host.element, message, None, hint, (), "MB903")

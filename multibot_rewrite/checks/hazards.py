@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from functools import partial
 
-from multibot_rewrite.checks.remarks import Remark, about, to_findings
+from multibot_rewrite.checks.problem import Problem, about, to_findings
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import (
     FRAME_KINDS,
@@ -28,11 +28,11 @@ def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Finding]:
     of_names = (hardwired, outside_frames, reordered)
     found = [hazard(inventory, renames.naming) for hazard in of_naming]
     found += [hazard(inventory, renames) for hazard in of_names]
-    for remarks in found:
-        yield from to_findings(inventory.document, remarks, WARNING)
+    for problems in found:
+        yield from to_findings(inventory.document, problems, WARNING)
 
 
-def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Parameters that the consumer puts in front of names: they cannot hold a postfix."""
     if naming.affix == PREFIX or "sensor" not in naming.separators:
         return
@@ -45,7 +45,7 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             yield about(claim, "MB422", message, "use --affix prefix")
 
 
-def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Frames written with a leading slash: kept, but tf2 look-ups reject them (buffer_core.cpp)."""
     for claim in inventory.claims:
         kinds = claim.site.kinds
@@ -56,7 +56,7 @@ def leading_slashes(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             yield about(claim, "MB301", message, "drop the slash")
 
 
-def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """A rule of the file that takes a plugin off the one /tf which the layout wants."""
     for claim in inventory.claims if not naming.layout.tf_per_robot else ():
         rule = split_remap(claim.value) if claim.site.form == "remap" else None
@@ -66,7 +66,7 @@ def moved_tf(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             yield about(claim, "MB423", message, hint)
 
 
-def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Consumers that find things by bare name in the whole world, where those names stay bare."""
     declared = {claim.site.kinds[0] for claim in inventory.claims if claim.site.role == "declares"}
     for section, host in _known_hosts(inventory):
@@ -80,7 +80,7 @@ def bare_lookups(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             yield _host(host, "MB425", message, hint)
 
 
-def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
+def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     """Remap rules that hold for every node of the process keep robots apart only by namespaces
     (gazebo_ros2_control_plugin.cpp and gz_ros2_control_plugin.cpp set the global arguments)."""
     if naming.topics != NAMESPACE:
@@ -103,7 +103,7 @@ def process_wide(inventory: Inventory, naming: Naming) -> Iterator[Remark]:
             yield about(claim, "MB426", message, hint)
 
 
-def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
+def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """Plugins whose code looks for a literal name: under another one they find nothing."""
     for section, host in _known_hosts(inventory):
         for entry in section.hardwired:
@@ -114,8 +114,8 @@ def hardwired(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
                 yield _host(host, "MB428", message, hint)
 
 
-def _host(host: Host, code: str, message: str, hint: str) -> Remark:
-    return Remark(host.element, host.start, None, code, message, hint)
+def _host(host: Host, code: str, message: str, hint: str) -> Problem:
+    return Problem(host.element, message, None, hint, (), code)
 
 
 def _holds_for_all(section: VocabularySection | None) -> bool:
@@ -128,8 +128,8 @@ def _known_hosts(inventory: Inventory) -> Iterator[tuple[VocabularySection, Host
             yield host.node.section, host
 
 
-def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
-    """A frame that an SRDF fixes its robot to, and that is spelled as if the robot had it."""
+def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
+    """A frame that an SRDF fixes its robot to, and that is renamed for each robot."""
     for claim, spelling in zip(inventory.claims, renames.values, strict=True):
         if claim.site.path != "virtual_joint@parent_frame" or claim.element.get("type") != "fixed":
             continue
@@ -143,7 +143,7 @@ def outside_frames(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]
                 yield about(claim, "MB427", message, hint)
 
 
-def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Remark]:
+def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """urdfdom sorts sibling joints by name; a postfix can change that order, and with it the order
     of pinocchio's configuration vector."""
     if renames.naming.affix != POSTFIX or "joint" not in renames.naming.separators:

@@ -8,13 +8,15 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import WARNING, Finding, Site
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot
 
+# Kinds whose names are looked for in values without a site.
+MENTIONED = ("link", "joint")
 _BETWEEN = lazy_compile(r":=|::|[\s,;/]+")
 _NUMBERS = lazy_compile(r"[-+0-9.eE\s]*$")
 
@@ -37,9 +39,9 @@ def find_mentions(
     found = []
     for it in unclaimed_mentions(inventory, values, names, tree):
         slot = value_slot(document.source, it.start, it.attribute, it.value)
-        said = remark(it)
+        problem = as_problem(it)
         at = slot[0] if slot else it.start
-        found.append(finding(document, at, said.code, WARNING, said.message, said.hint))
+        found.append(finding(document, at, problem.code, WARNING, problem.message, problem.hint))
     return found
 
 
@@ -117,11 +119,11 @@ def node_of(element: etree._Element, tree: Tree) -> TreeNode | None:
     return node.select(element) if node is not None and node.select is not None else node
 
 
-def remark(mention: Mention) -> Remark:
-    """What to say about one."""
-    element, start, attribute, value, name = mention
+def as_problem(mention: Mention) -> Problem:
+    """The problem of a mention."""
+    element, _, attribute, value, name = mention
     where = f"{element.tag}@{attribute}" if attribute else f"<{element.tag}>"
     text = f"{where} holds {value!r}" if value == name else f"{where} holds {name!r} in {value!r}"
     message = f"unclaimed mention: {text}, which the vocabulary does not know: it is not renamed"
     hint = "add a line to a vocabulary file: a uses/declares site, or keep"
-    return Remark(element, start, attribute, "MB901", message, hint)
+    return Problem(element, message, attribute, hint, (), "MB901")

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.checks.remarks import Remark, about
+from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.nearest import did_you_mean
@@ -77,8 +77,8 @@ def loose_ends(
                 yield Loose(claim, part)
 
 
-def remarks(loose: Iterable[Loose], declared: Declared) -> Iterator[Remark]:
-    """A remark for each, with the code for where it is."""
+def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Problem]:
+    """A problem for each, with the code for where it is."""
     hints: dict[str, str] = {}
     for it in loose:
         claim, part = it
@@ -132,8 +132,8 @@ def repeated(inventory: Inventory) -> Iterator[tuple[Claim, Claim]]:
             yield claim, first
 
 
-def duplicates(inventory: Inventory) -> Iterator[Remark]:
-    """The same as remarks."""
+def duplicates(inventory: Inventory) -> Iterator[Problem]:
+    """The same as problems."""
     source = inventory.document.source
     for claim, first in repeated(inventory):
         code = "MB806" if claim.site.section == SRDF_ROBOT else "MB201"
@@ -147,7 +147,7 @@ def _scope(element: _Element) -> _Element | None:
     return next(element.iterancestors("model", "robot"), None)
 
 
-def ambiguous(inventory: Inventory) -> Iterator[Remark]:
+def ambiguous(inventory: Inventory) -> Iterator[Problem]:
     """A ``<gazebo reference>`` that is the name of a link and of a joint: the link is taken."""
     links, joints = inventory.declared["link"], inventory.declared["joint"]
     # Few robots have such a pair, so few look at every claim.

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator
 
-from multibot_rewrite.checks.remarks import Remark, about, to_findings
+from multibot_rewrite.checks.problem import Problem, about
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import ERROR, Claim, Finding
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.forms import Declared
@@ -14,11 +15,47 @@ from multibot_rewrite.steps.document import finding
 from multibot_rewrite.steps.inserted import markers
 from multibot_rewrite.steps.renames import NameKey, RenameMap
 
+strip_other_robot = declare(
+    "MB107",
+    "strip-other-robot",
+    ERROR,
+    what="`--strip` is to remove a robot's name from the file, but a name in it, or in the URDF of an "
+    "SRDF, does not have that robot's name.",
+    why="The file was made for another robot or with other options. Removing the name from some "
+    "names only would leave a description that is neither the source nor the robot's.",
+    fix="Use the robot and the options with which the file was made.",
+    bad='<robot name="r_robot1">\n  <link name="base_link/robot2"/>\n</robot>\n',
+    good='<robot name="r_robot1">\n  <link name="base_link/robot1"/>\n</robot>\n',
+    line=2,
+    options={"strip": "robot1"},
+    formats=("rewrite",),
+)
+
+strip_other_options = declare(
+    "MB108",
+    "strip-other-options",
+    ERROR,
+    what="`--strip` removed the robot's name, but rewriting the result does not give the file again.",
+    why="The file was made with other options, or was edited after it: the result would not be its "
+    "source.",
+    fix="Use the options with which the file was made, and undo edits that were made after it.",
+    bad='<robot name="r_robot1">\n'
+    '  <link name="base_link/robot1"/>\n'
+    '  <gazebo reference="base_link"/>\n'
+    "</robot>\n",
+    good='<robot name="r_robot1">\n'
+    '  <link name="base_link/robot1"/>\n'
+    '  <gazebo reference="base_link/robot1"/>\n'
+    "</robot>\n",
+    options={"strip": "robot1"},
+    formats=("rewrite",),
+)
+
 
 def already_rewritten(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str], again: bool
-) -> Iterator[Finding]:
-    """Refuse a document that carries a robot's affix on every name, or text inserted for it.
+) -> Iterator[Problem]:
+    """A document that has a robot's affix on every name, or text that was inserted for it.
 
     ``again`` rewrites it once more, but not where it has inserted elements of the same robot.
     """
@@ -28,7 +65,7 @@ def already_rewritten(
             message = f"the description is already rewritten for {robot}"
             more = "" if again else ", or rewrite it once more with --again"
             hint = f"undo it with --strip{more}"
-            yield finding(inventory.document, 0, "MB106", ERROR, message, hint)
+            yield Problem(inventory.document.root, message, None, hint, (), "MB106")
 
 
 def _spelled_for(renames: RenameMap, robot: str) -> bool:
@@ -46,15 +83,10 @@ def _changing(renames: RenameMap) -> Iterator[NameKey]:
     return ((it.kind, it.text, it.namespaced) for value in renames.values for it in value)
 
 
-def collisions(inventory: Inventory, renames: RenameMap, robots: Iterable[str]) -> list[Finding]:
-    """Names that stay as they are and are what another name becomes for some robot."""
-    return list(to_findings(inventory.document, taken_names(inventory, renames, robots), ERROR))
-
-
 def taken_names(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str]
-) -> Iterator[Remark]:
-    """The same as remarks."""
+) -> Iterator[Problem]:
+    """Names that stay as they are and are what another name becomes for some robot."""
     kept = list(_kept(inventory, renames))
     for robot in robots if kept else ():
         for kind, name, claim in kept:
@@ -93,17 +125,15 @@ def _stem(naming: Naming, robot: str, kind: str, name: str) -> str:
 
 def meeting(
     inventory: Inventory, renames: RenameMap, pairs: Collection[tuple[str, str, str]]
-) -> list[Finding]:
+) -> Iterator[Problem]:
     """Names of two robots that become the same; ``pairs`` are from ``naming.overlap``."""
     names = set(_changing(renames)) if pairs else set()
-    found = []
     for robot, other, _ in pairs:
         ours = {(name[0], renames.spelled(robot, *name)) for name in names}
         for kind, both in sorted(ours & {(n[0], renames.spelled(other, *n)) for n in names}):
             message = f"{robot} and {other} would both have a {kind} {both!r}"
             hint = "rename a robot or choose another separator"
-            found.append(finding(inventory.document, 0, "MB421", ERROR, message, hint))
-    return found
+            yield Problem(inventory.document.root, message, None, hint, (), "MB421")
 
 
 def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
@@ -112,7 +142,7 @@ def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[
         if changes and removal(renames.naming, robot, kind, name) is None:
             message = f"{kind} {name!r} does not have the name of {robot}"
             hint = "give --strip the robot and the options that the file was made with"
-            return [finding(inventory.document, claim.start, "MB107", ERROR, message, hint)]
+            return [_other_robot(inventory, claim.start, message, hint)]
     return []
 
 
@@ -127,12 +157,16 @@ def other_urdf(
             if changes and removal(naming, robot, kind, name) is None:
                 message = f"{kind} {name!r} of the URDF does not have the name of {robot}"
                 hint = "give --urdf the URDF as it was rewritten with the same options"
-                return [finding(inventory.document, 0, "MB107", ERROR, message, hint)]
+                return [_other_robot(inventory, 0, message, hint)]
     return []
+
+
+def _other_robot(inventory: Inventory, offset: int, message: str, hint: str) -> Finding:
+    return finding(inventory.document, offset, strip_other_robot.code, ERROR, message, hint)
 
 
 def other_options(inventory: Inventory, robot: str) -> Finding:
     """The stripped text, rewritten again, is not the file."""
     message = f"a rewrite for {robot} with these options does not give this file"
     hint = "give --strip the options the file was made with"
-    return finding(inventory.document, 0, "MB108", ERROR, message, hint)
+    return finding(inventory.document, 0, strip_other_options.code, ERROR, message, hint)

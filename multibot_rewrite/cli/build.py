@@ -6,7 +6,6 @@ import argparse
 import os
 from collections.abc import Iterable, Mapping, Sequence
 
-from multibot_rewrite.cli.findings import from_table
 from multibot_rewrite.cli.fleet import words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
@@ -50,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
     """Report what is wrong with the files and the remap table; does it stop the build?"""
-    both = {*found, *map(from_table, plan.fleet.table.problems)}
+    both = {*found, *plan.fleet.table.problems}
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
     about = About([options.fleet], words_of(plan.fleet))
     return report_beside(options, chosen(options, ordered), about)

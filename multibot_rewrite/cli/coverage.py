@@ -46,7 +46,7 @@ class Unreadable(NamedTuple):
     reason: str
 
 
-class Report(NamedTuple):
+class CoverageReport(NamedTuple):
     """Everything that is reported."""
 
     total: Survey
@@ -68,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
     arguments = xacro_args(options)
     found = _surveys(watched(paths, len(paths), "reading"), tree, arguments, unreadable)
     total = add(found)
-    report = Report(total, unreadable, explain(total, reasons))
+    report = CoverageReport(total, unreadable, explain(total, reasons))
     if options.form == JSON:
         deliver(options, json_bytes(as_json(report)))
     else:
@@ -98,7 +98,7 @@ def _surveys(
             unreadable.append(Unreadable(path, str(error)))
 
 
-def _verdict(report: Report, options: argparse.Namespace) -> int:
+def _verdict(report: CoverageReport, options: argparse.Namespace) -> int:
     """The exit code, and why on standard error."""
     if not report.total.files:
         say("none of the files can be read", PROGRAM)
@@ -121,7 +121,7 @@ def _percentage(count: int, known: int) -> float:
     return math.floor(1000 * known / count) / 10 if count else 100.0
 
 
-def as_json(report: Report) -> dict[str, object]:
+def as_json(report: CoverageReport) -> dict[str, object]:
     """The report as ``--form json`` writes it; docs/coverage.md describes it."""
     exact = report.exact
     return {
@@ -174,11 +174,11 @@ def _unknown(total: Survey, type_: str) -> list[tuple[Loaded, Tally]]:
     return ranked((it, t) for it, t in total.loaded.items() if it.type == type_ and not it.known)
 
 
-def _inside(report: Report) -> list[tuple[MentionPlace, Tally]]:
+def _inside(report: CoverageReport) -> list[tuple[MentionPlace, Tally]]:
     return ranked(pair for pair in report.total.mentions.items() if not pair[0].exact)
 
 
-def _parts(report: Report, top: int | None) -> Iterator[str | Grid]:
+def _parts(report: CoverageReport, top: int | None) -> Iterator[str | Grid]:
     """What is printed; ``top`` is how many rows a table has at most."""
     total, exact = report.total, report.exact
     yield f"{plural(total.files, 'file')} read, {len(report.unreadable)} cannot be read"

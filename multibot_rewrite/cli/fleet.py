@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from multibot_rewrite.cli.findings import from_table
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -87,7 +86,7 @@ def words_of(made: Fleet) -> dict[str, str]:
 
 def findings(options: argparse.Namespace, made: Fleet) -> list[Finding]:
     """What is wrong with the table, as far as it is selected."""
-    return chosen(options, map(from_table, made.table.problems))
+    return chosen(options, made.table.problems)
 
 
 def report_table(options: argparse.Namespace, made: Fleet) -> bool:

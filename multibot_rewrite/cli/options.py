@@ -22,7 +22,7 @@ class Option(NamedTuple):
     keywords: Mapping[str, Any] = NOTHING
 
 
-class Group(NamedTuple):
+class OptionGroup(NamedTuple):
     """Options that a help text shows together, under ``title``."""
 
     title: str
@@ -49,7 +49,7 @@ class Command(NamedTuple):
     usage: str
     about: str
     examples: tuple[Example, ...]
-    groups: tuple[Group, ...]
+    groups: tuple[OptionGroup, ...]
     exit_codes: str
     more: str = ""
     fail_on: str = ""
@@ -103,6 +103,6 @@ def form(known: tuple[str, ...], about: str) -> Option:
     return choice("--form", "FORM", known, text, default=known[0])
 
 
-def output_group(*options: Option) -> Group:
+def output_group(*options: Option) -> OptionGroup:
     """The options about what is written."""
-    return Group("output", options)
+    return OptionGroup("output", options)

@@ -10,7 +10,7 @@ from functools import partial
 from itertools import pairwise, takewhile
 from typing import NoReturn
 
-from multibot_rewrite.cli.options import Command, Example, Group
+from multibot_rewrite.cli.options import Command, Example, OptionGroup
 from multibot_rewrite.cli.terminal import AUTO, is_coloured
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.nearest import did_you_mean_one_of
@@ -119,7 +119,7 @@ def wrapped(text: str, width: int = 80) -> str:
     return "\n".join(lines)
 
 
-def _add(parser: argparse.ArgumentParser, group: Group) -> None:
+def _add(parser: argparse.ArgumentParser, group: OptionGroup) -> None:
     section = parser.add_argument_group(group.title)
     for option in group.options:
         text = option.help.replace("%", "%%")

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.remap.table import placed
+from multibot_rewrite.remap.targets import placed
 from multibot_rewrite.rewriters.forms import Declared
 
 JAZZY, KILTED = "jazzy", "kilted"
@@ -22,8 +22,8 @@ class Context(NamedTuple):
     under; nodes that serve all robots keep theirs. ``distro`` is the ROS release.
     """
 
-    names: RenameMap
-    topics: RenameMap
+    names: CompanionNames
+    topics: CompanionNames
     nodes: Mapping[str, str]
     distro: str = JAZZY
 
@@ -40,7 +40,7 @@ def make_context(
 ) -> Context:
     """The context of a description (not rewritten) and the nodes that its robots run."""
     nodes = {it.name: f"/{it.name}" if it.shared else full_name(it.name, naming) for it in facts}
-    names, topics = (RenameMap(declared, naming, slot) for slot in (TAG_SLOT, NAMESPACE_SLOT))
+    names, topics = (CompanionNames(declared, naming, slot) for slot in (TAG_SLOT, NAMESPACE_SLOT))
     return Context(names, topics, nodes, distro)
 
 

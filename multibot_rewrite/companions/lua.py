@@ -7,7 +7,7 @@ topics are fixed relative names that remap rules move. Comments and other string
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import mentioned
@@ -25,6 +25,7 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice
+from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.model import WARNING, Finding, InputError
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
@@ -63,7 +64,7 @@ class Token(NamedTuple):
     at: int
 
 
-class Option(NamedTuple):
+class LuaOption(NamedTuple):
     """An assignment to one of the frames; ``value`` is None if it is not a plain string."""
 
     name: Token
@@ -72,11 +73,9 @@ class Option(NamedTuple):
 
 def frames_to_edit(text: str, file: str, context: Context) -> tuple[Finding, ...]:
     """The frames of a Lua file to edit by hand for a robot; ``rewrite_lua`` edits them instead."""
-    changes = (_change(context, it) for it in _options(list(tokens_of(text, file))))
-    found = [_finding(text, file, at, *draft) for at, draft in filter(None, changes)]
-    return tuple(
-        sorted((*found, *rewrite_lua(text, file, context).findings), key=lambda it: it[5:])
-    )
+    problems = (_change(context, it) for it in _options(list(tokens_of(text, file))))
+    found = [_finding(text, file, it) for it in problems if it]
+    return _in_order([*found, *rewrite_lua(text, file, context).findings])
 
 
 def rewrite_lua(text: str, file: str, context: Context) -> Companion:
@@ -90,8 +89,8 @@ def rewrite_lua(text: str, file: str, context: Context) -> Companion:
     options = list(_options(tokens))
     splices = [_splice(context, it.value) for it in options if it.value]
     found = [*_about(context, options), *_includes(tokens), *_mentions(context, tokens, options)]
-    placed = (_finding(text, file, at, *draft) for at, draft in sorted(found))
-    return Companion(make_template(text, [it for it in splices if it]), tuple(placed))
+    template = make_template(text, [it for it in splices if it])
+    return Companion(template, _in_order(_finding(text, file, it) for it in found))
 
 
 def tokens_of(text: str, file: str) -> Iterator[Token]:
@@ -105,14 +104,14 @@ def tokens_of(text: str, file: str) -> Iterator[Token]:
             yield Token(kind, found[0], found.start())
 
 
-def _options(tokens: Sequence[Token]) -> Iterator[Option]:
+def _options(tokens: Sequence[Token]) -> Iterator[LuaOption]:
     for at, token in enumerate(tokens):
         name, behind = _assigned(tokens, at)
         if name not in FRAMES or behind >= len(tokens):
             continue
         value = tokens[behind]
         simple = value.kind == "string" and "\\" not in value.text and _ends(tokens, behind + 1)
-        yield Option(token, value if simple else None)
+        yield LuaOption(token, value if simple else None)
 
 
 def _assigned(tokens: Sequence[Token], at: int) -> tuple[str, int]:
@@ -139,43 +138,159 @@ def _splice(context: Context, value: Token) -> Splice | None:
     return Splice(value.at + 1, end, new) if new != old else None
 
 
-_Draft = tuple[int, tuple[str, str, str]]
+class _Problem(NamedTuple):
+    """What is wrong at a place of the text."""
+
+    at: int
+    rule: Rule
+    message: str
+    hint: str
 
 
-def _change(context: Context, option: Option) -> _Draft | None:
+FRAME_TO_EDIT = declare(
+    "MF455",
+    "lua-frame-same-for-all",
+    WARNING,
+    what="A frame is the same for all robots, and the file is not rewritten.",
+    why="Cartographer publishes transforms between these frames. Two robots would send them under "
+    "one name to /tf, and tf2 would jump between the two.",
+    fix="Write the name that the hint has, with the robot's prefix or postfix, or give the file "
+    "to the build under lua.",
+    bad="""\
+options = {
+  tracking_frame = "base_link",
+}
+""",
+    good="""\
+options = {
+  map_frame = "map",
+}
+""",
+    line=2,
+    formats=("lua by hand", "lua"),
+)
+
+
+def _change(context: Context, option: LuaOption) -> _Problem | None:
     there = _splice(context, option.value) if option.value else None
     if option.value is None or there is None:
         return None
     new = there.new.replace(TAG_SLOT, "ROBOT")
     message = f"{option.name.text} = {option.value.text} is the same for all robots"
     hint = f"write {new!r}, with the robot's prefix or postfix instead of ROBOT"
-    return option.value.at, ("MF455", message, hint)
+    return _Problem(option.value.at, FRAME_TO_EDIT, message, hint)
 
 
-def _about(context: Context, options: Sequence[Option]) -> Iterator[_Draft]:
+NOT_PLAIN = declare(
+    "MF451",
+    "lua-frame-not-plain",
+    WARNING,
+    what="A frame of Cartographer is not a plain string, so it stays unchanged.",
+    why="Its value is known only when Lua runs the file. If it is the same for each robot, all "
+    "robots publish the same frame.",
+    fix="Write the name in quotes, as for a single robot.",
+    bad="""\
+options = {
+  tracking_frame = "base" .. "_link",
+}
+""",
+    good="""\
+options = {
+  tracking_frame = "base_link",
+}
+""",
+    line=2,
+    formats=("lua",),
+)
+UNDECLARED_FRAME = declare(
+    "MF452",
+    "lua-undeclared-frame",
+    WARNING,
+    what="A frame of Cartographer is neither in the description nor published by a known node.",
+    why="Cartographer waits for the transform to tracking_frame and published_frame. It drops all "
+    "sensor data if nobody publishes it.",
+    fix="Correct the name, or let a node publish the frame with the robot's name.",
+    bad="""\
+options = {
+  tracking_frame = "base_lnk",
+}
+""",
+    good="""\
+options = {
+  tracking_frame = "base_link",
+}
+""",
+    line=2,
+    formats=("lua",),
+)
+
+
+def _about(context: Context, options: Sequence[LuaOption]) -> Iterator[_Problem]:
     for name, value in options:
         if value is None:
             if frames_differ(context):
                 message = f"{name.text} is not a plain string, so it stays unchanged"
                 hint = "each robot needs its own frame here; write the name in quotes"
-                yield name.at, ("MF451", message, hint)
+                yield _Problem(name.at, NOT_PLAIN, message, hint)
         elif is_undeclared(context, "frame", value.text[1:-1]):
-            yield value.at, ("MF452", *undeclared_message(context, "frame", value.text[1:-1]))
+            about = undeclared_message(context, "frame", value.text[1:-1])
+            yield _Problem(value.at, UNDECLARED_FRAME, *about)
 
 
-def _includes(tokens: Sequence[Token]) -> Iterator[_Draft]:
+INCLUDE = declare(
+    "MF453",
+    "lua-include-not-checked",
+    WARNING,
+    what="A Lua file includes another one that is not a file of Cartographer itself.",
+    why="The included file is not checked and not rewritten with this one. If it sets frames, "
+    "they are the same for all robots.",
+    fix="If it sets frames, list it under lua as well.",
+    bad="""\
+include "my_frames.lua"
+options = {tracking_frame = "base_link"}
+""",
+    good="""\
+include "map_builder.lua"
+options = {tracking_frame = "base_link"}
+""",
+    formats=("lua",),
+)
+
+
+def _includes(tokens: Sequence[Token]) -> Iterator[_Problem]:
     for at, token in enumerate(tokens):
         behind = [it for it in tokens[at + 1 : at + 3] if it.text != "("][:1]
         if token.text != "include" or not behind or behind[0].kind not in ("string", "long"):
             continue
         if behind[0].text.strip("\"'[]=") not in OWN_FILES:
             message = f"the included file {behind[0].text} is not checked"
-            yield token.at, ("MF453", message, "if it sets frames, list it under lua as well")
+            hint = "if it sets frames, list it under lua as well"
+            yield _Problem(token.at, INCLUDE, message, hint)
+
+
+OTHER_STRING = declare(
+    "MF454",
+    "lua-name-in-other-string",
+    WARNING,
+    what="A string in a Lua file is a name of the robot, but it is not assigned to a frame of "
+    "Cartographer.",
+    why="It stays unchanged. If the file uses it as a frame later, that frame is the same for all "
+    "robots.",
+    fix="Write the name where the frame is assigned, or rename it by hand if each robot needs its "
+    "own.",
+    bad="""\
+local base = "base_link"
+""",
+    good="""\
+options = {tracking_frame = "base_link"}
+""",
+    formats=("lua",),
+)
 
 
 def _mentions(
-    context: Context, tokens: Sequence[Token], options: Sequence[Option]
-) -> Iterator[_Draft]:
+    context: Context, tokens: Sequence[Token], options: Sequence[LuaOption]
+) -> Iterator[_Problem]:
     names = renamed_names(context)
     claimed = {it.value.at for it in options if it.value}
     for token in tokens:
@@ -185,9 +300,14 @@ def _mentions(
         if is_plain(text) and mentioned(text, names):
             message = f"{text!r} is a name of the robot, but its use here is not known"
             hint = "it stays unchanged; if each robot needs its own, rename it by hand"
-            yield token.at, ("MF454", message, hint)
+            yield _Problem(token.at, OTHER_STRING, message, hint)
 
 
-def _finding(text: str, file: str, at: int, code: str, message: str, hint: str) -> Finding:
+def _finding(text: str, file: str, problem: _Problem) -> Finding:
+    at, rule, message, hint = problem
     line, column = text.count("\n", 0, at) + 1, at - text.rfind("\n", 0, at)
-    return Finding(code, WARNING, message, hint, file, line, column)
+    return rule.finding(message, hint, file=file, line=line, column=column)
+
+
+def _in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    return tuple(sorted(findings, key=lambda it: (it.line, it.column, it.code)))

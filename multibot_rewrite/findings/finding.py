@@ -61,4 +61,13 @@ class Finding(NamedTuple):
 
     def __str__(self) -> str:
         hint = f" ({self.hint})" if self.hint else ""
-        return f"{self.place}: {self.level}: {self.code} {self.message}{hint}"
+        return f"{self.place}: {self.level}: {self.code} {self.message}{same_for(self)}{hint}"
+
+
+def same_for(finding: Finding) -> str:
+    """``; the same for robot2 and 18 more``, empty where it is about one robot."""
+    if not finding.others:
+        return ""
+    first, *more = finding.others
+    rest = f" and {len(more)} more" if more else ""
+    return f"; the same for {first}{rest}"

@@ -53,6 +53,7 @@ def _without(finding: Finding, robot: str, names: Mapping[str, str]) -> Finding:
         node=blank(finding.node),
         robot=_SLOT,
         names=tuple(map(blank, finding.names)),
+        others=(),
     )
 
 
@@ -63,14 +64,7 @@ def _pattern(word: str, *, escaped: bool = False) -> re.Pattern[str]:
 
 def _first(members: list[tuple[str, Finding]]) -> Finding:
     (robot, first), *more = members
-    others = tuple(dict.fromkeys(it for it, _ in more if it and it != robot))
-    return first._replace(others=others)
-
-
-def same_for(finding: Finding) -> str:
-    """``; the same for robot2 and 18 more``, empty where it is about one robot."""
-    if not finding.others:
-        return ""
-    first, *more = finding.others
-    rest = f" and {len(more)} more" if more else ""
-    return f"; the same for {first}{rest}"
+    # What is grouped already keeps its robots.
+    met = [*first.others, *(name for it, found in more for name in (it, *found.others))]
+    others = dict.fromkeys(name for name in met if name and name != robot)
+    return first._replace(others=tuple(others))

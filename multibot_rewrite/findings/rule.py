@@ -21,7 +21,7 @@ class Rule(NamedTuple):
     ``bad``, empty where there is none. ``beside`` maps names to the content of files beside the
     example, ``options`` say how it is checked. ``formats`` are what the examples are written in; in
     a ``urdf``, ``srdf`` or ``xacro`` a text that starts with neither ``<?xml`` nor ``<robot``
-    stands inside ``<robot name="r">``. ``check`` is the function that finds it, None where several
+    belongs inside ``<robot name="r">``. ``check`` is the function that finds it, None where several
     functions raise it.
     """
 

@@ -9,8 +9,8 @@ from multibot_rewrite.findings.rule import Rule
 
 # What an example is written in -> how a Markdown page colours it; XML where it is not here.
 _LANGUAGES = {
-    **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet"), "yaml"),
-    **dict.fromkeys(("graph", "remap"), "text"),
+    **dict.fromkeys(("params", "rviz", "moveit", "bridge", "fleet", "remap"), "yaml"),
+    "graph": "text",
     "lua": "lua",
 }
 
@@ -49,12 +49,19 @@ def page(head: str, groups: Iterable[Group]) -> str:
 
 
 def _section(rule: Rule) -> str:
-    lines = [f"\n### {rule.code} {rule.name}\n", f"*{rule.level}*. {rule.what}\n"]
-    lines += [f"**Why.** {rule.why}\n", f"**Fix.** {rule.fix}\n"]
+    lines = [f"\n### {rule.code} {rule.name}\n", f"*{rule.level}*. {_marked(rule.what)}\n"]
+    lines += [f"**Why.** {_marked(rule.why)}\n", f"**Fix.** {_marked(rule.fix)}\n"]
     language = next((_LANGUAGES[it] for it in rule.formats if it in _LANGUAGES), "xml")
     for title, example in _examples(rule):
         lines.append(f"{title}:\n\n```{language}\n{example.rstrip()}\n```\n")
     return "\n".join(lines)
+
+
+def _marked(text: str) -> str:
+    """Text for Markdown, where ``<tag>`` would be HTML unless it is in backticks."""
+    parts = text.split("`")
+    parts[::2] = [it.replace("<", "\\<") for it in parts[::2]]
+    return "`".join(parts)
 
 
 def _examples(rule: Rule) -> list[tuple[str, str]]:

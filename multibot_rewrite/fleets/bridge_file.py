@@ -6,14 +6,14 @@ Sources: ros_gz jazzy ``ros_gz_bridge/src/bridge_config.cpp``; gz-sim's names ``
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import yaml
 
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
-from multibot_rewrite.companions.names.robot_topics import NOTHING, is_topic, robot_topic
+from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.rviz.values import without_placeholder
 from multibot_rewrite.companions.template import make_template
@@ -21,43 +21,29 @@ from multibot_rewrite.companions.yaml_blocks import Block, blocks, cut_out, is_b
 from multibot_rewrite.companions.yaml_text import (
     Splice,
     YamlText,
-    finding_at,
-    is_text,
-    items,
     line_of,
     pairs,
     quoted,
     refuse_anchors,
     replaced,
 )
-from multibot_rewrite.model import WARNING, Finding, InputError
-from multibot_rewrite.naming import POSTFIX
-from multibot_rewrite.nearest import did_you_mean
-
-# Stands for the name of the spawned model: it may differ from the namespace and the tag.
-MODEL_SLOT = "multibotModelSlot"
-BOTH, ROS, GZ = "topic_name", "ros_topic_name", "gz_topic_name"
-TYPES = ("ros_type_name", "gz_type_name")
-DIRECTIONS = ("BIDIRECTIONAL", "GZ_TO_ROS", "ROS_TO_GZ")
-SERVICE = "service_name"
-
-KEYS: tuple[str, ...] = (
+from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, other_models, skipped
+from multibot_rewrite.fleets.bridge_entry import (
     BOTH,
-    ROS,
     GZ,
-    *TYPES,
+    GZ_MODEL,
+    MODEL_SLOT,
+    PART,
+    PLACEHOLDER,
+    ROS,
     SERVICE,
-    "direction",
-    "publisher_queue",
-    "subscriber_queue",
-    "lazy",
+    BridgeEntry,
 )
-KEYS += ("publish_optical_frame", "frame_id", "qos_profile", "gz_req_type_name", "gz_rep_type_name")
+from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.naming import POSTFIX
+
 # gz topics of the whole simulation, like those below /world.
 WORLD = frozenset({"clock", "stats"})
-GZ_MODEL = re.compile(r"(?P<above>/?(?:world/[^/]+/)?model/)(?P<model>[^/]+)(?P<rest>/.*)?")
-_PART = re.compile(r"(?<=/)(link|joint|sensor)/([^/]+)")
-_PLACEHOLDER = re.compile(r"[<>{}$%]")
 
 
 class BridgeFile(NamedTuple):
@@ -65,21 +51,6 @@ class BridgeFile(NamedTuple):
 
     own: Companion
     shared: str
-
-
-class _Entry(NamedTuple):
-    """An entry and its names: both sides as they are, and as each robot has them.
-
-    ``own`` is true if each robot needs its own.
-    """
-
-    node: yaml.MappingNode
-    block: Block
-    ros: str
-    gz: str
-    new_ros: str
-    new_gz: str
-    own: bool
 
 
 def rewrite_bridge(
@@ -108,19 +79,19 @@ def rewrite_bridge(
 
 def _entries(
     document: YamlText, context: Context, known: Mapping[str, str], findings: list[Finding]
-) -> list[_Entry]:
+) -> list[BridgeEntry]:
     """The entries that the bridge loads; what is wrong with others goes to ``findings``."""
-    model = _model_of(document, findings)
-    found: list[_Entry] = []
+    model = model_of(document)
+    findings += other_models(document, model)
+    found: list[BridgeEntry] = []
     assert document.root is not None
     for node, block in zip(document.root.value, blocks(document, document.root), strict=True):
-        fault = _fault(node)
-        if fault:
-            hint = "ros_gz_bridge skips this entry, so it is left out"
-            findings.append(finding_at(document, node, "MF502", WARNING, fault, hint))
+        faults = [*skipped(document, node)]
+        if faults:
+            findings += faults
             continue
         found.append(_entry(node, block, context, model, known))
-        findings += _entry_findings(document, found[-1], context)
+        findings += entry_findings(document, found[-1], context)
     return found
 
 
@@ -139,74 +110,38 @@ def _refuse(document: YamlText) -> None:
     refuse_anchors(document)
 
 
-def _fault(node: yaml.Node) -> str:
-    """Why the bridge does not load an entry; empty if it does."""
-    if not isinstance(node, yaml.MappingNode):
-        return "the entry is not a map of keys and values"
-    both, ros, gz = (text_of(node, key) for key in (BOTH, ROS, GZ))
-    if both and (ros or gz):
-        return f"{BOTH} cannot be used together with {ROS if ros else GZ}"
-    if text_of(node, SERVICE):
-        return ""
-    missing = [key for key in TYPES if not text_of(node, key)]
-    if missing or not (both or ros or gz):
-        return f"{' and '.join(missing or (ROS, GZ))} is missing"
-    direction = text_of(node, "direction")
-    known = not direction or direction in DIRECTIONS
-    return "" if known else f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}"
-
-
-def _model_of(document: YamlText, findings: list[Finding]) -> str:
-    """The one model the file is for; others are findings."""
-    first = ""
-    reported: set[str] = set()
-    for node in items(document.root):
-        for key in (BOTH, ROS, GZ):
-            found = GZ_MODEL.fullmatch(text_of(node, key))
-            name = found["model"] if found else ""
-            if not name or _PLACEHOLDER.search(name) or key == ROS:
-                continue
-            first = first or name
-            if name != first and name not in reported:
-                reported.add(name)
-                message = f"model {name!r} is not the robot's model {first!r}"
-                hint = "its topics stay as they are and are bridged once for all robots"
-                findings.append(finding_at(document, node, "MF505", WARNING, message, hint))
-    return first
-
-
 def _entry(
     node: yaml.MappingNode, block: Block, context: Context, model: str, known: Mapping[str, str]
-) -> _Entry:
+) -> BridgeEntry:
     both = text_of(node, BOTH)
     ros = both or text_of(node, ROS) or text_of(node, GZ)
     gz = both or text_of(node, GZ) or text_of(node, ROS)
     bare_ros, bare_gz = (without_placeholder(name, "/") for name in (ros, gz))
     found = GZ_MODEL.fullmatch(bare_gz)
-    another = found and found["model"] != model and not _PLACEHOLDER.search(found["model"])
+    another = found and found["model"] != model and not PLACEHOLDER.search(found["model"])
     if text_of(node, SERVICE) or another:
-        return _Entry(node, block, ros, gz, ros, gz, False)
+        return BridgeEntry(node, block, ros, gz, ros, gz, False)
     new_gz = gz_topic(context, bare_gz, text_of(node, "gz_type_name"))
     new_ros = robot_topic(context.topics, bare_ros, known)
-    own = new_gz != gz or new_ros != ros or bool(_PLACEHOLDER.search(ros + gz))
+    own = new_gz != gz or new_ros != ros or bool(PLACEHOLDER.search(ros + gz))
     if own:
         new_gz, new_ros = _in_full(new_gz), _in_full(new_ros)
-    return _Entry(node, block, ros, gz, new_ros, new_gz, own)
+    return BridgeEntry(node, block, ros, gz, new_ros, new_gz, own)
 
 
 def _in_full(name: str) -> str:
     """A relative name would follow the namespace of the bridge; a placeholder stays."""
-    return name if _PLACEHOLDER.search(name) else f"/{name.lstrip('/')}"
+    return name if PLACEHOLDER.search(name) else f"/{name.lstrip('/')}"
 
 
 def gz_topic(context: Context, name: str, gz_type: str = "") -> str:
     """A gz topic as the rewritten description and the spawned model have it."""
     found = GZ_MODEL.fullmatch(name)
     rest = (found["rest"] or "") if found else name
-    if _PLACEHOLDER.search(rest):
+    if PLACEHOLDER.search(rest):
         return name
     if found:
-        return found["above"] + MODEL_SLOT + _PART.sub(lambda it: _part(context, it), rest)
+        return found["above"] + MODEL_SLOT + PART.sub(lambda it: _part(context, it), rest)
     bare = name.strip("/")
     if bare in WORLD or bare.startswith("world/"):
         return name
@@ -229,7 +164,7 @@ def _family(name: str, gz_type: str) -> tuple[str, str]:
     )
 
 
-def _splices(document: YamlText, entry: _Entry, context: Context) -> Iterator[Splice]:
+def _splices(document: YamlText, entry: BridgeEntry, context: Context) -> Iterator[Splice]:
     ends = ", " if entry.node.flow_style else newline(document) + " " * entry.node.start_mark.column
     for key, node in pairs(entry.node):
         if not isinstance(node, yaml.ScalarNode):
@@ -248,7 +183,7 @@ def _splices(document: YamlText, entry: _Entry, context: Context) -> Iterator[Sp
 
 
 def _side(
-    entry: _Entry, key: str, node: yaml.ScalarNode, names: Mapping[str, str], ends: str
+    entry: BridgeEntry, key: str, node: yaml.ScalarNode, names: Mapping[str, str], ends: str
 ) -> Iterator[Splice]:
     """One side's name, and the other's if the file leaves it out because it is the same."""
     other = GZ if key == ROS else ROS
@@ -265,56 +200,9 @@ def _frame(node: yaml.ScalarNode, context: Context) -> Iterator[Splice]:
         yield replaced(node, new)
 
 
-def _only(document: YamlText, kept: Sequence[_Entry]) -> list[Splice]:
+def _only(document: YamlText, kept: Sequence[BridgeEntry]) -> list[Splice]:
     """The splices that take all other entries out of the file."""
     assert document.root is not None
     stay = {it.block for it in kept}
     found = blocks(document, document.root)
     return [Splice(it.start, it.end, "") for it in found if it not in stay]
-
-
-def _entry_findings(document: YamlText, entry: _Entry, context: Context) -> Iterator[Finding]:
-    node = entry.node
-    if _PLACEHOLDER.search(entry.new_ros + entry.new_gz):
-        message = f"the placeholder in {entry.ros!r} or its gz topic is not replaced"
-        hint = "replace it for each robot, or write the topic without the robot's name"
-        yield finding_at(document, node, "MF503", WARNING, message, hint)
-    elif not text_of(node, SERVICE) and not is_topic(entry.ros):
-        message = f"{entry.ros!r} is not a valid ROS topic name"
-        yield finding_at(document, node, "MF501", WARNING, message, f"add a {ROS}")
-    for kind, name in _PART.findall(entry.gz if MODEL_SLOT in entry.new_gz else ""):
-        if not is_declared(context.names, kind, name) and not _PLACEHOLDER.search(name):
-            known = context.names.declared.get(kind, ())
-            message = f"the description has no {kind} {name!r}{_near(name, known)}"
-            yield finding_at(document, node, "MF507", WARNING, message, "correct the name")
-    if text_of(node, SERVICE) and not text_of(node, SERVICE).strip("/").startswith("world/"):
-        message = f"service {text_of(node, SERVICE)!r} is bridged once for all robots"
-        yield finding_at(document, node, "MF503", WARNING, message, "add an entry for each robot")
-    for key, there in pairs(node):
-        if key.value not in KEYS:
-            message = (
-                f"unknown key {key.value!r}, which ros_gz_bridge ignores{_near(key.value, KEYS)}"
-            )
-            yield finding_at(document, key, "MF504", WARNING, message, "correct the key")
-        elif key.value not in (BOTH, ROS, GZ, "frame_id") and _is_mention(there, context):
-            message = (
-                f"{there.value!r} is the name of a link or joint, but its use here is not known"
-            )
-            yield finding_at(
-                document,
-                there,
-                "MF508",
-                WARNING,
-                message,
-                "if it is a name, rename it by hand",
-            )
-
-
-def _is_mention(node: yaml.Node, context: Context) -> bool:
-    known = context.names
-    return is_text(node) and any(is_declared(known, it, node.value) for it in ("link", "joint"))
-
-
-def _near(name: str, known: Iterable[str]) -> str:
-    near = did_you_mean(name, known)
-    return f", {near}" if near else ""

@@ -10,8 +10,9 @@ import yaml
 from multibot_rewrite.companions.rviz.read_config import text_of
 from multibot_rewrite.companions.template import FileTemplate, fill_template
 from multibot_rewrite.companions.yaml_blocks import blocks, cut_out, moved
-from multibot_rewrite.companions.yaml_text import YamlText, finding_at, read_yaml
-from multibot_rewrite.fleets.bridge_file import BOTH, GZ, GZ_MODEL, MODEL_SLOT, ROS
+from multibot_rewrite.companions.yaml_text import YamlText, found_at, read_yaml
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.bridge_entry import BOTH, GZ, GZ_MODEL, MODEL_SLOT, ROS
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.model import ERROR, Finding, InputError
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml
@@ -83,12 +84,42 @@ def _full(name: str) -> str:
     return f"/{name.lstrip('/')}"
 
 
+ONE_ROS_TOPIC = declare(
+    "MF506",
+    "bridge-two-on-one-topic",
+    ERROR,
+    what="Two gz topics are bridged to one ROS topic.",
+    why="The data of both is mixed: who subscribes gets scans of two sensors in turn.",
+    fix="Give each entry its own ros_topic_name.",
+    bad="""\
+- ros_topic_name: scan
+  gz_topic_name: front_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+- ros_topic_name: scan
+  gz_topic_name: rear_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+""",
+    good="""\
+- ros_topic_name: scan
+  gz_topic_name: front_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+- ros_topic_name: rear_scan
+  gz_topic_name: rear_scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+""",
+    line=5,
+    formats=("bridge",),
+)
+
+
 def _same_ros_topic(
     document: YamlText, node: yaml.Node, gz: str, ros: str, bridged: Mapping[str, tuple[int, str]]
 ) -> Iterator[Finding]:
     first = next((other for other, (_, name) in bridged.items() if name == ros), gz)
     if first != gz and ros not in TF and text_of(node, "direction") != "ROS_TO_GZ":
         message = f"gz topics {first} and {gz} are both bridged to ROS topic {ros}"
-        yield finding_at(
-            document, node, "MF506", ERROR, message, "give each its own ros_topic_name"
-        )
+        yield found_at(document, node, ONE_ROS_TOPIC, message, "give each its own ros_topic_name")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
 from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -72,10 +73,40 @@ def _for_all(groups: Iterable[GroupBridges], topics: Sequence[BridgedTopic]) -> 
     yield OutputFile(BRIDGE, text.encode(), tuple(dict.fromkeys(path for path, _ in shared)))
 
 
+NO_TOPIC = declare(
+    "MF509",
+    "sensor-without-gz-topic",
+    WARNING,
+    what="A sensor or plugin of gz-sim has no topic in the description, and its default topic has the "
+    "name of the world in it.",
+    why="The bridge cannot name the topic, so the sensor's data does not arrive in ROS.",
+    fix="Give it a topic in the description.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"/>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+  </gazebo>
+</robot>
+""",
+    line=4,
+    formats=("fleet-urdf",),
+)
+
+
 def _unbridged(plan: FleetPlan, topic: UnbridgedTopic) -> Finding:
     message = (
         f"{topic.what} of {topic.robot} has no topic of its own: its gz topic depends on the world"
     )
     hint = "give it a topic in the description, so that a bridge can name it"
     spec = next(it.spec for it in plan.robots if it.spec.namespace == topic.robot)
-    return Finding("MF509", WARNING, message, hint, spec.description, topic.line, 1)
+    place = {"file": spec.description, "line": topic.line, "column": 1}
+    return NO_TOPIC.finding(message, hint, **place)

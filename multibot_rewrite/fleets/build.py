@@ -9,6 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.companions.yaml_text import quoted
+from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
@@ -75,22 +76,25 @@ def _check_paths_differ(files: Sequence[OutputFile]) -> None:
 
 
 def _once(plan: FleetPlan, findings: Iterable[Finding]) -> list[Finding]:
-    """Sorted by place; what is the same for several robots of the fleet file is reported once."""
-    robots = {(it.spec.file, it.spec.line): it.spec.name for it in plan.robots}
-    alike: dict[tuple[str, ...], list[Finding]] = {}
-    for it in sorted(set(findings), key=lambda it: (*it[4:], it.code, it.message)):
-        name = robots.get((it.file, it.line))
-        place = (it.file,) if name else (it.file, str(it.line), str(it.column))
-        message = it.message.replace(name, "\0") if name else it.message
-        alike.setdefault((it.code, message, it.hint, *place), []).append(it)
-    return [_of_many(first, len(more)) for first, *more in alike.values()]
+    """Sorted by place; what is the same for many robots is one finding."""
+    specs = [it.spec for it in plan.robots]
+    words = {word: it.name for it in specs for word in (it.model, it.tag, it.namespace, it.name)}
+    ordered = sorted(
+        set(findings), key=lambda it: (it.file, it.line, it.column, it.code, it.message)
+    )
+    # Lines of robots in the fleet file: that they differ is no difference.
+    names = {(it.file, it.line): it.name for it in specs}
+    lines = {name: line for (_, line), name in names.items()}
+    alike = [_at_robot(it, names.get((it.file, it.line), "")) for it in ordered]
+    return [
+        it._replace(robot="", line=lines[it.robot]) if it.robot else it
+        for it in grouped(alike, words)
+    ]
 
 
-def _of_many(first: Finding, more: int) -> Finding:
-    if not more:
-        return first
-    robots = "1 more robot" if more == 1 else f"{more} more robots"
-    return first._replace(message=f"{first.message}; the same for {robots}")
+def _at_robot(finding: Finding, robot: str) -> Finding:
+    """The finding with the robot in the place of its line."""
+    return finding._replace(robot=robot, line=0) if robot else finding
 
 
 def _descriptions(plan: FleetPlan) -> FilesAndFindings:

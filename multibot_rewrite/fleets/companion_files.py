@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from multibot_rewrite.companions.behavior_tree import rewrite_behavior_tree
+from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.context import Companion
 from multibot_rewrite.companions.lua import rewrite_lua
 from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit

@@ -10,24 +10,27 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import (
     OutputText,
-    OutputValue,
     line_in_source,
     values_in,
 )
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
-from multibot_rewrite.fleets.value_checks import TOKEN, Draft, RobotNames, ValueInFile, check_value
+from multibot_rewrite.fleets.value_checks import (
+    TOKEN,
+    RobotNames,
+    ValueInFile,
+    check_value,
+    holds_twice,
+)
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.model import ERROR, Finding
 from multibot_rewrite.naming import Naming
 
-NO_PLACE = ("", 0)
-# Findings about the fleet, not about a line of a file.
-OF_THE_FLEET = frozenset({"MF601", "MF607"})
 # A word twice in a row, as in robot1/robot1/scan.
 _DOUBLED = re.compile(
     r"(?<![A-Za-z0-9])([A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*?)[/_]\1(?![A-Za-z0-9])"
@@ -41,22 +44,16 @@ def consistency(
     started; lines that have a finding in ``known`` are left out."""
     robots = _robot_names(plan, fleet)
     lines = {(it.file, it.line) for it in known}
-    found = [
-        *_of_two_robots(plan, fleet),
-        *tf_conflicts(plan, fleet, files),
-        *_in_files(plan, robots, files),
-        *_in_common(robots, files),
-    ]
-    fresh = [it for it in found if it.code in OF_THE_FLEET or (it.file, it.line) not in lines]
-    return (*(it for it in fresh if it.code in OF_THE_FLEET), *_counted(fresh))
+    of_fleet = (*_of_two_robots(plan, fleet), *tf_conflicts(plan, fleet, files))
+    in_files = (*_in_files(plan, robots, files), *_in_common(robots, files))
+    return (*of_fleet, *_counted(it for it in in_files if (it.file, it.line) not in lines))
 
 
 def _counted(findings: Iterable[Finding]) -> Iterator[Finding]:
     """What is wrong with the names of a file is reported at its first place, with the count."""
     groups: dict[tuple[str, str], dict[int, Finding]] = {}
     for it in sorted(findings, key=lambda it: (it.file, it.line, it.message)):
-        if it.code not in OF_THE_FLEET:
-            groups.setdefault((it.code, it.file), {}).setdefault(it.line, it)
+        groups.setdefault((it.code, it.file), {}).setdefault(it.line, it)
     for first, *more in (list(group.values()) for group in groups.values()):
         lines = "1 more line" if len(more) == 1 else f"{len(more)} more lines"
         also = f"; the same in {lines}" if more else ""
@@ -88,6 +85,48 @@ def _names_of(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     return RobotNames(robot, words, frozenset((*right, *graph)), changed)
 
 
+SAME_NAME = declare(
+    "MF601",
+    "robots-declare-same-name",
+    ERROR,
+    what="Two robots have the same link, joint, frame, sensor, hardware component or node name, though "
+    "robots of the layout differ in it.",
+    why="Messages with this name belong to both robots: joint states of one move the model of the "
+    "other, and the second node of a name replaces the first one in tools.",
+    fix="Give one of the two robots another name, prefix or postfix, or choose another separator.",
+    bad="""\
+# rover.urdf has a joint left_wheel, cart.urdf a joint wheel
+robots:
+  - {name: rover, description: rover.urdf}
+  - {name: rover_left, description: cart.urdf}
+""",
+    good="""\
+# rover.urdf has a joint left_wheel, cart.urdf a joint wheel
+robots:
+  - {name: rover, description: rover.urdf}
+  - {name: cart, description: cart.urdf}
+""",
+    line=4,
+    formats=("fleet",),
+    beside={
+        "rover.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <link name="tire"/>
+  <joint name="left_wheel" type="fixed"><parent link="base_link"/><child link="tire"/></joint>
+</robot>
+""",
+        "cart.urdf": """\
+<robot name="cart">
+  <link name="base_link"/>
+  <link name="tire"/>
+  <joint name="wheel" type="fixed"><parent link="base_link"/><child link="tire"/></joint>
+</robot>
+""",
+    },
+)
+
+
 def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
     """Names that two robots have though they are not shared."""
     first: dict[tuple[str, str], RewrittenRobot] = {}
@@ -98,8 +137,7 @@ def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
             both = f"{other.spec.name!r} and {robot.spec.name!r}"
             message = f"two robots have the same {kind} {name!r}: {both}"
             hint = "give one of them another name, prefix or postfix"
-            spec = robot.spec
-            yield Finding("MF601", ERROR, message, hint, spec.file, spec.line, 1)
+            yield at_robot(SAME_NAME, robot, message, hint)
 
 
 def _declared(plan: FleetPlan) -> Iterator[tuple[RewrittenRobot, str, str]]:
@@ -164,19 +202,16 @@ def _in_file(
     file: OutputText, own: RobotNames, others: Mapping[str, str], naming: Naming
 ) -> Iterator[Finding]:
     for value in values_in(file):
-        for draft in check_value(ValueInFile(own, others, naming, value)):
-            yield _placed(file, own, value, draft)
+        for found in check_value(ValueInFile(own, others, naming, value)):
+            yield _placed(file, own, value.line, found)
 
 
-def _placed(file: OutputText, own: RobotNames, value: OutputValue, draft: Draft) -> Finding:
+def _placed(file: OutputText, own: RobotNames, line: int, finding: Finding) -> Finding:
     """The finding at the line of the source if there is one, else at the robot in the fleet file."""
-    code, level, message, hint = draft
-    spec = own.robot.spec
-    source, line = line_in_source(file, value.line) if file.sources else NO_PLACE
-    where = f"{file.path}, line {value.line}: {message}"
-    if source:
-        return Finding(code, level, where, hint, source, line, 1)
-    return Finding(code, level, where, hint, spec.file, spec.line, 1)
+    entry = own.robot.spec.file, own.robot.spec.line
+    source = line_in_source(file, line) if file.sources else entry
+    where = f"{file.path}, line {line}: {finding.message}"
+    return finding._replace(message=where, file=source[0], line=source[1], column=1)
 
 
 def _in_common(robots: Sequence[RobotNames], files: Sequence[OutputText]) -> Iterator[Finding]:
@@ -192,6 +227,4 @@ def _in_common(robots: Sequence[RobotNames], files: Sequence[OutputText]) -> Ite
             own = words.get(found[1]) if found else None
             if found and own and not any(found[1] in it.split("/") for it in own.bare):
                 line = file.text.count("\n", 0, file.text.index(token)) + 1
-                message, hint = f"{token} holds {found[1]} twice", "remove it from the source"
-                draft = Draft("MF603", ERROR, message, hint)
-                yield _placed(file, own, OutputValue(token, "", False, line), draft)
+                yield _placed(file, own, line, holds_twice(token, found[1]))

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
-from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.companions.names.rename_map import CompanionNames
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
-from multibot_rewrite.job import Job, read_job
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.sources.job import Job, read_job
 from multibot_rewrite.steps.collect import NOTHING
+from multibot_rewrite.steps.template import Template
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
@@ -39,11 +41,20 @@ class RewrittenRobot(NamedTuple):
     spec: RobotSpec
     description: bytes
     srdf: bytes
-    names: RenameMap
-    topics: RenameMap
+    names: CompanionNames
+    topics: CompanionNames
     semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
+
+
+def at_robot(
+    rule: Rule, robot: RewrittenRobot, message: str, hint: str, level: str = ""
+) -> Finding:
+    """A finding of ``rule`` in the robot's line of the fleet file; ``level`` is the rule's if empty."""
+    spec = robot.spec
+    place: dict[str, Any] = {"file": spec.file, "line": spec.line, "column": 1}
+    return rule.finding(message, hint, level=level or rule.level, **place)
 
 
 def read_jobs(
@@ -93,8 +104,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             robot,
             data,
             _final(semantic, robot, naming) if semantic else b"",
-            RenameMap(declared, naming, robot.tag),
-            RenameMap(declared, naming, robot.namespace),
+            CompanionNames(declared, naming, robot.tag),
+            CompanionNames(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag),
             (*text.findings, *(semantic.findings if semantic else ())),
@@ -116,9 +127,7 @@ def _kinds(naming: Naming, graph: bool) -> Naming:
     return naming._replace(separators=kept)
 
 
-def _half(
-    source: bytes, file: str, robot: str, naming: Naming, template: pipeline.Template
-) -> bytes:
+def _half(source: bytes, file: str, robot: str, naming: Naming, template: Template) -> bytes:
     # The second rewrite finds names that the first one has rewritten for the other word.
     prepared = pipeline.prepare(source, file, naming, template.tree, template.urdf_declarations)
     return next(pipeline.render(prepared, [robot], again=True))

@@ -34,8 +34,8 @@ from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot, Sourc
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
-from multibot_rewrite.remap.records import TOPIC, Problem
-from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.remap.yaml_with_lines import unknown
 from multibot_rewrite.sources.read import read_file
 
@@ -292,13 +292,7 @@ def _planned(file: FleetFile, jobs: Mapping[Sources, Jobs]) -> LoadedFleet:
 
 def _findings(plan: FleetPlan) -> tuple[Finding, ...]:
     found = (it for robot in plan.robots for it in robot.findings)
-    problems = (_as_finding(plan.file.file, it) for it in plan.fleet.table.problems)
-    return tuple(dict.fromkeys((*found, *problems)))
-
-
-def _as_finding(file: str, it: Problem) -> Finding:
-    of = ": ".join(filter(None, [it.robot, it.node]))
-    return Finding(it.code, it.level, f"{of}: {it.message}", it.hint, file, 1, 1)
+    return tuple(dict.fromkeys((*found, *plan.fleet.table.problems)))
 
 
 def _refuse(findings: Iterable[Finding]) -> None:

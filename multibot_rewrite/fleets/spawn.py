@@ -12,9 +12,10 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
@@ -115,8 +116,59 @@ def _namespace(plugin: etree._Element) -> str:
     return (plugin.findtext("ros/namespace") or plugin.findtext("namespace") or "").strip()
 
 
+PARTLY_NAMESPACED = declare(
+    "MF706",
+    "plugins-partly-namespaced",
+    WARNING,
+    what="Some Gazebo Classic plugins of a description have a namespace, others have none.",
+    why="The spawner can set one namespace for all plugins, which would overwrite those that are "
+    "there. It is not set, so the other plugins run in the root namespace: those of all robots "
+    "use the same topics.",
+    fix="Add <ros><namespace> to each plugin.",
+    bad="""\
+# in half.urdf only one of two plugins has <ros><namespace>
+robots:
+  - {name: robot1, description: half.urdf}
+  - {name: robot2, description: half.urdf}
+""",
+    good="""\
+# in each.urdf both plugins have <ros><namespace>
+robots:
+  - {name: robot1, description: each.urdf}
+  - {name: robot2, description: each.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "half.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so"/>
+  </gazebo>
+</robot>
+""",
+        "each.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="arm" filename="libgazebo_ros_acme_arm.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+    <plugin name="lamp" filename="libgazebo_ros_acme_lamp.so">
+      <ros><namespace>/rover</namespace></ros>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    },
+)
+
+
 def _half(robot: RewrittenRobot, bare: list[str]) -> Finding:
-    spec = robot.spec
-    message = f"robot {spec.name!r}: some plugins have a namespace, but not {', '.join(bare)}"
+    some = f"robot {robot.spec.name!r}: some plugins have a namespace"
     hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
-    return Finding("MF706", WARNING, message, hint, spec.file, spec.line, 1)
+    return at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)

@@ -10,15 +10,16 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.rviz.rewrite import world_frame
+from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.graph.transforms import Edge, description_edges
 from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC
-from multibot_rewrite.remap.table import placed, target_of
+from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.steps.collect import Inventory
 
 NODE = "start_pose"
@@ -26,6 +27,86 @@ AMCL = "amcl"
 ORIGIN = Pose()
 # Elements of gz-sim's drive and odometry systems that hold the odometry frame.
 ODOMETRY = ("frame_id", "odom_frame")
+
+
+LOCALISED_ALREADY = declare(
+    "MF701",
+    "pose-of-localised-robot",
+    WARNING,
+    what="A robot has a pose, but a node of its stack already publishes where the robot is. The pose "
+    "is not published.",
+    why="The frame would have two parents, and the robot would jump between two places.",
+    fix="Start the robot at that place in the simulator, or remove the pose. amcl needs neither: it "
+    "gets the pose in start_pose.yaml.",
+    bad="""\
+stack: slam_toolbox
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+stack: amcl
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+)
+NO_SINGLE_ROOT = declare(
+    "MF702",
+    "pose-without-root-frame",
+    WARNING,
+    what="A robot has a pose, but no root frame or several. The pose is not published.",
+    why="A pose is the transform from the world to the root frame of a robot.",
+    fix="Connect the frames to one tree. A description that has the world as its root says itself "
+    "where the robot is: change it there, and remove the pose.",
+    bad="""\
+# arm.urdf has a joint from the link "world" to "base_link"
+robots:
+  - {name: robot1, description: arm.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "arm.urdf": """\
+<robot name="arm">
+  <link name="world"/>
+  <link name="base_link"/>
+  <joint name="mount" type="fixed"><parent link="world"/><child link="base_link"/></joint>
+</robot>
+"""
+    },
+)
+NO_SHARED_FRAME = declare(
+    "MF704",
+    "pose-without-shared-frame",
+    WARNING,
+    what="A robot has a pose, but no frame is shared by all robots.",
+    why="Poses are in a frame that all robots share. Without one the pose is not published, and the "
+    "robots are not connected in tf.",
+    fix="Name a frame in shared_frames, or the frame of poses in world.",
+    bad="""\
+shared_frames: []
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+shared_frames: [map]
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+)
 
 
 class StaticTransform(NamedTuple):
@@ -79,7 +160,8 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     world = world_of(plan.file, naming)
     if not world:
         hint = "set world: or shared_frames:"
-        yield _finding(robot, "MF704", "it has a pose, but no frame is shared by all robots", hint)
+        what = "it has a pose, but no frame is shared by all robots"
+        yield _finding(NO_SHARED_FRAME, robot, what, hint)
         return
     sent = _sent(plan, robot)
     locators = [node for node, edges in sent.items() if any(_locates(it, naming) for it in edges)]
@@ -89,14 +171,15 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
     if locators:
         nodes = " and ".join(locators)
         what = f"its pose is not published, because {nodes} already publishes where it is"
-        yield _finding(robot, "MF701", what, "a second parent would make the frame jump")
+        hint = "a second parent would make the frame jump"
+        yield _finding(LOCALISED_ALREADY, robot, what, hint)
         return
     roots = _roots(sent, naming)
     if len(roots) != 1:
         frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
         hint = "connect them" if roots else "its description has the world as parent already"
         what = f"its pose is not published, because it has {frames} instead of one"
-        yield _finding(robot, "MF702", what, hint)
+        yield _finding(NO_SINGLE_ROOT, robot, what, hint)
         return
     local = AMCL in sent
     if local:
@@ -174,6 +257,5 @@ def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:
     return [it for it in parents if it not in children and it not in naming.shared_frames]
 
 
-def _finding(robot: RewrittenRobot, code: str, what: str, hint: str) -> Finding:
-    spec = robot.spec
-    return Finding(code, WARNING, f"robot {spec.name!r}: {what}", hint, spec.file, spec.line, 1)
+def _finding(rule: Rule, robot: RewrittenRobot, what: str, hint: str) -> Finding:
+    return at_robot(rule, robot, f"robot {robot.spec.name!r}: {what}", hint)

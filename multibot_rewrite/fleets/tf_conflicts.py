@@ -11,11 +11,12 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.companions.params.sections import PARAMETERS, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rcl_parameters import node_parameters
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge, description_edges
@@ -27,6 +28,33 @@ DESCRIPTION = "the description"
 SWITCHES = ("publish_tf", "tf_broadcast", "enable_odom_tf", "publish_odom_tf", "broadcast_tf")
 # robot_localization: world_frame is one of the other two.
 WORLD, MAP, ODOM = "world_frame", "map_frame", "odom_frame"
+
+
+FRAME_TWICE = declare(
+    "MF607",
+    "frame-published-twice",
+    WARNING,
+    what="Two nodes of a robot publish the same frame, or (an error) two robots publish a shared frame "
+    "on one tf topic.",
+    why="Who listens sees the frame jump between two places: the robot trembles in RViz and "
+    "navigation goes wrong.",
+    fix="Remove one of the nodes, or switch its transform off (publish_tf: false). For two robots: "
+    "remove the frame from shared_frames, or choose a layout with a tf topic for each robot.",
+    bad="""\
+stack: [amcl, slam_toolbox]
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+stack: [slam_toolbox]
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+)
 
 
 class SentTransform(NamedTuple):
@@ -71,7 +99,8 @@ def _of_two_nodes(
         both = f"{other.by} and {it.by}"
         message = f"frame {child} of {robot.spec.name} is published{below} by both {both}"
         hint = "only one node may publish a frame: remove one, or switch its transform off"
-        yield Finding("MF607", WARNING, message, hint, *_place(robot, it, files), 1)
+        file, line = _place(robot, it, files)
+        yield FRAME_TWICE.finding(message, hint, file=file, line=line, column=1)
 
 
 def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[str, int]:
@@ -134,7 +163,7 @@ def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
     naming = fleet.naming
     first: dict[tuple[str, str], str] = {}
     reported: set[str] = set()
-    specs = {it.spec.namespace: it.spec for it in plan.robots}
+    by_space = {it.spec.namespace: it for it in plan.robots}
     # If a description starts with the world, the drive looks as if it moved the world.
     links = {link for it in plan.robots for link in it.member.inventory.declared["link"]}
     for (robot, node), edges in fleet.edges.items():
@@ -146,5 +175,4 @@ def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
             robots = f"{other} and {robot} ({node})"
             message = f"frame {edge.child} is published by two robots on one topic: {robots}"
             hint = "remove it from shared_frames, or choose a layout with a tf topic per robot"
-            spec = specs[robot]
-            yield Finding("MF607", ERROR, message, hint, spec.file, spec.line, 1)
+            yield at_robot(FRAME_TWICE, by_space[robot], message, hint, ERROR)

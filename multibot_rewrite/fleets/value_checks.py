@@ -8,10 +8,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.output_values import OutputValue
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
-from multibot_rewrite.model import ERROR, WARNING
+from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import TF_TOPICS, Naming
 
 TF = tuple(f"/{it}" for it in TF_TOPICS)
@@ -47,20 +48,11 @@ class ValueInFile(NamedTuple):
     value: OutputValue
 
 
-class Draft(NamedTuple):
-    """A finding without its place."""
-
-    code: str
-    level: str
-    message: str
-    hint: str
+Check = Callable[[ValueInFile], Iterator[Finding]]
 
 
-Check = Callable[[ValueInFile], Iterator[Draft]]
-
-
-def check_value(place: ValueInFile) -> Iterator[Draft]:
-    """Everything that is wrong with one value."""
+def check_value(place: ValueInFile) -> Iterator[Finding]:
+    """Everything that is wrong with one value; the findings are without a place."""
     if _NOT_A_NAME.search(place.value.text):
         return
     for check in _CHECKS:
@@ -84,14 +76,36 @@ def _tokens(place: ValueInFile) -> Iterator[str]:
             yield token
 
 
-def _of_another_robot(place: ValueInFile) -> Iterator[Draft]:
+OTHER_ROBOT = declare(
+    "MF602",
+    "name-of-other-robot",
+    ERROR,
+    what="A file that is written for one robot holds a name of another robot.",
+    why="The robot uses data of the other one, or drives it.",
+    fix="Remove the robot name from the source. The build adds it for each robot.",
+    bad="""\
+acme_driver:
+  ros__parameters:
+    source: /model/robot2/scan
+""",
+    good="""\
+acme_driver:
+  ros__parameters:
+    source: /model/rover/scan
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _of_another_robot(place: ValueInFile) -> Iterator[Finding]:
     name = place.own.robot.spec.name
     for token in _tokens(place):
         robot = _other_robot(token.strip("/"), place)
         if robot:
             message = f"{token} belongs to robot {robot}, but this is a file of robot {name}"
             hint = "remove the robot name from the source; the build adds it for each robot"
-            yield Draft("MF602", ERROR, message, hint)
+            yield OTHER_ROBOT.finding(message, hint)
 
 
 def _other_robot(token: str, place: ValueInFile) -> str:
@@ -108,15 +122,44 @@ def _other_robot(token: str, place: ValueInFile) -> str:
     return next((place.others[it] for it in ends if it in place.others), "")
 
 
-def _doubled(place: ValueInFile) -> Iterator[Draft]:
+ROBOT_TWICE = declare(
+    "MF603",
+    "robot-twice-in-value",
+    ERROR,
+    what="A name holds its robot twice, as in robot1/robot1/scan, or a parameter makes a node add the "
+    "prefix to frames that have it.",
+    why="No other node uses that name: topics have no publisher, and every lookup of the frame fails.",
+    fix="Remove the robot name from the source. Write an empty frame_prefix or tf_prefix, and false at "
+    "tf_frame_prefix_enable.",
+    bad="""\
+acme_driver:
+  ros__parameters:
+    tf_prefix: robot1
+""",
+    good="""\
+acme_driver:
+  ros__parameters:
+    tf_prefix: ""
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _doubled(place: ValueInFile) -> Iterator[Finding]:
     for token in _tokens(place):
         word = twice(token, place.own.words)
         if word and not any(word in it.split("/") for it in place.own.bare):
-            hint = "remove it from the source; the build adds it once"
-            yield Draft("MF603", ERROR, f"{token} holds {word} twice", hint)
+            yield holds_twice(token, word)
 
 
-def _prefix_at_run_time(place: ValueInFile) -> Iterator[Draft]:
+def holds_twice(token: str, word: str) -> Finding:
+    """A name that holds a robot's word twice; without a place."""
+    hint = "remove it from the source; the build adds it once"
+    return ROBOT_TWICE.finding(f"{token} holds {word} twice", hint)
+
+
+def _prefix_at_run_time(place: ValueInFile) -> Iterator[Finding]:
     """A parameter that makes a node add the prefix a second time."""
     key, text = place.value.key, place.value.text.strip()
     if not place.naming.layout.frames or place.value.is_key:
@@ -124,10 +167,32 @@ def _prefix_at_run_time(place: ValueInFile) -> Iterator[Draft]:
     prefix = key in PREFIXES and text not in ("", "~", "null", "/")
     if prefix or (key == ENABLES and text.lower() == "true"):
         message = f"{key}: {text} adds a prefix to frames that already have the robot's name"
-        yield Draft("MF603", ERROR, message, 'write ""' if key in PREFIXES else "write false")
+        yield ROBOT_TWICE.finding(message, 'write ""' if key in PREFIXES else "write false")
 
 
-def _wrong_separator(place: ValueInFile) -> Iterator[Draft]:
+OTHER_SEPARATOR = declare(
+    "MF604",
+    "other-separator",
+    WARNING,
+    what="A name holds the robot with another separator than that of the layout, as in robot1_odom.",
+    why="It is not the name that other nodes and descriptions use, so the two do not find each other.",
+    fix="Remove the robot name from the source. The build adds it with its separator.",
+    bad="""\
+acme_driver:
+  ros__parameters:
+    odom: robot1_odom
+""",
+    good="""\
+acme_driver:
+  ros__parameters:
+    odom: odom
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _wrong_separator(place: ValueInFile) -> Iterator[Finding]:
     word, bare = place.own.robot.spec.tag, place.own.bare
     for token in (it for it in _tokens(place) if not it.startswith("/")):
         for rest in _without(token, word):
@@ -136,7 +201,7 @@ def _wrong_separator(place: ValueInFile) -> Iterator[Draft]:
             if right and not _is_a_new_frame(place, token, name):
                 message = f"{token} should be {' or '.join(sorted(right))}"
                 hint = "remove the robot name from the source; the build adds it"
-                yield Draft("MF604", WARNING, message, hint)
+                yield OTHER_SEPARATOR.finding(message, hint)
                 break
 
 
@@ -155,17 +220,75 @@ def _is_a_new_frame(place: ValueInFile, token: str, name: str) -> bool:
     return spell(names._replace(robot=place.own.robot.spec.tag), "frame", name) == token
 
 
-def _bare_frame(place: ValueInFile) -> Iterator[Draft]:
+BARE_FRAME = declare(
+    "MF605",
+    "frame-without-robot",
+    WARNING,
+    what="A key for frames holds a frame of the robot without the robot's name, for example in a "
+    "plugin that is not known.",
+    why="The other nodes of the robot use the frame with its name, so the two are not connected. All "
+    "robots share the bare frame.",
+    fix="If it is a frame of the robot, write what the hint says, or describe the plugin in a "
+    "vocabulary file, so that it is renamed for each robot.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="acme_drive" filename="libacme_drive.so">
+      <odom_frame>odom</odom_frame>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">
+      <frame_id>odom</frame_id>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    line=5,
+    formats=("fleet-urdf",),
+)
+
+
+def _bare_frame(place: ValueInFile) -> Iterator[Finding]:
     text, key = place.value.text, place.value.key
     if place.value.is_key or not _FRAME_KEY.search(key.rpartition(".")[2]):
         return
     if text in place.own.bare and text not in place.own.right:
         right = " or ".join(sorted(place.own.bare[text]))
         message = f"{key} is {text}, without the robot's name that other frames have"
-        yield Draft("MF605", WARNING, message, f"if it is a frame of the robot, write {right}")
+        yield BARE_FRAME.finding(message, f"if it is a frame of the robot, write {right}")
 
 
-def _tf_topic(place: ValueInFile) -> Iterator[Draft]:
+WRONG_TF_TOPIC = declare(
+    "MF606",
+    "tf-topic-of-other-layout",
+    WARNING,
+    what="A value is /tf although each robot of the layout has its own tf topic, or a robot's tf topic "
+    "although all share /tf.",
+    why="The node listens to a topic that nobody publishes, or publishes where nobody listens.",
+    fix="Write the topic that the hint names, or choose another layout.",
+    bad="""\
+acme_driver:
+  ros__parameters:
+    transforms: /robot1/tf
+""",
+    good="""\
+acme_driver:
+  ros__parameters:
+    transforms: /tf
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+def _tf_topic(place: ValueInFile) -> Iterator[Finding]:
     value, naming = place.value, place.naming
     if value.is_key or value.key.startswith("gz_"):
         return
@@ -174,10 +297,10 @@ def _tf_topic(place: ValueInFile) -> Iterator[Draft]:
     if naming.layout.tf_per_robot and value.text in TF:
         message = f"{value.text} is shared by all robots, but in this layout each robot has its own"
         hint = f"write {value.text[1:]}, or choose layout frames-per-robot"
-        yield Draft("MF606", WARNING, message, hint)
+        yield WRONG_TF_TOPIC.finding(message, hint)
     if not naming.layout.tf_per_robot and value.text in own:
         message = f"{value.text} is for one robot, but in this layout all robots share /tf"
-        yield Draft("MF606", WARNING, message, "write /tf, or choose layout both")
+        yield WRONG_TF_TOPIC.finding(message, "write /tf, or choose layout both")
 
 
 _CHECKS: tuple[Check, ...] = (

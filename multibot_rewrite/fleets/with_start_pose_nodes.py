@@ -16,7 +16,7 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     NodeFacts,
     NodeTable,
-    ResolvedName,
+    EndpointName,
     Table,
 )
 from multibot_rewrite.remap.table import joined, names_of, node_table
@@ -44,7 +44,7 @@ def split_per_robot(plan: FleetPlan) -> Iterator[FleetPlan]:
     """Each robot as a fleet of its own, so that steps about one robot need not search all others."""
     fleet = plan.fleet
     nodes: dict[str, list[NodeTable]] = defaultdict(list)
-    names: dict[str, list[ResolvedName]] = defaultdict(list)
+    names: dict[str, list[EndpointName]] = defaultdict(list)
     for node in fleet.table.nodes:
         nodes[node.robot].append(node)
     for name in fleet.table.names:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.remap.records import NodeFacts, ResolvedName, Table
+from multibot_rewrite.remap.records import NodeFacts, EndpointName, Table
 from multibot_rewrite.steps.collect import Inventory
 
 # Topics of every node, which the plan leaves out.
@@ -141,7 +141,7 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, values)))
 
 
-def _planned(names: Iterable[ResolvedName]) -> Iterator[PlannedEndpoint]:
+def _planned(names: Iterable[EndpointName]) -> Iterator[PlannedEndpoint]:
     """The endpoints that do not depend on parameters."""
     for name in names:
         end = name.endpoint

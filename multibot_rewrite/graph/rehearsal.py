@@ -20,11 +20,11 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     NodeTable,
-    ResolvedName,
+    EndpointName,
     Table,
 )
-from multibot_rewrite.remap.table import ACTION_PARTS
 from multibot_rewrite.remap.table_formats import arguments
+from multibot_rewrite.remap.targets import ACTION_PARTS
 
 TF = "tf2_msgs/msg/TFMessage"
 # The types used in place of one that is not installed.
@@ -90,7 +90,7 @@ def _merged(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
     return found.values()
 
 
-def _stub_endpoint(name: ResolvedName, types: Mapping[str, str]) -> StubEndpoint:
+def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint:
     kind, role, own, type_, *_ = name.endpoint
     # A topic without a role is nearly always a sensor's output.
     return StubEndpoint(

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from functools import partial
 from typing import NoReturn
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
@@ -18,7 +19,7 @@ from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.failures import breakdown, crash, failure, too_long
 from multibot_rewrite.lint.files.subjects import Failed, read_subjects
 from multibot_rewrite.lint.places import numbered, placed
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import active_rules
 from multibot_rewrite.model import InputError, VocabularyError
 from multibot_rewrite.sources.read import read_file

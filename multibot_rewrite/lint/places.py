@@ -10,10 +10,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.steps.document import tag_end
 
 if TYPE_CHECKING:

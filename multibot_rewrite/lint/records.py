@@ -1,13 +1,10 @@
-"""Frozen records of the lint: subject (what a rule looks at) and problem (what it yields)."""
+"""The subject of lint rules: one document and what is known about it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from lxml.etree import _Element
-
-from multibot_rewrite.findings.finding import Edit
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.robot import Robot
@@ -43,17 +40,3 @@ class Subject(NamedTuple):
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
     faults: tuple[Fault, ...] = ()
-
-
-class Problem(NamedTuple):
-    """What a rule found, at an element of its subject's document.
-
-    ``attribute`` is the name of the attribute at fault, empty for the element's text, None for the
-    element itself. ``edits`` fix it without a change of meaning; empty where that is not safe.
-    """
-
-    element: _Element
-    message: str
-    attribute: str | None = None
-    hint: str = ""
-    edits: tuple[Edit, ...] = ()

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import NamedTuple, TypeAlias
+
+from multibot_rewrite.findings.finding import Finding
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -80,7 +83,7 @@ class NodeRule(NamedTuple):
     why: str
 
 
-class ResolvedName(NamedTuple):
+class EndpointName(NamedTuple):
     """An endpoint of a robot's node, and its name with the remap rules.
 
     ``node`` and ``name`` are absolute.
@@ -90,17 +93,6 @@ class ResolvedName(NamedTuple):
     node: str
     endpoint: Endpoint
     name: str
-
-
-class Problem(NamedTuple):
-    """What a table cannot do or does wrongly; an error means that two robots share a name."""
-
-    code: str
-    level: str
-    robot: str
-    node: str
-    message: str
-    hint: str
 
 
 class NodeTable(NamedTuple):
@@ -113,10 +105,14 @@ class NodeTable(NamedTuple):
     rules: tuple[NodeRule, ...]
 
 
+# Nodes with their tables.
+Pairs: TypeAlias = Sequence[tuple[NodeFacts, NodeTable]]
+
+
 class Table(NamedTuple):
-    """The remap table of a fleet."""
+    """The remap table of a fleet, and what it cannot do or does wrongly."""
 
     layout: str
     nodes: tuple[NodeTable, ...]
-    names: tuple[ResolvedName, ...]
-    problems: tuple[Problem, ...]
+    names: tuple[EndpointName, ...]
+    problems: tuple[Finding, ...]

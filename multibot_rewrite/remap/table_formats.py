@@ -10,6 +10,8 @@ from xml.sax.saxutils import escape
 from multibot_rewrite.remap.records import NodeTable, Table
 
 EVERY_ROBOT = "all robots"
+# What programs read of a finding about the table.
+OF_A_PROBLEM = ("code", "level", "robot", "node", "message", "hint")
 
 
 def ros_args(table: Table) -> str:
@@ -78,7 +80,7 @@ def as_data(table: Table) -> dict[str, object]:
             }
             for name in table.names
         ],
-        "problems": [problem._asdict() for problem in table.problems],
+        "problems": [{key: getattr(it, key) for key in OF_A_PROBLEM} for it in table.problems],
     }
 
 

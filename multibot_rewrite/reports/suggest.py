@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.checks.mentions import MENTIONED
 from multibot_rewrite.model import VocabularyError
-from multibot_rewrite.pipeline import MENTIONED
 from multibot_rewrite.reports.paths import short_name
 from multibot_rewrite.reports.survey import loaded_by
 from multibot_rewrite.rewriters.forms import Declared

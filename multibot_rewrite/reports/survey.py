@@ -8,10 +8,9 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.checks.audit import is_unknown
-from multibot_rewrite.checks.mentions import unclaimed_mentions
+from multibot_rewrite.checks.mentions import MENTIONED, unclaimed_mentions
 from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
-from multibot_rewrite.pipeline import MENTIONED
 from multibot_rewrite.reports.paths import plugin_name, tag_path
 from multibot_rewrite.rewriters.spelling import ResolvedName
 from multibot_rewrite.rewriters.tree import Tree

@@ -12,7 +12,7 @@ from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
-from multibot_rewrite.steps.document import Document, locate
+from multibot_rewrite.steps.document import Document, locate, read_document
 
 NOTHING: Declared = {}
 SRDF = "srdf.robot"
@@ -116,3 +116,8 @@ def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dic
         if name and site.role == "declares" and site.kinds[0] in declared:
             declared[site.kinds[0]].setdefault(name, claim)
     return declared
+
+
+def declarations(source: bytes, file: str, tree: Tree) -> Declared:
+    """What a description declares, by kind and name."""
+    return collect(read_document(source, file), tree).declared

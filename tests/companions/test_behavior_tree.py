@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from multibot_rewrite.companions.behavior_tree import rewrite_behavior_tree
+from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.context import JAZZY, Context, make_context
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.model import Finding, InputError

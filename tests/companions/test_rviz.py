@@ -230,6 +230,29 @@ def test_tools_publish_for_one_robot_each() -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("tool", "written"),
+    [
+        ("{Class: GOAL}", "{Class: GOAL, Topic: /robot1/goal_pose}"),
+        ("{Class: GOAL,}", "{Class: GOAL, Topic: /robot1/goal_pose,}"),
+        ("{Class: GOAL , }", "{Class: GOAL, Topic: /robot1/goal_pose , }"),
+        ("{Class: GOAL, Name: ,}", "{Class: GOAL, Name: , Topic: /robot1/goal_pose,}"),
+        (
+            "{Class: 'GOAL',  # go\n     }",
+            "{Class: 'GOAL', Topic: /robot1/goal_pose,  # go\n     }",
+        ),
+        ("{Class: GOAL  # a, b\n     }", "{Class: GOAL, Topic: /robot1/goal_pose  # a, b\n     }"),
+    ],
+)
+def test_a_tool_in_braces_gets_its_topic(tool: str, written: str) -> None:
+    tool, written = (it.replace("GOAL", "rviz_default_plugins/SetGoal") for it in (tool, written))
+    text = f"Visualization Manager:\n  Tools:\n    - {tool}\n"
+    made = make(text)[0][0].text
+    assert f"    - {written}\n" in made
+    topics = [it["Topic"] for it in yaml.safe_load(made)["Visualization Manager"]["Tools"]]
+    assert topics == ["/robot1/goal_pose", "/robot2/goal_pose"]
+
+
 def test_what_serves_one_process_is_left_out_with_a_comment() -> None:
     made, findings = make()
     for cls in ("Navigation 2", "GoalTool", "MotionPlanning", "SlamToolboxPlugin"):

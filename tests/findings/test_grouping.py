@@ -6,9 +6,9 @@ import json
 
 import pytest
 
-from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding, same_for
 from multibot_rewrite.findings.formats import FORMATS, Report, rendered
-from multibot_rewrite.findings.grouping import grouped, same_for
+from multibot_rewrite.findings.grouping import grouped
 
 ROBOTS = [f"robot{number}" for number in range(1, 21)]
 NAMES = {robot: robot for robot in ROBOTS}
@@ -27,6 +27,14 @@ def test_twenty_robots_with_one_fault_are_one_finding() -> None:
     (one,) = grouped([lost(robot) for robot in ROBOTS], NAMES)
     assert (one.robot, one.others) == ("robot1", tuple(ROBOTS[1:]))
     assert same_for(one) == "; the same for robot2 and 18 more"
+
+
+def test_what_is_grouped_already_keeps_its_robots() -> None:
+    first = grouped([lost(robot) for robot in ROBOTS[:2]], NAMES)
+    assert grouped(first, NAMES) == first
+    (one,) = grouped([*first, lost("robot3")], NAMES)
+    assert one.others == ("robot2", "robot3")
+    assert str(one).count("; the same for robot2 and 1 more (its rule") == 1
 
 
 def test_two_robots_are_named_both() -> None:

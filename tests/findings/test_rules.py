@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from paths import ROOT
-from rule_examples import GRAPH, found, whole
+from rule_examples import WITHOUT_FILE, found, whole
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.findings.finding import LEVELS
@@ -26,10 +26,10 @@ def test_the_bad_example_is_found_once(code: str, tmp_path: Path) -> None:
     rule = RULES[code]
     (finding,) = found(rule, rule.bad, tmp_path)
     assert finding.message
-    if rule.formats == (GRAPH,):
-        # There is no file: the line names the node, else the frame, else the robot.
-        about = finding.node or next(iter(finding.names), finding.robot)
-        assert about and about in rule.bad.splitlines()[rule.line - 1]
+    if WITHOUT_FILE.intersection(rule.formats):
+        # The line names the node or one of the topics or frames, else the robot.
+        about = [it for it in (finding.node, *finding.names) if it] or [finding.robot]
+        assert any(it in rule.bad.splitlines()[rule.line - 1] for it in about if it)
         return
     assert finding.line == rule.line
     assert Path(finding.file).parent == tmp_path if finding.file else finding.place != "graph"

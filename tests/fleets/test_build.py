@@ -249,7 +249,7 @@ def test_findings_are_sorted_and_said_once(
     told = [it for it in lines if "MF701" in it]
     assert len(told) == 1
     assert "robot 'robot1'" in told[0]
-    assert "the same for 1 more robot" in told[0]
+    assert "; the same for robot2 (" in told[0]
     assert "multibotNamespaceSlot" not in "".join(lines)
     assert "multibotTagSlot" not in "".join(lines)
 

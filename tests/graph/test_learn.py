@@ -43,7 +43,8 @@ from multibot_rewrite.remap.records import (
     Table,
 )
 from multibot_rewrite.remap.stacks import built_in, user_stack
-from multibot_rewrite.remap.table import TRANSPORTS, build_table, expanded, parsed
+from multibot_rewrite.remap.table import build_table, expanded, parsed
+from multibot_rewrite.remap.targets import TRANSPORTS
 from multibot_rewrite.rosnames import bind, expand, resolve_bound
 
 LAYOUTS = ("L1", "L2", "L3", "L4")

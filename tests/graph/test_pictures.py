@@ -31,7 +31,7 @@ from multibot_rewrite.graph.pictures.dot import to_dot
 from multibot_rewrite.graph.pictures.layout import NODE_ROW, ROW, lay_out
 from multibot_rewrite.graph.pictures.mermaid import MOST_EDGES, MOST_LETTERS, to_mermaid
 from multibot_rewrite.graph.pictures.page import to_html
-from multibot_rewrite.graph.pictures.scene import Group, Scene, make_scene
+from multibot_rewrite.graph.pictures.scene import DrawnGroup, Scene, make_scene
 from multibot_rewrite.graph.pictures.simplify import only_common, without_common
 from multibot_rewrite.graph.pictures.states import (
     CLASH,
@@ -63,7 +63,7 @@ TAGS = frozenset(
 )
 
 
-def group(scene: Scene, robot: str) -> Group:
+def group(scene: Scene, robot: str) -> DrawnGroup:
     return next(group for group in scene.groups if group.robot == robot)
 
 

@@ -172,7 +172,7 @@ def test_lines_are_such_that_editors_find_the_place(capsys: pytest.CaptureFixtur
 
 @pytest.mark.usefixtures("here")
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "expected"),
     [
         (".", "sub/deep/robot.urdf"),
         ("./sub", "./sub/deep/robot.urdf"),
@@ -182,11 +182,11 @@ def test_lines_are_such_that_editors_find_the_place(capsys: pytest.CaptureFixtur
     ],
 )
 def test_files_are_named_as_they_were_given(
-    given: str, told: str, capsys: pytest.CaptureFixture[str]
+    given: str, expected: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     Path("sub/deep/robot.urdf").write_text(BROKEN)
     _, out, _ = said(capsys, given, "--select", "MB101")
-    assert [line.partition(":")[0] for line in out.splitlines()] == [told]
+    assert [line.partition(":")[0] for line in out.splitlines()] == [expected]
 
 
 @pytest.mark.usefixtures("here")
@@ -254,7 +254,7 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_every_rule_of_several_robots_asks_for_them() -> None:
-    """A plain lint tells nothing that hangs on robots nobody named."""
+    """Without robots there are no findings that depend on them."""
     for code in ("MB106", "MB405", "MB422"):
         assert RULES[code].options.get("robots"), code
     assert RULES["MB202"].level == ERROR
@@ -317,7 +317,7 @@ def test_a_reader_that_goes_away() -> None:
 
 
 def on_a_terminal(words: Sequence[str], **environment: str) -> str:
-    """What the command prints where somebody is looking."""
+    """What the command prints on a terminal."""
     parent, child = pty.openpty()
     known = {**os.environ, "TERM": "xterm", **environment}
     lint = subprocess.Popen([*COMMAND, *words], stdout=child, stderr=child, env=known)
@@ -326,7 +326,7 @@ def on_a_terminal(words: Sequence[str], **environment: str) -> str:
     while True:
         try:
             read = os.read(parent, 65536)
-        except OSError:  # how a terminal says that nobody writes any more
+        except OSError:  # how a terminal reports its end
             break
         if not read:
             break

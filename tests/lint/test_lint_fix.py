@@ -22,7 +22,7 @@ BOM = b"\xef\xbb\xbf"
 FIXABLE = (
     b'<?xml version="1.0"?>\r\n'
     b"<robot name='r' xmlns:x=\"urn:x\"\txmlns:y = 'urn:y'>\r\n"
-    b"  <!-- urdf-lint: ignore MB501, MB201 - nobody knows -->\r\n"
+    b"  <!-- urdf-lint: ignore MB501, MB201 - not known -->\r\n"
     b"  <link  name='a' /><!-- kept -->\r\n"
     b"</robot>"
 )

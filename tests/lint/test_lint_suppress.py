@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from paths import ROOT
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import is_on
@@ -18,7 +19,7 @@ from multibot_rewrite.lint.config.directives import ALWAYS_REPORTED, read_direct
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.config.suppress import unsuppressed
 from multibot_rewrite.lint.fix import fix
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
 
 PAGE = (ROOT / "docs" / "lint-config.md").read_text()

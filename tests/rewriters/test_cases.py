@@ -20,6 +20,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.vocabulary import VocabularySection, load_vocabulary
 from multibot_rewrite.steps.apply import fill
+from multibot_rewrite.steps.collect import declarations
 
 ROBOTS = ("robot1", "robot2")
 CASES = load_cases()
@@ -71,7 +72,7 @@ def beside(case: Case) -> dict[str, bytes]:
 def outside(case: Case) -> Declared:
     """What the URDF beside an SRDF declares."""
     urdf = case.options.get("urdf")
-    return {} if urdf is None else pipeline.declarations(urdf.read_bytes(), "", builtin_tree())
+    return {} if urdf is None else declarations(urdf.read_bytes(), "", builtin_tree())
 
 
 def places(findings: tuple[Finding, ...]) -> list[str]:

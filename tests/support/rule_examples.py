@@ -5,20 +5,25 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import yaml
 from graph_examples import read_example
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
+from multibot_rewrite.companions.lua import frames_to_edit
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO, Rule
 from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.naming import Policy
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\
@@ -41,10 +46,12 @@ COMPANIONS = {
     "lua": ("example.lua", "lua"),
     "bridge": ("example.yaml", "bridge"),
 }
-GRAPH = "graph"
+GRAPH, REMAP = "graph", ("remap", "remap-urdf")
+# What is found in these has no line of a file.
+WITHOUT_FILE = (GRAPH, *REMAP)
+POLICY: Policy = {"layout": "frames-per-robot", "affix": "prefix"}
 FLEET: dict[str, Any] = {
-    "layout": "frames-per-robot",
-    "affix": "prefix",
+    **POLICY,
     "robots": [
         {"name": "robot1", "description": "robot.urdf"},
         {"name": "robot2", "description": "robot.urdf"},
@@ -109,20 +116,53 @@ def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     _write(folder, {file: example})
     named = rule.options.get("companions", {})
     assert isinstance(named, dict)
-    return _fleet(rule, {"companions": {**named, key: [file]}}, folder)
+    return _fleet(rule, {"companions": {**named, key: file}}, folder)
+
+
+def lua_by_hand_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The Lua file of a fleet that does not rewrite it."""
+    _write(folder, {"robot.urdf": DESCRIPTION, "fleet.yaml": yaml.safe_dump(FLEET)})
+    (group,) = group_robots(plan_fleet(read_fleet(str(folder / "fleet.yaml"))))
+    return list(frames_to_edit(example, str(folder / "example.lua"), group.context))
 
 
 def fleet_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
-    """The example is the fleet file itself, or keys of one."""
-    return _fleet(rule, yaml.safe_load(example), folder)
+    """The example is the fleet file; what it leaves out is appended."""
+    return _fleet(rule, {}, folder, example)
 
 
-def _fleet(rule: Rule, keys: dict[str, Any], folder: Path) -> list[Finding]:
+def description_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The example is the description of the robots of a fleet."""
+    return _fleet(rule, {}, folder, description=example)
+
+
+def _fleet(
+    rule: Rule,
+    keys: dict[str, Any],
+    folder: Path,
+    text: str = "",
+    description: str = DESCRIPTION,
+) -> list[Finding]:
+    """What is found in a fleet file of ``text`` and, where that says nothing of them, ``keys``."""
     if "robot.urdf" not in rule.beside:
-        _write(folder, {"robot.urdf": DESCRIPTION})
-    _write(folder, {"fleet.yaml": yaml.safe_dump({**FLEET, **rule.options, **keys})})
+        _write(folder, {"robot.urdf": description})
+    said = yaml.safe_load(text) or {}
+    more = {it: value for it, value in {**FLEET, **rule.options, **keys}.items() if it not in said}
+    _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
     plan = plan_fleet(read_fleet(str(folder / "fleet.yaml")))
     return list(make_outputs(plan).findings)
+
+
+def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """The remap table of ``robots``: the example is their description, or a file of their nodes."""
+    nodes = {} if example.startswith("<") else yaml.safe_load(example)["nodes"]
+    _write(folder, {"robot.urdf": DESCRIPTION if nodes else example, "nodes.yaml": example})
+    options: dict[str, Any] = {"robots": ["robot1", "robot2"], **POLICY, **rule.options}
+    robots = options.pop("robots")
+    file = str(folder / "nodes.yaml") if nodes else None
+    policy = cast(Policy, options)
+    made = make_fleet(str(folder / "robot.urdf"), robots, list(nodes), policy, nodes=file)
+    return grouped(made.table.problems, {it: it for it in robots})
 
 
 def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
@@ -133,7 +173,10 @@ def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
+    "lua by hand": lua_by_hand_example,
     "rewrite": rewrite_example,
     "fleet": fleet_example,
+    "fleet-urdf": description_example,
+    **dict.fromkeys(REMAP, remap_example),
     GRAPH: graph_example,
 }

@@ -16,7 +16,7 @@ from multibot_rewrite.cli.declared.shared import (
 from multibot_rewrite.cli.options import (
     Command,
     Example,
-    Group,
+    OptionGroup,
     argument,
     output,
     several,
@@ -42,7 +42,7 @@ POSTFIX = Command(
         Example("cat rover.urdf | urdf-postfix - robot1 --diff"),
     ),
     (
-        Group(
+        OptionGroup(
             "input",
             (
                 argument("input", "INPUT", "URDF, SDF model, SRDF, xacro of one, or -", "?"),
@@ -52,7 +52,7 @@ POSTFIX = Command(
                 VOCABULARY,
             ),
         ),
-        Group(
+        OptionGroup(
             "output",
             (
                 output("write the result there; {robot} stands for the robot's name"),
@@ -66,7 +66,7 @@ POSTFIX = Command(
                 ),
             ),
         ),
-        Group(
+        OptionGroup(
             "other jobs",
             (
                 switch("--strip", about="undo a rewrite; give the options it was made with"),
@@ -105,7 +105,7 @@ LINT = Command(
         Example("urdf-lint --explain MB202"),
     ),
     (
-        Group(
+        OptionGroup(
             "input",
             (
                 argument("words", "PATH", "files, folders, or -; NAME:=VALUE is for xacro", "*"),
@@ -122,7 +122,7 @@ LINT = Command(
                 VOCABULARY,
             ),
         ),
-        Group(
+        OptionGroup(
             "output",
             (
                 FINDINGS_OUTPUT,
@@ -130,7 +130,7 @@ LINT = Command(
                 switch("--diff", about="with --fix: print what would change, write nothing"),
             ),
         ),
-        Group(
+        OptionGroup(
             "checks",
             (
                 ROBOTS,
@@ -152,7 +152,7 @@ LINT = Command(
         ),
         NAMING,
         FINDINGS,
-        Group("rules", (EXPLAIN_OPTION, switch("--list-rules", about="list all rules"))),
+        OptionGroup("rules", (EXPLAIN_OPTION, switch("--list-rules", about="list all rules"))),
         GENERAL,
     ),
     "0 nothing found (notes do not count); 1 findings; 2 wrong use, nothing to lint, or a rule that"

@@ -18,7 +18,7 @@ from multibot_rewrite.cli.declared.shared import (
 from multibot_rewrite.cli.options import (
     Command,
     Example,
-    Group,
+    OptionGroup,
     argument,
     form,
     output,
@@ -32,7 +32,7 @@ from multibot_rewrite.findings.finding import ERROR
 # Those of ``remap.table_formats``, which a help text does not import.
 REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
 
-_DESCRIPTION = Group(
+_DESCRIPTION = OptionGroup(
     "input",
     (
         argument("input", "INPUT", "the robot's description before any rewrite, or a fleet file"),
@@ -59,7 +59,7 @@ BUILD = Command(
         Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
     ),
     (
-        Group("input", (argument("fleet", "FLEET", "the fleet file, YAML"),)),
+        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"),)),
         output_group(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),
@@ -110,7 +110,7 @@ REHEARSE = Command(
                 type=values.path,
             ),
         ),
-        Group(
+        OptionGroup(
             "rehearsal",
             (switch("--without-rules", about="start nodes with namespace and name alone"),),
         ),

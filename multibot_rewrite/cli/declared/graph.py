@@ -15,7 +15,7 @@ from multibot_rewrite.cli.declared.shared import (
 from multibot_rewrite.cli.options import (
     Command,
     Example,
-    Group,
+    OptionGroup,
     argument,
     output,
     output_group,
@@ -37,7 +37,7 @@ CHECK = Command(
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
     ),
     (
-        Group(
+        OptionGroup(
             "input",
             (
                 argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
@@ -75,7 +75,7 @@ LEARN = Command(
         Example("multibot remap rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
     ),
     (
-        Group(
+        OptionGroup(
             "input",
             (
                 several(

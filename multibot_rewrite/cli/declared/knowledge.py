@@ -7,7 +7,7 @@ from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, VOCABUL
 from multibot_rewrite.cli.options import (
     Command,
     Example,
-    Group,
+    OptionGroup,
     argument,
     choice,
     form,
@@ -30,7 +30,7 @@ COVERAGE = Command(
         Example("multibot coverage urdf/ --form json -o coverage.json"),
     ),
     (
-        Group(
+        OptionGroup(
             "input",
             (
                 argument("words", "PATH", "files and folders; NAME:=VALUE is for xacro", "+"),
@@ -78,7 +78,7 @@ EXPLAIN = Command(
         Example("multibot explain", "list all"),
     ),
     (
-        Group("input", (argument("codes", "CODE", "codes, how they begin, or names", "*"),)),
+        OptionGroup("input", (argument("codes", "CODE", "codes, how they begin, or names", "*"),)),
         output_group(RESULT_OUTPUT),
         GENERAL,
     ),
@@ -91,7 +91,7 @@ HELP = Command(
     "Show the help of a command.",
     (Example("multibot help remap"),),
     (
-        Group("input", (argument("words", "COMMAND", "default: the list of commands", "*"),)),
+        OptionGroup("input", (argument("words", "COMMAND", "default: the list of commands", "*"),)),
         GENERAL,
     ),
     "0 done; 2 an unknown command",
@@ -107,7 +107,7 @@ VOCABULARY_LOOKUP = Command(
         Example("multibot vocabulary --suggest rover.urdf -o acme.vocab"),
     ),
     (
-        Group(
+        OptionGroup(
             "input",
             (
                 argument("words", "NAME", "a library, class, element or sensor type", "*"),

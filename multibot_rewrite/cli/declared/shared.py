@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.options import Group, choice, output, several, switch, value
+from multibot_rewrite.cli.options import OptionGroup, choice, output, several, switch, value
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.naming import (
@@ -18,7 +18,7 @@ _LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
 _LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
 
-NAMING = Group(
+NAMING = OptionGroup(
     "names of a robot",
     (
         choice("--layout", "NAME", _LAYOUT_NAMES, f"{_LAYOUTS}; default: {DEFAULT_LAYOUT}"),
@@ -64,7 +64,7 @@ VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
 URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
-FINDINGS = Group(
+FINDINGS = OptionGroup(
     "findings",
     (
         several("--select", "CODES", "only these codes, or codes that begin so: MB2,MG102", []),
@@ -85,7 +85,7 @@ FINDINGS = Group(
         ),
     ),
 )
-GENERAL = Group(
+GENERAL = OptionGroup(
     "general",
     (
         switch("-q", "--quiet", about="findings and errors only: no summary, no notes"),
@@ -103,7 +103,7 @@ GENERAL = Group(
         ),
     ),
 )
-LIVE = Group(
+LIVE = OptionGroup(
     "live graph",
     (
         value(
@@ -131,7 +131,7 @@ LIVE_CODES = (
     "0 as planned; 1 findings at the level of --fail-on; 2 wrong use or unreadable input;"
     " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW is missing or does not start"
 )
-PICTURES = Group(
+PICTURES = OptionGroup(
     "pictures",
     (
         value(

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.names.rename_map import KINDS, RenameMap, is_declared
+from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 
 KEEP = "keep"
@@ -47,7 +47,7 @@ class MoveitNames(NamedTuple):
 
 
 class _Walk(NamedTuple):
-    names: RenameMap
+    names: CompanionNames
     found: list[MoveitName]
     claimed: set[int]
     seen: set[tuple[int, int]]
@@ -72,7 +72,7 @@ def kinds() -> tuple[FileKind, ...]:
     )
 
 
-def find_names(root: yaml.Node | None, rules: Shapes, names: RenameMap) -> MoveitNames:
+def find_names(root: yaml.Node | None, rules: Shapes, names: CompanionNames) -> MoveitNames:
     """Every name below ``root``; an aliased value counts once for every shape that reaches it."""
     walk = _Walk(names, [], set(), set())
     if root is not None:
@@ -131,7 +131,7 @@ def _entry(key: yaml.ScalarNode, value: yaml.Node, rules: Shapes, walk: _Walk) -
 
 
 def _resolved(
-    word: str, at: int, value: yaml.Node, rules: Shapes, names: RenameMap
+    word: str, at: int, value: yaml.Node, rules: Shapes, names: CompanionNames
 ) -> _Match | None:
     """The names in a key: nested maps and keys with dots are the same parameter."""
     found = _exact(word, at, value, rules, names)
@@ -145,7 +145,7 @@ def _resolved(
     return _open(word, at, value, rules)
 
 
-def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RenameMap) -> _Match | None:
+def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: CompanionNames) -> _Match | None:
     marks, rule = head
     if rule == KEEP:
         known = all(is_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)
@@ -155,7 +155,7 @@ def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: RenameMap) 
 
 
 def _exact(
-    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: RenameMap
+    word: str, at: int, value: yaml.Node | None, rules: Shapes, names: CompanionNames
 ) -> _Match | None:
     """A literal key, a declared name, or a name by what is below it."""
     if word in rules and word[:1] not in ("<", "*"):

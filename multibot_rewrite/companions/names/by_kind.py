@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
-from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, affix
+from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
 
 Speller = Callable[[Context, str], str]
 _WORD = re.compile(r"[\w./-]+")
@@ -58,8 +58,8 @@ def _chain(context: Context, value: str) -> str:
 
 def controller(context: Context, value: str) -> str:
     """A controller is a node: without namespaces each robot's has a different name."""
-    there = affix(context.topics.naming, "node", value) if is_plain(value) else None
-    return there.spell(value, NAMESPACE_SLOT) if there else value
+    naming = context.topics.naming
+    return spelled(naming, NAMESPACE_SLOT, "node", value) if is_plain(value) else value
 
 
 def node(context: Context, value: str) -> str:
@@ -78,8 +78,7 @@ def namespace(context: Context, value: str) -> str:
     naming = context.topics.naming
     if not value.startswith("/") or naming.topics != NAMESPACE:
         return value
-    there = affix(naming, "namespace", value)
-    return there.spell(value, NAMESPACE_SLOT) if there else value
+    return spelled(naming, NAMESPACE_SLOT, "namespace", value)
 
 
 def stem(context: Context, value: str) -> str:

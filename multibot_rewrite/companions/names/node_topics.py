@@ -17,7 +17,8 @@ from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in
-from multibot_rewrite.remap.table import node_table, parsed, placed, target_of
+from multibot_rewrite.remap.table import node_table, parsed
+from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound
 
 Facts = Mapping[str, NodeFacts]

@@ -24,7 +24,7 @@ KINDS = {
 }
 
 
-class RenameMap(NamedTuple):
+class CompanionNames(NamedTuple):
     """The names that a description declares (not rewritten), the naming, and the robot."""
 
     declared: Declared
@@ -32,7 +32,7 @@ class RenameMap(NamedTuple):
     robot: str
 
 
-def spell(names: RenameMap, word: str, value: str, namespaced: bool = True) -> str:
+def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
     """The robot's version of ``value``, a name of the kind ``word``; other values stay.
 
     ``namespaced`` is true if a relative topic is resolved in the robot's namespace.
@@ -43,6 +43,6 @@ def spell(names: RenameMap, word: str, value: str, namespaced: bool = True) -> s
     return spelled(names.naming, names.robot, kind, value, namespaced)
 
 
-def is_declared(names: RenameMap, word: str, value: str) -> bool:
+def is_declared(names: CompanionNames, word: str, value: str) -> bool:
     """Does the description declare this link, joint, sensor, gpio or hardware?"""
     return any(value in names.declared.get(kind, ()) for kind in KINDS[word])

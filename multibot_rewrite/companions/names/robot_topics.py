@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from multibot_rewrite.companions.names.rename_map import RenameMap
+from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.naming import NAMESPACE, NOT_PLAIN
 from multibot_rewrite.remap.records import ACTION, TOPIC, NodeFacts, Table
-from multibot_rewrite.remap.table import target_of
+from multibot_rewrite.remap.targets import target_of
 from multibot_rewrite.rosnames import check_topic_name, expand
 
 NOTHING: Mapping[str, str] = {}
@@ -20,7 +20,7 @@ def is_topic(value: str) -> bool:
     return "//" not in value and check_topic_name(value) is None
 
 
-def robot_topic(names: RenameMap, value: str, known: Mapping[str, str] = NOTHING) -> str:
+def robot_topic(names: CompanionNames, value: str, known: Mapping[str, str] = NOTHING) -> str:
     """The robot's absolute topic; ``value`` itself if it is shared or not a topic name.
 
     ``known`` is ``fleet_topics`` of the robot, for topics that do not follow the general rule.

@@ -208,12 +208,18 @@ def tool_edits(document: YamlText, tool: RvizItem, robot: RvizRobot) -> Iterator
     if topic == default:
         return
     if not is_block(tool.node):
-        at = tool.node.end_mark.index - 1
+        at = _end_of_entries(document, tool.node)
         yield Splice(at, at, f", Topic: {quoted(topic)}")
     else:
         lead = " " * tool.node.start_mark.column
         at = end_of(tool.node)
         yield Splice(at, at, f"{newline(document)}{lead}Topic: {quoted(topic)}")
+
+
+def _end_of_entries(document: YamlText, node: yaml.Node) -> int:
+    """Where a map in braces takes one more entry: before the brace, or before a comma at the end."""
+    last, brace = end_of(node.value[-1][1]), node.end_mark.index - 1
+    return last if "," in document.text[last:brace] else brace
 
 
 def panels(job: RvizJob) -> Iterator[Splice]:

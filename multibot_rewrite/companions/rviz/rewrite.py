@@ -33,7 +33,7 @@ from multibot_rewrite.companions.yaml_text import Splice, YamlText, replaced, sp
 from multibot_rewrite.model import Finding, ProofError, UsageError
 from multibot_rewrite.naming import TF_TOPICS, Naming
 from multibot_rewrite.remap.records import TOPIC
-from multibot_rewrite.remap.table import target_of
+from multibot_rewrite.remap.targets import target_of
 
 __all__ = ["RvizRobot", "RvizText", "rewrite_rviz", "start_command", "world_frame"]
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.names.rename_map import RenameMap, spell
+from multibot_rewrite.companions.names.rename_map import CompanionNames, spell
 from multibot_rewrite.companions.names.robot_topics import NOTHING, robot_topic
 from multibot_rewrite.companions.rviz.colours import Colour
 from multibot_rewrite.companions.rviz.read_config import RvizItem, ValuePlace, rviz_data, text_of
@@ -30,8 +30,8 @@ class RvizRobot(NamedTuple):
     """
 
     name: str
-    names: RenameMap
-    topics: RenameMap
+    names: CompanionNames
+    topics: CompanionNames
     colour: str | tuple[int, ...] = ""
     known: Mapping[str, str] = NOTHING
     tf_prefix: str = ""

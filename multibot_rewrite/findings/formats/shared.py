@@ -8,9 +8,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.findings.finding import LEVELS, Finding
+from multibot_rewrite.findings.finding import LEVELS, Finding, same_for
 from multibot_rewrite.findings.formats import Report
-from multibot_rewrite.findings.grouping import same_for
 from multibot_rewrite.lazy import lazy_compile
 
 # What ends a line, steers a terminal, or stands in no XML or UTF-8: lone surrogates are bytes of a

@@ -15,7 +15,7 @@ from multibot_rewrite.remap.records import (
     TOPIC,
     Endpoint,
 )
-from multibot_rewrite.remap.table import TRANSPORTS
+from multibot_rewrite.remap.targets import TRANSPORTS
 
 IMAGE = "sensor_msgs/msg/Image"
 CLOCK = "/clock"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, Group, Scene
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, DrawnGroup, Scene
 from multibot_rewrite.graph.pictures.simplify import (
     has_faults,
     only_faults,
@@ -69,7 +69,7 @@ def largest_fitting(scene: Scene, fits: Callable[[Chart], bool]) -> Chart:
     return chart
 
 
-def _faulty_edges(group: Group) -> Group:
+def _faulty_edges(group: DrawnGroup) -> DrawnGroup:
     """Keep only faulty edges, wrong ones before missing ones."""
     edges = [edge for edge in group.edges if edge.state in FAULTY]
     edges.sort(key=lambda edge: edge.state == MISSING)
@@ -81,7 +81,7 @@ _Nodes = Mapping[str, tuple[str, DrawnNode]]
 _Names = Mapping[tuple[str, str], tuple[str, DrawnName]]
 
 
-def _chart(note: str, groups: Sequence[Group], healthy: Iterable[str]) -> Chart:
+def _chart(note: str, groups: Sequence[DrawnGroup], healthy: Iterable[str]) -> Chart:
     """Each node and name once: in its robot's cluster, or in the first one if that is left out."""
     nodes, names = _place_nodes(groups), _place_names(groups)
     node_ids = {node: f"n{at}" for at, node in enumerate(nodes)}
@@ -100,7 +100,7 @@ def _chart(note: str, groups: Sequence[Group], healthy: Iterable[str]) -> Chart:
     return Chart(note, _not_empty(clusters), tuple(healthy), tuple(arrows))
 
 
-def _place_nodes(groups: Sequence[Group]) -> _Nodes:
+def _place_nodes(groups: Sequence[DrawnGroup]) -> _Nodes:
     robots = {group.robot for group in groups}
     placed: dict[str, tuple[str, DrawnNode]] = {}
     for group in groups:
@@ -110,7 +110,7 @@ def _place_nodes(groups: Sequence[Group]) -> _Nodes:
     return placed
 
 
-def _place_names(groups: Sequence[Group]) -> _Names:
+def _place_names(groups: Sequence[DrawnGroup]) -> _Names:
     robots = {group.robot for group in groups}
     placed: dict[tuple[str, str], tuple[str, DrawnName]] = {}
     for group in groups:
@@ -120,7 +120,7 @@ def _place_names(groups: Sequence[Group]) -> _Names:
     return placed
 
 
-def _edges(groups: Iterable[Group]) -> Iterable[DrawnEdge]:
+def _edges(groups: Iterable[DrawnGroup]) -> Iterable[DrawnEdge]:
     """The edges of single nodes, each once."""
     found: dict[DrawnEdge, None] = {}
     for group in groups:
@@ -129,7 +129,7 @@ def _edges(groups: Iterable[Group]) -> Iterable[DrawnEdge]:
     return found
 
 
-def _single_nodes(group: Group) -> Iterator[DrawnNode]:
+def _single_nodes(group: DrawnGroup) -> Iterator[DrawnNode]:
     return (node for node in group.nodes if not node.is_robot)
 
 

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, Group
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, DrawnGroup
 from multibot_rewrite.graph.pictures.states import FAULTY, STATES
 from multibot_rewrite.remap.records import PUBLISHES, SERVES
 
@@ -34,7 +34,7 @@ class GroupLayout(NamedTuple):
 _NameKey = tuple[str, str]
 
 
-def lay_out(group: Group) -> GroupLayout:
+def lay_out(group: DrawnGroup) -> GroupLayout:
     """The layout of one group."""
     nodes = {node.name: node for node in group.nodes}
     offers = _names_by_node(edge for edge in group.edges if edge.role in OFFERING)
@@ -64,7 +64,7 @@ def _names_by_node(edges: Iterable[DrawnEdge]) -> dict[str, list[_NameKey]]:
 
 
 def _ordered_names(
-    group: Group, offers: Mapping[str, Sequence[_NameKey]], uses: Mapping[str, Sequence[_NameKey]]
+    group: DrawnGroup, offers: Mapping[str, Sequence[_NameKey]], uses: Mapping[str, Sequence[_NameKey]]
 ) -> list[_NameKey]:
     """The names, the worst first, within the same state in an order with few crossings."""
     severity = {(name.kind, name.name): len(STATES) for name in group.names}

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Iterable, Mapping
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
-from multibot_rewrite.graph.pictures.scene import Group, Scene
+from multibot_rewrite.graph.pictures.scene import DrawnGroup, Scene
 from multibot_rewrite.graph.pictures.simplify import has_faults, without_common
 from multibot_rewrite.graph.pictures.states import Targets
 from multibot_rewrite.graph.pictures.svg import Ids
@@ -26,8 +26,8 @@ class PageSection(NamedTuple):
     ``levels`` counts its findings by level; a ``faulty`` section has findings or faulty names.
     """
 
-    group: Group
-    shown: Group
+    group: DrawnGroup
+    shown: DrawnGroup
     id: str
     levels: Mapping[str, int]
     faulty: bool

@@ -76,7 +76,7 @@ class DrawnName(NamedTuple):
     merged: tuple[str, ...] = ()
 
 
-class Group(NamedTuple):
+class DrawnGroup(NamedTuple):
     """What belongs to one robot, or to none where ``robot`` is empty."""
 
     robot: str
@@ -112,7 +112,7 @@ class Scene(NamedTuple):
     verdict: Verdict
     layout: str
     robots: tuple[str, ...]
-    groups: tuple[Group, ...]
+    groups: tuple[DrawnGroup, ...]
     crossings: tuple[Crossing, ...]
     trees: tuple[FrameTree, ...]
     findings: tuple[Finding, ...]
@@ -220,7 +220,7 @@ def _groups(
     edges: Iterable[DrawnEdge],
     nodes: Mapping[str, DrawnNode],
     robot_of: _RobotOf,
-) -> Iterator[Group]:
+) -> Iterator[DrawnGroup]:
     """One for each robot, then one for the rest; an endpoint that connects two robots is in both."""
     parts: dict[str, list[DrawnEdge]] = {robot.name: [] for robot in plan.robots}
     parts[""] = []
@@ -233,7 +233,7 @@ def _groups(
         own = {node.name: node for node in nodes.values() if node.robot == robot}
         users = {e.node: nodes.get(e.node) or DrawnNode(e.node, e.node, OK, True) for e in shown}
         keys = dict.fromkeys((edge.kind, edge.name) for edge in shown)
-        yield Group(robot, tuple((own | users).values()), tuple(names[key] for key in keys), shown)
+        yield DrawnGroup(robot, tuple((own | users).values()), tuple(names[key] for key in keys), shown)
 
 
 def _nodes_as_robots(

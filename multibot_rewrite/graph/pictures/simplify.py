@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 
-from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, Group
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnGroup
 from multibot_rewrite.graph.pictures.states import FAULTY, MISSING, OK
 from multibot_rewrite.remap.records import SERVES
 
@@ -13,7 +13,7 @@ from multibot_rewrite.remap.records import SERVES
 MERGE_FROM = 3
 
 
-def without_common(group: Group) -> Group:
+def without_common(group: DrawnGroup) -> DrawnGroup:
     """Drop the endpoints that every node has (parameter services ...) unless they are faulty.
 
     Those of a missing node are dropped as well.
@@ -27,7 +27,7 @@ def without_common(group: Group) -> Group:
     return _merge_unused_services(_with_edges(group, edges))
 
 
-def only_common(group: Group) -> Group:
+def only_common(group: DrawnGroup) -> DrawnGroup:
     """What ``without_common`` drops."""
     shown = {(edge.kind, edge.name) for edge in without_common(group).edges}
     hidden = [edge for edge in group.edges if (edge.kind, edge.name) not in shown]
@@ -36,13 +36,13 @@ def only_common(group: Group) -> Group:
     return smaller._replace(nodes=tuple(n for n in smaller.nodes if n.name in nodes))
 
 
-def has_faults(group: Group) -> bool:
+def has_faults(group: DrawnGroup) -> bool:
     """Whether anything in the group is missing or wrong."""
     states = {node.state for node in group.nodes} | {edge.state for edge in group.edges}
     return not states.isdisjoint(FAULTY)
 
 
-def only_faults(group: Group) -> Group:
+def only_faults(group: DrawnGroup) -> DrawnGroup:
     """Keep what is missing or wrong, and all endpoints of those names."""
     names = {(edge.kind, edge.name) for edge in group.edges if edge.state in FAULTY}
     smaller = _with_edges(group, [e for e in group.edges if (e.kind, e.name) in names])
@@ -51,7 +51,7 @@ def only_faults(group: Group) -> Group:
     return smaller._replace(nodes=tuple(kept))
 
 
-def without_single_endpoints(group: Group) -> Group:
+def without_single_endpoints(group: DrawnGroup) -> DrawnGroup:
     """Drop the names with only one endpoint unless it is faulty."""
     ends: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
     for edge in group.edges:
@@ -60,7 +60,7 @@ def without_single_endpoints(group: Group) -> Group:
     return _with_edges(group, [e for e in group.edges if (e.kind, e.name) in kept])
 
 
-def _with_edges(group: Group, edges: Iterable[DrawnEdge]) -> Group:
+def _with_edges(group: DrawnGroup, edges: Iterable[DrawnEdge]) -> DrawnGroup:
     """The group with only these edges; robots and tools without an edge are dropped."""
     kept = tuple(edges)
     nodes = {edge.node for edge in kept}
@@ -72,7 +72,7 @@ def _with_edges(group: Group, edges: Iterable[DrawnEdge]) -> Group:
     )
 
 
-def _merge_unused_services(group: Group) -> Group:
+def _merge_unused_services(group: DrawnGroup) -> DrawnGroup:
     """Draw a node's services without a client as one name, where there are several."""
     ends: dict[tuple[str, str], list[DrawnEdge]] = defaultdict(list)
     for edge in group.edges:

@@ -7,7 +7,7 @@ from html import escape
 from typing import NamedTuple
 
 from multibot_rewrite.graph.pictures.layout import OFFERING, GroupLayout, lay_out
-from multibot_rewrite.graph.pictures.scene import DrawnName, DrawnNode, Group
+from multibot_rewrite.graph.pictures.scene import DrawnName, DrawnNode, DrawnGroup
 from multibot_rewrite.graph.pictures.states import (
     CLASH,
     CROSS_TALK,
@@ -61,7 +61,7 @@ def tooltip(*lines: str) -> str:
     return f"<title>{chr(10).join(map(safe, filter(None, lines)))}</title>"
 
 
-def group_svg(group: Group, ids: Ids, prefix: str) -> str:
+def group_svg(group: DrawnGroup, ids: Ids, prefix: str) -> str:
     """The picture of a group; ``prefix`` is put before its anchors, without it there are none."""
     place = lay_out(group)
     kinds = {counted(len(group.nodes), "node"), counted(len(group.names), "name")}
@@ -82,7 +82,7 @@ def _column_titles() -> Iterator[str]:
         yield f'<text class="head" x="{x + wide / 2:g}" y="16">{text}</text>'
 
 
-def _edges(group: Group, place: GroupLayout, ids: Ids) -> Iterator[str]:
+def _edges(group: DrawnGroup, place: GroupLayout, ids: Ids) -> Iterator[str]:
     """Faulty edges are drawn last, above the others."""
     left = {node.name: y for node, y in place.left}
     right = {node.name: y for node, y in place.right}
@@ -102,7 +102,7 @@ def _curve(x: int, y: float, to_x: int, to_y: float) -> str:
     return f"M{x} {y:.0f}C{bend} {y:.0f} {bend} {to_y:.0f} {to_x} {to_y:.0f}"
 
 
-def _boxes(group: Group, place: GroupLayout, ids: Ids, prefix: str) -> Iterator[str]:
+def _boxes(group: DrawnGroup, place: GroupLayout, ids: Ids, prefix: str) -> Iterator[str]:
     drawn = set()
     for column, things in ((LEFT, place.left), (RIGHT, place.right)):
         for node, y in things:

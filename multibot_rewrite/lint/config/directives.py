@@ -43,7 +43,7 @@ class Part(NamedTuple):
     name: bytes = b""
 
 
-class Fault(NamedTuple):
+class DirectiveFault(NamedTuple):
     """What is wrong with a comment, at a byte offset."""
 
     start: int
@@ -70,7 +70,7 @@ class Directive(NamedTuple):
     end: int
     word: str
     codes: tuple[Code, ...]
-    faults: tuple[Fault, ...]
+    faults: tuple[DirectiveFault, ...]
     lines: tuple[int, int]
     element: tuple[int, int] | None = None
     sometimes: bool = False
@@ -128,7 +128,7 @@ def _directive(source: bytes, part: Part) -> Directive | None:
         return None  # text about the lint
     codes, faults = _codes(source, comment)
     if not comment[1]:
-        faults = [Fault(part.start, f"there is no colon after {MARK.decode()!r}")]
+        faults = [DirectiveFault(part.start, f"there is no colon after {MARK.decode()!r}")]
     elif word not in (IGNORE, IGNORE_FILE):
         faults = [_unknown_word(word, part.start)]
     codes = [] if faults and faults[0].start == part.start else codes
@@ -141,18 +141,18 @@ def _line_end(source: bytes, offset: int) -> int:
     return len(source) if end < 0 else end
 
 
-def _unknown_word(word: str, start: int) -> Fault:
+def _unknown_word(word: str, start: int) -> DirectiveFault:
     near = nearest(word.lower(), (IGNORE, IGNORE_FILE))
     hint = f"did you mean {near!r}?" if near else _HOW
-    return Fault(start, f"unknown word {word!r}" if word else "the comment is empty", hint)
+    return DirectiveFault(start, f"unknown word {word!r}" if word else "the comment is empty", hint)
 
 
-def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[Code], list[Fault]]:
+def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[Code], list[DirectiveFault]]:
     """The valid codes, and what is wrong with the others."""
     reason = _REASON.search(source, comment.start(3), comment.end(3))
     end = reason.start() if reason else comment.end(3)
     codes: list[Code] = []
-    faults: list[Fault] = []
+    faults: list[DirectiveFault] = []
     for found in _WORD.finditer(source, comment.start(3), end):
         text = found[0].decode("utf-8", "replace")
         fault = _fault(text, found.start())
@@ -163,21 +163,21 @@ def _codes(source: bytes, comment: re.Match[bytes]) -> tuple[list[Code], list[Fa
         if not _LIKE_A_CODE.fullmatch(text):
             break  # a reason without a dash is one fault
     if not codes and not faults:
-        faults.append(Fault(comment.start(), "there is no code in it"))
+        faults.append(DirectiveFault(comment.start(), "there is no code in it"))
     return codes, faults
 
 
-def _fault(text: str, start: int) -> Fault | None:
+def _fault(text: str, start: int) -> DirectiveFault | None:
     if text in ALWAYS_REPORTED:
-        return Fault(start, f"no comment can suppress {text}", "remove it")
+        return DirectiveFault(start, f"no comment can suppress {text}", "remove it")
     if text in RULES:
         return None
     if not _LIKE_A_CODE.fullmatch(text):
-        return Fault(start, f"{text!r} is not a code", "put a dash before a reason: CODE - reason")
+        return DirectiveFault(start, f"{text!r} is not a code", "put a dash before a reason: CODE - reason")
     if any(code.startswith(text.upper()) for code in RULES) and text.upper() not in RULES:
-        return Fault(start, f"{text!r} is not a whole code", "write whole codes")
+        return DirectiveFault(start, f"{text!r} is not a whole code", "write whole codes")
     near = nearest(text.upper(), RULES)
-    return Fault(start, f"no rule has the code {text!r}", f"did you mean {near}?" if near else _HOW)
+    return DirectiveFault(start, f"no rule has the code {text!r}", f"did you mean {near}?" if near else _HOW)
 
 
 def _below(
@@ -204,7 +204,7 @@ def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
     """An ignore-file has no effect after the root's first child."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
-    late = Fault(it.start, f"{IGNORE_FILE} is after the first element", "move it to the top")
+    late = DirectiveFault(it.start, f"{IGNORE_FILE} is after the first element", "move it to the top")
     return it._replace(codes=(), faults=(*it.faults, late))
 
 

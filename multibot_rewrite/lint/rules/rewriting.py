@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 
 from multibot_rewrite.checks.audit import unknown_hardware, unknown_plugins
-from multibot_rewrite.checks.mentions import remark, unclaimed_mentions
-from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.checks.mentions import as_problem, unclaimed_mentions
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
-from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.shared import problems
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import slot_values
@@ -38,15 +37,15 @@ def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
         return
     values = slot_values(subject.document.root)
     mentions = unclaimed_mentions(inventory, values, names, subject.tree)
-    yield from problems(map(remark, mentions))
+    yield from map(as_problem, mentions)
 
 
-Audit = Callable[[Inventory, Tree], Iterable[Remark]]
+Audit = Callable[[Inventory, Tree], Iterator[Problem]]
 
 
 def _audit(audit: Audit, subject: Subject) -> Iterator[Problem]:
     """What an audit of the vocabulary finds in a document."""
-    return problems(audit(subject.inventory, subject.tree))
+    return audit(subject.inventory, subject.tree)
 
 
 unknown_plugin = rule(

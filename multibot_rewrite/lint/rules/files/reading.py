@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
-from collections.abc import Iterable, Iterator
-from itertools import accumulate, islice
+from collections.abc import Iterator
+from itertools import islice
 
 from multibot_rewrite.checks.audit import leftover_xacro, worlds
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.robots import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import declare, rule
 from multibot_rewrite.lint.facts.renames import rename_map
-from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.model import Finding
+from multibot_rewrite.lint.records import Subject
 
 # These three are reported where a file is read or expanded: see ``failures``.
 not_xml = declare(
@@ -76,8 +75,7 @@ xacro_failed = declare(
 )
 def leftover(subject: Subject) -> Iterator[Problem]:
     """One finding per file, at the first of them."""
-    found = list(leftover_xacro(subject.inventory))
-    return _placed(subject, found) if found else iter(())
+    return leftover_xacro(subject.inventory)
 
 
 @rule(
@@ -100,7 +98,7 @@ def already(subject: Subject) -> Iterator[Problem]:
     renames = rename_map(subject)
     found = already_rewritten(subject.inventory, renames, settings.robots, False)
     for it in islice(found, 1):
-        yield Problem(subject.document.root, it.message, None, "lint the source it was made from")
+        yield it._replace(hint="lint the source it was made from")
 
 
 @rule(
@@ -116,20 +114,4 @@ def already(subject: Subject) -> Iterator[Problem]:
 )
 def sdf_world(subject: Subject) -> Iterator[Problem]:
     """Every world of the file."""
-    return (
-        _placed(subject, worlds(subject.inventory))
-        if subject.document.root.tag == "sdf"
-        else iter(())
-    )
-
-
-def _placed(subject: Subject, findings: Iterable[Finding]) -> Iterator[Problem]:
-    """Findings that know a line and a column -> problems at the elements there."""
-    source = subject.document.source
-    elements = subject.document.elements
-    lines = [0, *accumulate(len(line) for line in source.splitlines(keepends=True))]
-    for it in findings:
-        line = source[lines[it.line - 1] :].decode("utf-8", "replace")
-        start = lines[it.line - 1] + len(line[: it.column - 1].encode())
-        element = elements[bisect_left(subject.document.starts, start)]
-        yield Problem(element, it.message, None, it.hint)
+    return worlds(subject.inventory)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.lint.records import Subject
 
 
 def faults(kind: str, subject: Subject, *, substitutions: bool = True) -> Iterator[Problem]:

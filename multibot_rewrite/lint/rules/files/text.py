@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 
 BOM = b"\xef\xbb\xbf"
 _DECLARED = lazy_compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_files
 
 READABLE = frozenset(("stl", "dae", "obj"))

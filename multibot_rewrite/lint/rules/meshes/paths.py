@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.source_values import is_fixed, starts_of
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, and_more, problem, used_files
 
 

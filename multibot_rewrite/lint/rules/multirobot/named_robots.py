@@ -6,31 +6,30 @@ from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 
 from multibot_rewrite.checks import hazards, robots
-from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import SRDF, rule
 from multibot_rewrite.lint.facts.renames import rename_map
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, ONE_TF, TWO
-from multibot_rewrite.lint.rules.shared import problems
 from multibot_rewrite.naming import Naming, make_naming, overlap
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.renames import RenameMap
 
-Hazard = Callable[[Inventory, RenameMap], Iterable[Remark]]
-ByNaming = Callable[[Inventory, Naming], Iterable[Remark]]
+Hazard = Callable[[Inventory, RenameMap], Iterable[Problem]]
+ByNaming = Callable[[Inventory, Naming], Iterable[Problem]]
 
 
 def _by_naming(hazard: ByNaming) -> Hazard:
-    """The same for what needs no spelled name."""
+    """The same for a check that needs only the naming."""
     return lambda inventory, renames: hazard(inventory, renames.naming)
 
 
 def _if_robots(hazard: Hazard, subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the named robots warns about; nothing where none are named."""
     if subject.settings.robots:
-        yield from problems(hazard(subject.inventory, rename_map(subject)))
+        yield from hazard(subject.inventory, rename_map(subject))
 
 
 joints_reordered = rule(
@@ -72,7 +71,7 @@ def name_taken(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB420."""
     names = subject.settings.robots
     if names:
-        yield from problems(robots.taken_names(subject.inventory, rename_map(subject), names))
+        yield from robots.taken_names(subject.inventory, rename_map(subject), names)
 
 
 @rule(
@@ -94,8 +93,7 @@ def robots_share_a_name(subject: Subject) -> Iterator[Problem]:
     """What a rewrite for the robots rejects as MB421."""
     naming, names = subject.settings.naming, subject.settings.robots
     pairs = overlap(naming, names) if len(names) > 1 else []
-    for it in robots.meeting(subject.inventory, rename_map(subject), pairs):
-        yield Problem(subject.document.root, it.message, None, it.hint)
+    return robots.meeting(subject.inventory, rename_map(subject), pairs)
 
 
 prefix_only = rule(
@@ -204,7 +202,7 @@ sensor_names_collide = rule(
     "names for all robots.",
     why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
     "none if two have it: the second robot reads the first one's data, or nothing.",
-    fix="Use the layout both, which spells sensors for each robot.",
+    fix="Use the layout both, which renames sensors for each robot.",
     bad='<link name="a"/>\n'
     '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
     '<ros2_control name="h" type="system">\n'
@@ -243,7 +241,7 @@ def process_wide_rule(subject: Subject) -> Iterator[Problem]:
     """Rules that apply to other robots' nodes; if no robots are named, those with absolute targets."""
     settings = subject.settings
     naming = settings.naming if settings.robots else AS_WRITTEN
-    yield from problems(hazards.process_wide(subject.inventory, naming))
+    yield from hazards.process_wide(subject.inventory, naming)
 
 
 fixed_to_own_frame = rule(

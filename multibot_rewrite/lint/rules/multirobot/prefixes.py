@@ -6,9 +6,10 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import XACRO, rule
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.xacro_scopes import (
     PREFIX,
     SUBSTITUTIONS,

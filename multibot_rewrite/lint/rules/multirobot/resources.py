@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.checks import hazards
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed, is_fixed, starts_of
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import AS_WRITTEN, process_wide_plugins
 from multibot_rewrite.rewriters.tree import library_key
 
@@ -117,7 +118,7 @@ def sensor_found_by_bare_name(subject: Subject) -> Iterator[Problem]:
     if subject.settings.robots or not _has_fixed_sensor(subject):
         return
     for it in hazards.bare_lookups(subject.inventory, AS_WRITTEN):
-        yield Problem(it.element, it.message, None, "give sensors a prefix for each robot")
+        yield it._replace(hint="give sensors a prefix for each robot")
 
 
 def _has_fixed_sensor(subject: Subject) -> bool:

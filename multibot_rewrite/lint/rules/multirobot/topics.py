@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import (
     claims_of,
     inserted,

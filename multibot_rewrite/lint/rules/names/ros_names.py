@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.names.shared import BLANK, SUBSTITUTION, TOKEN, name_of_robot
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN

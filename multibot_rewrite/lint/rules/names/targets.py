@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.names.shared import TOKEN, named
 
 

@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.numbers import Vector, vector
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.physics.shared import (
     BOX,
     SHAPES,
@@ -220,6 +221,6 @@ def _scales(subject: Subject) -> list[tuple[_Element, Vector]]:
 
 
 def _owner(shape: _Element) -> str:
-    """The name of the link that a shape stands in."""
+    """The name of the link that has a shape."""
     link = next(shape.iterancestors("link"), None)
     return "" if link is None else link.get("name", "")

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import COMPARED, HINTED, where
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.lookup import references
 from multibot_rewrite.lint.rules.references.shared import a_plugin

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import ambiguous
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 
 # The values of a <gazebo> block of which a link has one each (libsdformat parser_urdf.cc); some have
 # two tags.
@@ -63,8 +64,7 @@ SINGLE = {
 def link_and_joint(subject: Subject) -> Iterator[Problem]:
     """Every such reference."""
     for it in ambiguous(subject.inventory):
-        message = it.message.partition(";")[0]
-        yield Problem(it.element, message, it.attribute, it.hint)
+        yield it._replace(message=it.message.partition(";")[0])
 
 
 @rule(

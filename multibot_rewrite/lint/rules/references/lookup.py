@@ -7,11 +7,10 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.checks.audit import uses_xacro
-from multibot_rewrite.checks.references import Loose, doubtful, loose_ends, remarks
-from multibot_rewrite.checks.remarks import Remark
+from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.checks.references import Loose, doubtful, loose_ends, undeclared_names
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.records import Problem, Subject
-from multibot_rewrite.lint.rules.shared import problems
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim
 from multibot_rewrite.steps.collect import Inventory
 
@@ -23,7 +22,7 @@ class References(NamedTuple):
     """The uses that are not simply a declared link or joint, and by rule the undeclared names."""
 
     doubtful: list[Claim]
-    loose: Mapping[str, list[Remark]]
+    loose: Mapping[str, list[Problem]]
 
 
 @memoized
@@ -39,8 +38,8 @@ def references(subject: Subject) -> References:
     if not uses_xacro(inventory.document):
         ends = loose_ends(claims, inventory.declared, subject.settings.naming.shared_frames)
         loose = [it for it in ends if not _elsewhere(it, inventory)]
-        for remark in remarks(loose, inventory.declared):
-            by_code[remark.code].append(remark)
+        for problem in undeclared_names(loose, inventory.declared):
+            by_code[problem.code].append(problem)
     return References(claims, by_code)
 
 
@@ -68,4 +67,4 @@ def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:
     """The undeclared names of one rule: ``checks.references`` gives each place the code of its rule."""
-    return problems(references(subject).loose.get(code, ()))
+    return iter(references(subject).loose.get(code, ()))

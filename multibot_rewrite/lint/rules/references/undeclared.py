@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import where
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_joint, a_link
 from multibot_rewrite.lint.rules.references.lookup import references, undeclared
 from multibot_rewrite.lint.rules.references.shared import ARM, LINKS, a_pair, a_plugin, a_system

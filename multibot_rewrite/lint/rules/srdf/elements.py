@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, ELEMENTS, TOP, srdf_rule
 from multibot_rewrite.nearest import nearest
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
+from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import repeated
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
-from multibot_rewrite.lint.records import Problem, Subject
+from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.references.lookup import undeclared
 from multibot_rewrite.lint.rules.srdf.shared import ARM, srdf_rule
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import cached_property
 from typing import NamedTuple
 
-from multibot_rewrite import pipeline
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.read import Source, args_for, read_source
-from multibot_rewrite.steps.collect import NOTHING
+from multibot_rewrite.steps.collect import NOTHING, declarations
 
 
 class Job(NamedTuple):
@@ -33,7 +31,7 @@ class Job(NamedTuple):
     @property
     def urdf_declarations(self) -> Declared:
         """What the URDF beside an SRDF declares; raises InputError."""
-        return pipeline.declarations(*self.urdf, self.tree) if self.urdf else NOTHING
+        return declarations(*self.urdf, self.tree) if self.urdf else NOTHING
 
 
 def read_job(
@@ -49,31 +47,3 @@ def read_job(
     data, name = read_source(source, args_for(source, urdf, args))
     beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
     return Job(data, file or name, naming, tuple(vocabulary), beside)
-
-
-class Prepared:
-    """A job and its template. A copy and a pickle hold the job alone: lxml's elements cannot be
-    copied to another process, and the template is made again when something asks for it."""
-
-    def __init__(self, job: Job) -> None:
-        self.job = job
-
-    @cached_property
-    def template(self) -> pipeline.Template:
-        """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf = self.job
-        tree = self.job.tree
-        beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
-        return pipeline.prepare(data, file, naming, tree, beside)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Prepared) and self.job == other.job
-
-    def __hash__(self) -> int:
-        return hash((self.job.file, self.job.data))
-
-    def __repr__(self) -> str:
-        return f"Prepared({self.job.file!r})"
-
-    def __reduce__(self) -> tuple[type[Prepared], tuple[Job]]:
-        return Prepared, (self.job,)

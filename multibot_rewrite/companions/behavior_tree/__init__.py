@@ -1,0 +1,1 @@
+"""Behavior trees of Nav2."""

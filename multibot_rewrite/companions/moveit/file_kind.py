@@ -1,0 +1,76 @@
+"""Which kind of MoveIt file a YAML file is: by its content, else by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import yaml
+
+from multibot_rewrite.companions.moveit.name_sites import FileKind, entries, kinds
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.yaml_text import YamlText, line_of
+from multibot_rewrite.model import InputError
+
+EMPTY = "empty"
+_DEPTH = 4
+
+
+def file_kind(document: YamlText) -> str:
+    """Which kind of MoveIt file this is, by its content, else by its name; ``empty`` if it is empty.
+
+    Raises InputError if it is not a MoveIt file.
+    """
+    kind = find_kind(document)
+    return kind.name if kind else EMPTY
+
+
+def find_kind(document: YamlText) -> FileKind | None:
+    """The kind of a file, None if it is empty; InputError if it is not a MoveIt file."""
+    root = document.root
+    if root is None or root.tag == "tag:yaml.org,2002:null":
+        return None
+    if not isinstance(root, yaml.MappingNode):
+        place = f"{document.file}:{line_of(root)}"
+        raise InputError(f"{place}: not a MoveIt file: it is not a map of keys and values")
+    _refuse_params(document, root, _DEPTH)
+    paths = set(_paths(root))
+    known = (kind for kind in kinds() if not paths.isdisjoint(kind.marks))
+    if kind := next(known, None) or _by_values(root) or _by_name(document.file):
+        return kind
+    words = ", ".join(str(key.value) for key, _ in list(entries(root))[:4])
+    raise InputError(
+        f"{document.file}:{line_of(root)}: not a known kind of MoveIt file: it starts with"
+        f" {words or 'nothing'}; leave it out, or list a parameter file under params"
+    )
+
+
+def _refuse_params(document: YamlText, node: yaml.Node, depth: int) -> None:
+    for key, value in entries(node) if depth else ():
+        if key.value == PARAMETERS:
+            place = f"{document.file}:{line_of(key)}"
+            raise InputError(
+                f"{place}: {PARAMETERS} makes it a parameter file; list it under params"
+            )
+        _refuse_params(document, value, depth - 1)
+
+
+def _paths(root: yaml.Node) -> Iterator[str]:
+    """The keys of the first two levels, the second with ``*`` for the first as well."""
+    for key, value in entries(root):
+        first, _, rest = str(key.value).partition(".")
+        yield from (str(key.value), first)
+        for word in (rest.partition(".")[0], *(str(below.value) for below, _ in entries(value))):
+            yield from (f"{first}.{word}", f"*.{word}")
+
+
+def _by_values(root: yaml.Node) -> FileKind | None:
+    """A file of numbers only holds joint positions."""
+    values = [value for _, value in entries(root)]
+    if values and all(it.tag.endswith((":float", ":int", "!degrees", "!radians")) for it in values):
+        return next(kind for kind in kinds() if kind.name == "initial_positions")
+    return None
+
+
+def _by_name(file: str) -> FileKind | None:
+    name = file.replace("\\", "/").rpartition("/")[2].lower()
+    return next((kind for kind in kinds() if any(it in name for it in kind.files)), None)

@@ -1,0 +1,217 @@
+"""What changes where one window shows several robots: its frame, its tf topic, its view, its panels."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import yaml
+
+from multibot_rewrite.companions.rviz.display_groups import Robots, for_one_process, leaves
+from multibot_rewrite.companions.rviz.read_config import ABSOLUTE, PROCESS, RvizConfig, value
+from multibot_rewrite.companions.rviz.values import frame_of
+from multibot_rewrite.companions.yaml_text import found_at
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.model import WARNING, Finding
+
+
+def window_findings(
+    config: RvizConfig, robots: Robots, world: str, together: bool
+) -> Iterator[Finding]:
+    """What is wrong with the window as a whole; ``together`` if one shows all robots."""
+    yield from _tf_topic(config, robots, together)
+    yield from _slash(config)
+    if together:
+        yield from _fixed_frame(config, robots, world)
+        yield from _view(config, robots)
+    yield from _left_out(config, robots, together)
+
+
+ONE_TF_TOPIC = declare(
+    "MF203",
+    "rviz-one-tf-topic",
+    WARNING,
+    what="A config is for robots that each have their own tf topic. One rviz2 reads one tf topic.",
+    why="rviz2 subscribes to /tf and /tf_static once for all displays. Robots on /robot1/tf and "
+    "/robot2/tf never appear in one window: its displays say that there is no transform.",
+    fix="Start one rviz2 for each robot, with its own config and -r /tf:=/robot1/tf, as in "
+    "commands.md. Or take a layout with one tf topic, such as frames-per-robot.",
+    bad="""\
+layout: tf-per-robot
+companions: {rviz: show.rviz}
+""",
+    good="""\
+layout: frames-per-robot
+companions: {rviz: show.rviz}
+""",
+    line=2,  # of show.rviz: the first key of the manager
+    formats=("fleet",),
+    beside={"show.rviz": "Visualization Manager:\n  Global Options: {Fixed Frame: map}\n"},
+)
+
+
+def _tf_topic(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
+    layout = robots[0].names.naming.layout
+    if together and not layout.tf_per_robot:
+        return
+    first = f"/{robots[0].topics.robot}/tf" if layout.namespaced else "the robot's tf topic"
+    if together:
+        message = "one window shows all robots only if each robot's tf is relayed to /tf"
+        hint = f"ros2 run topic_tools relay {first} /tf, and the same for tf_static"
+    else:
+        message = (
+            f"one rviz2 reads one tf topic, but in layout {layout.name} each robot has its own"
+        )
+        hint = f"each robot gets its own config; start rviz2 with -r /tf:={first}, see commands.md"
+    yield found_at(config.document, config.manager, ONE_TF_TOPIC, message, hint)
+
+
+FIXED_FRAME_SLASH = declare(
+    "MF211",
+    "rviz-fixed-frame-slash",
+    WARNING,
+    what="The Fixed Frame of an RViz config starts with a slash.",
+    why="tf2 rejects frames that start with a slash, which were usual in ROS 1: RViz finds no "
+    "transform to the Fixed Frame and shows nothing.",
+    fix="Remove the slash.",
+    bad="""\
+Visualization Manager:
+  Global Options:
+    Fixed Frame: /map
+""",
+    good="""\
+Visualization Manager:
+  Global Options:
+    Fixed Frame: map
+""",
+    line=3,
+    formats=("rviz",),
+)
+
+
+def _slash(config: RvizConfig) -> Iterator[Finding]:
+    node = _global_frame(config)
+    if node is not None and node.value.startswith("/"):
+        message = f"Fixed Frame {node.value!r} starts with a slash, which tf2 rejects"
+        yield found_at(config.document, node, FIXED_FRAME_SLASH, message, "remove the slash")
+
+
+OWN_FIXED_FRAME = declare(
+    "MF201",
+    "rviz-fixed-frame-of-one-robot",
+    WARNING,
+    what="The Fixed Frame differs from robot to robot, and one window shows all robots. It "
+    "becomes the world frame of the fleet.",
+    why="RViz shows only what it can transform to the Fixed Frame. A robot that no transform "
+    "connects to the world frame stays invisible.",
+    fix="Publish a transform from the world frame to each robot (pose: in the fleet file does "
+    "it), or set world: to a frame that all robots share.",
+    bad="""\
+Visualization Manager:
+  Global Options:
+    Fixed Frame: base_link
+""",
+    good="""\
+Visualization Manager:
+  Global Options:
+    Fixed Frame: map
+""",
+    line=3,
+    formats=("rviz",),
+)
+
+
+def _fixed_frame(config: RvizConfig, robots: Robots, world: str) -> Iterator[Finding]:
+    node = _global_frame(config)
+    if node is not None and any(frame_of(node, robot) != node.value for robot in robots):
+        now = f"it is {world!r} now" if world else "no frame is shared by all robots"
+        message = f"Fixed Frame {node.value!r} differs from robot to robot; {now}"
+        hint = "publish a transform from it to each robot, see pose:" if world else "set world:"
+        yield found_at(config.document, node, OWN_FIXED_FRAME, message, hint)
+
+
+def _global_frame(config: RvizConfig) -> yaml.ScalarNode | None:
+    node = value(value(config.manager, "Global Options"), "Fixed Frame")
+    return node if isinstance(node, yaml.ScalarNode) else None
+
+
+FIRST_ROBOT_VIEW = declare(
+    "MF213",
+    "rviz-view-follows-first-robot",
+    WARNING,
+    what="The view follows a frame of the robot. In a window for all robots it follows the first "
+    "one.",
+    why="A window has one current view with one Target Frame. The other robots drive out of the "
+    "picture.",
+    fix="Nothing has to be done: the Views panel has a saved view for each robot. To see all "
+    "robots, write Target Frame: map.",
+    bad="""\
+Visualization Manager:
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Target Frame: base_link
+""",
+    good="""\
+Visualization Manager:
+  Views:
+    Current:
+      Class: rviz_default_plugins/Orbit
+      Target Frame: map
+""",
+    line=5,
+    formats=("rviz",),
+)
+
+
+def _view(config: RvizConfig, robots: Robots) -> Iterator[Finding]:
+    node = value(value(value(config.manager, "Views"), "Current"), "Target Frame")
+    if not isinstance(node, yaml.ScalarNode) or len(robots) < 2:
+        return
+    if any(frame_of(node, robot) != node.value for robot in robots):
+        message = f"the view follows {node.value!r}; it now follows robot {robots[0].name!r}"
+        hint = "each robot has a saved view"
+        yield found_at(config.document, node, FIRST_ROBOT_VIEW, message, hint)
+
+
+LEFT_OUT = declare(
+    "MF202",
+    "rviz-panel-left-out",
+    WARNING,
+    what="A display, tool or panel is left out, because it works only for the robot whose "
+    "namespace rviz2 runs in: the panels of Nav2, the displays of MoveIt, the panel of "
+    "slam_toolbox.",
+    why="These plugins use the relative names or the parameters of the rviz2 node, or absolute "
+    "names. In a window for all robots, goals would go to no robot or to the wrong one.",
+    fix="For that robot start a second rviz2 in its namespace, with the original file. For "
+    "absolute names remap them there.",
+    bad="""\
+Panels:
+  - Class: nav2_rviz_plugins/Navigation 2
+    Name: Navigation 2
+Visualization Manager:
+  Global Options: {Fixed Frame: map}
+""",
+    good="""\
+Panels:
+  - Class: rviz_common/Displays
+    Name: Displays
+Visualization Manager:
+  Global Options: {Fixed Frame: map}
+""",
+    line=2,
+    formats=("rviz",),
+)
+
+
+def _left_out(config: RvizConfig, robots: Robots, together: bool) -> Iterator[Finding]:
+    whole = not together and robots[0].names.naming.layout.namespaced
+    for one in (*leaves(config.displays), *config.tools, *config.panels):
+        if for_one_process(one) and not (whole and one.flag == PROCESS):
+            title = f"{one.cls} {one.name!r}" if one.name else one.cls
+            message = (
+                f"{title} is left out: it works only for the robot whose namespace rviz2 runs in"
+            )
+            hint = "for that robot start a second rviz2 in its namespace with the original file"
+            if one.flag == ABSOLUTE:
+                hint = "its topics are absolute: remap them in an rviz2 for one robot"
+            yield found_at(config.document, one.node, LEFT_OUT, message, hint)

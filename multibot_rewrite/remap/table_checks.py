@@ -1,0 +1,227 @@
+"""What a remap table cannot do or does wrongly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.naming import NAMESPACE, Naming
+from multibot_rewrite.remap.records import (
+    SERVICE,
+    TOPIC,
+    Endpoint,
+    NodeFacts,
+    Pairs,
+    EndpointName,
+)
+from multibot_rewrite.remap.targets import expanded, target_of
+from multibot_rewrite.rosnames import bind, resolve_bound
+
+# A stand-in for a second robot: names of a single robot cannot collide.
+PROBE = "multibot_probe"
+RUN_TIME = "the name is made at run time"
+
+UNREACHABLE_NAME = declare(
+    "MR101",
+    "no-rule-reaches-name",
+    WARNING,
+    what="No remap rule reaches a name that all robots would share: the node makes it at run time, or "
+    "it is not a ROS name.",
+    why="The nodes of all robots use the one name: data of two robots is mixed.",
+    fix="Set the parameter in the hint for each robot, or change the node.",
+    bad="""\
+nodes:
+  camera_driver:
+    package: acme_camera
+    publishes:
+      /<serial_number>/image: sensor_msgs/msg/Image
+""",
+    good="""\
+nodes:
+  camera_driver:
+    package: acme_camera
+    publishes:
+      /camera/image: sensor_msgs/msg/Image
+""",
+    line=2,
+    formats=("remap",),
+)
+
+
+def unreachable(nodes: Sequence[NodeFacts], naming: Naming) -> Iterator[Finding]:
+    """Names that every robot would share and that no remap rule reaches."""
+    for node in nodes:
+        for endpoint in node.endpoints:
+            reason = endpoint.fixed or (RUN_TIME if "<" in endpoint.name else "")
+            if reason and not endpoint.when and _needed(endpoint, naming):
+                message = f"no remap rule reaches {endpoint.kind} {endpoint.name}: {reason}"
+                parameter = "" if "parameter" in reason else endpoint.parameter
+                hint = f"set its parameter {parameter}" if parameter else ""
+                yield UNREACHABLE_NAME.finding(message, hint, node=node.name)
+
+
+def _needed(endpoint: Endpoint, naming: Naming) -> bool:
+    """Would all robots share this name? A relative name made at run time follows the namespace."""
+    if "<" in endpoint.name:
+        return naming.topics != NAMESPACE or endpoint.name.startswith("/")
+    return bool(target_of(endpoint.name, endpoint.kind, PROBE, naming))
+
+
+SHARED_NAME = declare(
+    "MR102",
+    "robots-share-name",
+    ERROR,
+    what="Two robots would have the same topic, service or action name, and it is not a shared one.",
+    why="The nodes of both robots use it: one command moves both robots, or their scans are mixed.",
+    fix="Remap it for each robot, choose other names or another separator, or allow it with "
+    "--shared-topics (shared_topics in the fleet file).",
+    bad="""\
+nodes:
+  lidar_driver:
+    package: acme_lidar
+    publishes:
+      # both are /scan_left_robot1: scan_left of robot1, scan of left_robot1
+      scan_left: sensor_msgs/msg/LaserScan
+      scan: sensor_msgs/msg/LaserScan
+""",
+    good="""\
+nodes:
+  lidar_driver:
+    package: acme_lidar
+    publishes:
+      rear_scan: sensor_msgs/msg/LaserScan
+      scan: sensor_msgs/msg/LaserScan
+""",
+    line=5,
+    formats=("remap",),
+    options={
+        "robots": ("robot1", "left_robot1"),
+        "layout": "postfix",
+        "affix": "postfix",
+        "separators": {"topic": "_"},
+    },
+)
+
+
+def collisions(names: dict[str, list[EndpointName]], naming: Naming) -> Iterator[Finding]:
+    """Names that two robots would have though they are not shared."""
+    first: dict[tuple[str, str], EndpointName] = {}
+    reported = set()
+    shared = {f"/{topic}" for topic in naming.shared_topics}
+    for name in (name for found in names.values() for name in found):
+        key = ("" if name.endpoint.kind != SERVICE else SERVICE, name.name)
+        other = first.setdefault(key, name)
+        if (
+            other.robot == name.robot
+            or name.name in shared
+            or name.endpoint.fixed
+            or key in reported
+        ):
+            continue
+        reported.add(key)
+        message = f"two robots would share {name.name}: {other.node} and {name.node} use it"
+        hint = "remap it for each robot, or allow it with --shared-topics"
+        place = {"robot": other.robot, "node": name.node, "names": (name.name,)}
+        yield SHARED_NAME.finding(message, hint, **place)
+
+
+RULE_WITHOUT_NAME = declare(
+    "MR103",
+    "rule-matches-no-name",
+    WARNING,
+    what="A remap rule of a plugin in the description matches no name of that plugin.",
+    why="The rule does nothing, and the name that it was meant for keeps its old name.",
+    fix="Correct the name on the left of the rule, or remove the rule.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+          <remapping>laser_scan:=scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    line=5,
+    formats=("remap-urdf",),
+)
+LATER_RULE = declare(
+    "MR104",
+    "rule-after-first-match",
+    ERROR,
+    what="A remap rule has no effect, because an earlier rule of the same node matches the same name.",
+    why="rcl applies the first rule that matches, so the topic gets the other name.",
+    fix="Remove one of the two rules.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+          <remapping>~/out:=front_scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="ray">
+      <plugin name="lidar_driver" filename="libgazebo_ros_ray_sensor.so">
+        <ros>
+          <remapping>~/out:=scan</remapping>
+        </ros>
+      </plugin>
+    </sensor>
+  </gazebo>
+</robot>
+""",
+    line=5,
+    formats=("remap-urdf",),
+)
+
+
+def useless_rules(pairs: Pairs) -> Iterator[Finding]:
+    """Rules that match no name of their node, and rules after one that matches first."""
+    for node, table in pairs:
+        bare = bind(table.name, table.namespace, ())
+        robot = "" if table.robot == PROBE else table.robot
+        asked = {pair for endpoint in node.endpoints for pair in expanded(endpoint)}
+        full = {(kind, resolve_bound(name, kind, bare)) for kind, name in asked}
+        seen: set[str] = set()
+        for rule in table.rules:
+            match = resolve_bound(rule.source, rule.kind or TOPIC, bare)
+            kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
+            text = f"{rule.source}:={rule.target}"
+            if match in seen:
+                message = f"{text} has no effect: an earlier rule matches first"
+                yield LATER_RULE.finding(message, "remove it", robot=robot, node=node.name)
+            elif full.isdisjoint((kind, match) for kind in kinds):
+                message = f"{text} matches no name of this node"
+                yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node.name)
+            seen.add(match)

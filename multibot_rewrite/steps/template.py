@@ -1,0 +1,25 @@
+"""A description that is read, planned and cut: what is left to do is to put a robot's name in."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from multibot_rewrite.model import Finding
+from multibot_rewrite.naming import Naming
+from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.plan import Plan
+
+
+class Template(NamedTuple):
+    """A description ready for any number of robots: parsed, planned and cut once."""
+
+    inventory: Inventory
+    plan: Plan
+    values: list[str]
+    pieces: list[bytes]
+    findings: list[Finding]
+    naming: Naming
+    tree: Tree
+    urdf_declarations: Declared
