@@ -14,9 +14,9 @@ from multibot_rewrite.remap.records import (
     PUBLISHES,
     TOPIC,
     Endpoint,
+    EndpointName,
     NodeFacts,
     NodeTable,
-    EndpointName,
     Table,
 )
 from multibot_rewrite.remap.table import joined, names_of, node_table

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
-from multibot_rewrite.remap.records import NodeFacts, EndpointName, Table
+from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
 from multibot_rewrite.steps.collect import Inventory
 
 # Topics of every node, which the plan leaves out.

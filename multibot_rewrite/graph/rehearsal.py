@@ -19,8 +19,8 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     SUBSCRIBES,
     TOPIC,
-    NodeTable,
     EndpointName,
+    NodeTable,
     Table,
 )
 from multibot_rewrite.remap.table_formats import arguments

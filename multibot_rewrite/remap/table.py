@@ -13,11 +13,11 @@ from multibot_rewrite.naming import NAMESPACE, Naming
 from multibot_rewrite.remap.records import (
     ACTION,
     TOPIC,
+    EndpointName,
     NodeFacts,
     NodeRule,
     NodeTable,
     Pairs,
-    EndpointName,
     Table,
 )
 from multibot_rewrite.remap.table_checks import PROBE, collisions, unreachable, useless_rules

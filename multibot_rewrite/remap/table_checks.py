@@ -11,9 +11,9 @@ from multibot_rewrite.remap.records import (
     SERVICE,
     TOPIC,
     Endpoint,
+    EndpointName,
     NodeFacts,
     Pairs,
-    EndpointName,
 )
 from multibot_rewrite.remap.targets import expanded, target_of
 from multibot_rewrite.rosnames import bind, resolve_bound

@@ -145,7 +145,9 @@ def _resolved(
     return _open(word, at, value, rules)
 
 
-def _rest(head: _Match, word: str, at: int, value: yaml.Node, names: CompanionNames) -> _Match | None:
+def _rest(
+    head: _Match, word: str, at: int, value: yaml.Node, names: CompanionNames
+) -> _Match | None:
     marks, rule = head
     if rule == KEEP:
         known = all(is_declared(names, kind, text) for _, text, kind in marks if kind in KINDS)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, DrawnGroup, Scene
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode, Scene
 from multibot_rewrite.graph.pictures.simplify import (
     has_faults,
     only_faults,

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnNode, DrawnGroup
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.graph.pictures.states import FAULTY, STATES
 from multibot_rewrite.remap.records import PUBLISHES, SERVES
 
@@ -64,7 +64,9 @@ def _names_by_node(edges: Iterable[DrawnEdge]) -> dict[str, list[_NameKey]]:
 
 
 def _ordered_names(
-    group: DrawnGroup, offers: Mapping[str, Sequence[_NameKey]], uses: Mapping[str, Sequence[_NameKey]]
+    group: DrawnGroup,
+    offers: Mapping[str, Sequence[_NameKey]],
+    uses: Mapping[str, Sequence[_NameKey]],
 ) -> list[_NameKey]:
     """The names, the worst first, within the same state in an order with few crossings."""
     severity = {(name.kind, name.name): len(STATES) for name in group.names}

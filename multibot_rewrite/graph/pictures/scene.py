@@ -233,7 +233,9 @@ def _groups(
         own = {node.name: node for node in nodes.values() if node.robot == robot}
         users = {e.node: nodes.get(e.node) or DrawnNode(e.node, e.node, OK, True) for e in shown}
         keys = dict.fromkeys((edge.kind, edge.name) for edge in shown)
-        yield DrawnGroup(robot, tuple((own | users).values()), tuple(names[key] for key in keys), shown)
+        yield DrawnGroup(
+            robot, tuple((own | users).values()), tuple(names[key] for key in keys), shown
+        )
 
 
 def _nodes_as_robots(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 
-from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnName, DrawnGroup
+from multibot_rewrite.graph.pictures.scene import DrawnEdge, DrawnGroup, DrawnName
 from multibot_rewrite.graph.pictures.states import FAULTY, MISSING, OK
 from multibot_rewrite.remap.records import SERVES
 

@@ -7,7 +7,7 @@ from html import escape
 from typing import NamedTuple
 
 from multibot_rewrite.graph.pictures.layout import OFFERING, GroupLayout, lay_out
-from multibot_rewrite.graph.pictures.scene import DrawnName, DrawnNode, DrawnGroup
+from multibot_rewrite.graph.pictures.scene import DrawnGroup, DrawnName, DrawnNode
 from multibot_rewrite.graph.pictures.states import (
     CLASH,
     CROSS_TALK,

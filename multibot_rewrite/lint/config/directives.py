@@ -173,11 +173,15 @@ def _fault(text: str, start: int) -> DirectiveFault | None:
     if text in RULES:
         return None
     if not _LIKE_A_CODE.fullmatch(text):
-        return DirectiveFault(start, f"{text!r} is not a code", "put a dash before a reason: CODE - reason")
+        return DirectiveFault(
+            start, f"{text!r} is not a code", "put a dash before a reason: CODE - reason"
+        )
     if any(code.startswith(text.upper()) for code in RULES) and text.upper() not in RULES:
         return DirectiveFault(start, f"{text!r} is not a whole code", "write whole codes")
     near = nearest(text.upper(), RULES)
-    return DirectiveFault(start, f"no rule has the code {text!r}", f"did you mean {near}?" if near else _HOW)
+    return DirectiveFault(
+        start, f"no rule has the code {text!r}", f"did you mean {near}?" if near else _HOW
+    )
 
 
 def _below(
@@ -204,7 +208,9 @@ def _in_place(it: Directive, tags: Sequence[Part]) -> Directive:
     """An ignore-file has no effect after the root's first child."""
     if it.word != IGNORE_FILE or len(tags) < 2 or it.start < tags[1].start:
         return it
-    late = DirectiveFault(it.start, f"{IGNORE_FILE} is after the first element", "move it to the top")
+    late = DirectiveFault(
+        it.start, f"{IGNORE_FILE} is after the first element", "move it to the top"
+    )
     return it._replace(codes=(), faults=(*it.faults, late))
 
 
