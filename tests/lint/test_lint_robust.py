@@ -264,10 +264,10 @@ def several(tmp_path: Path) -> Iterator[Path]:
 @pytest.mark.parametrize(
     ("how", "said"),
     [
-        (lambda: os.kill(os.getpid(), signal.SIGKILL), "was ended by SIGKILL"),
-        (lambda: os.kill(os.getpid(), signal.SIGUSR1), "was ended by SIGUSR1"),
-        (lambda: os._exit(0), "was ended before it was done"),
-        (lambda: sys.exit(0), "was ended before it was done"),
+        (lambda: os.kill(os.getpid(), signal.SIGKILL), "ended by SIGKILL"),
+        (lambda: os.kill(os.getpid(), signal.SIGUSR1), "ended by SIGUSR1"),
+        (lambda: os._exit(0), "ended before it was done"),
+        (lambda: sys.exit(0), "ended before it was done"),
     ],
     ids=["kill", "usr1", "exit", "system-exit"],
 )
