@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 from multibot_rewrite.version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from multibot_rewrite.findings.finding import Finding, RewriteRefused
     from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
     from multibot_rewrite.library import Rewrite, explain, rewrite, rewrite_all, strip
     from multibot_rewrite.model import (
         Change,
-        Finding,
         InputError,
         MultibotError,
         ProofError,
-        RewriteRefused,
         UsageError,
         VocabularyError,
     )
@@ -41,6 +40,7 @@ __all__ = [
 ]
 _HOMES = {
     **dict.fromkeys(("Rewrite", "explain", "rewrite", "rewrite_all", "strip"), "library"),
+    **dict.fromkeys(("Finding", "RewriteRefused"), "findings.finding"),
     **dict.fromkeys(("LoadedFleet", "LoadedRobot", "load_fleet"), "fleets.scripts"),
 }
 

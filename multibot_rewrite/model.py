@@ -3,15 +3,9 @@
 Text positions are byte offsets into the source; lines and columns count from 1.
 """
 
-# ruff: noqa: PLC0414
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
-
-from multibot_rewrite.findings.finding import ERROR as ERROR
-from multibot_rewrite.findings.finding import WARNING as WARNING
-from multibot_rewrite.findings.finding import Edit as Edit
-from multibot_rewrite.findings.finding import Finding as Finding
 
 if TYPE_CHECKING:
     from lxml.etree import _Element
@@ -55,6 +49,18 @@ class Claim(NamedTuple):
     value: str
 
 
+class Edit(NamedTuple):
+    """Replace source bytes ``start:end`` by ``before + robot + after``.
+
+    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it).
+    """
+
+    start: int
+    end: int
+    before: bytes
+    after: bytes | None
+
+
 class Change(NamedTuple):
     """One renamed or inserted value, as listed by ``--changes``."""
 
@@ -81,18 +87,6 @@ class InputError(MultibotError):
 
 class VocabularyError(MultibotError):
     """A vocabulary file is wrong; the message names file and line."""
-
-
-class RewriteRefused(MultibotError):
-    """The content does not allow a rewrite; ``findings`` says why."""
-
-    def __init__(self, findings: tuple[Finding, ...]) -> None:
-        # The base class keeps its arguments, and a pickle is made of them.
-        super().__init__(findings)
-        self.findings = findings
-
-    def __str__(self) -> str:
-        return "\n".join(str(finding) for finding in self.findings)
 
 
 class ProofError(MultibotError):

@@ -9,7 +9,8 @@ from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import to_findings
-from multibot_rewrite.model import ERROR, Finding, InputError, RewriteRefused
+from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import stripped_names

@@ -16,7 +16,7 @@ from multibot_rewrite.checks.references import (
     loose_ends,
     undeclared_names,
 )
-from multibot_rewrite.model import ERROR, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key

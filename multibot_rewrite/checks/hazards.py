@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import partial
 
 from multibot_rewrite.checks.problem import Problem, about, to_findings
-from multibot_rewrite.model import WARNING, Finding
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.naming import (
     FRAME_KINDS,
     NAMESPACE,

@@ -9,8 +9,9 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.model import WARNING, Finding, Site
+from multibot_rewrite.model import Site
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot

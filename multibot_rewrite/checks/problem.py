@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.findings.finding import Edit, Finding
-from multibot_rewrite.model import Claim
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.steps.document import Document, finding
 
 

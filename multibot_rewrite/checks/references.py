@@ -8,13 +8,13 @@ from typing import NamedTuple
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem, about
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
 from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rewriters.forms import Declared, NamePart
 from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.document import locate
 
 SRDF_ROBOT = "element srdf.robot"
 # How the section and the path of a site begin -> its code; the first that fits.

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from multibot_rewrite.checks.problem import Problem, about
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import ERROR, Claim, Finding
+from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import is_reached, must_be_declared

@@ -13,7 +13,8 @@ from importlib import import_module
 from multibot_rewrite.cli.options import Command
 from multibot_rewrite.cli.output import detail, say
 from multibot_rewrite.cli.parser import UNUSABLE, make_parser, parsed
-from multibot_rewrite.model import MultibotError, ProofError, RewriteRefused
+from multibot_rewrite.findings.finding import RewriteRefused
+from multibot_rewrite.model import MultibotError, ProofError
 
 DONE, STOPPED, INTERRUPTED = 0, 1, 130
 PROGRAM = "multibot"

@@ -33,6 +33,9 @@ from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
 from multibot_rewrite.sources.read import Source, read_source
 
+# What the summary calls a kind whose own word says little; the others are their own word.
+WORDS = {"stem": "topic word"}
+
 
 def run(options: argparse.Namespace) -> int:
     """Rewrite, undo or explain; returns the exit code."""
@@ -124,7 +127,7 @@ def changes_json(first: Rewrite, robots: list[str]) -> bytes:
 
 
 def summary(first: Rewrite, robots: list[str]) -> str:
-    """One line: how many names of each kind were spelled."""
+    """One line: how many names of each kind were renamed."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)
@@ -132,7 +135,7 @@ def summary(first: Rewrite, robots: list[str]) -> str:
         for kind, *_ in spelling
     }
     counts = Counter(kind for kind, _ in names)
-    known = [plural(counts[kind], kind) for kind in SEPARATORS if counts[kind]]
+    known = [plural(counts[it], WORDS.get(it, it)) for it in SEPARATORS if counts[it]]
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
-from multibot_rewrite.model import Finding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.targets import placed

@@ -25,8 +25,9 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
-from multibot_rewrite.model import WARNING, Finding, InputError
+from multibot_rewrite.model import InputError
 
 FRAMES = frozenset({"map_frame", "tracking_frame", "published_frame", "odom_frame"})
 # Cartographer's own files, which set no frames (cartographer/configuration_files).

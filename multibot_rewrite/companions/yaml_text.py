@@ -11,8 +11,9 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.model import InputError
 
 MAX_BYTES = 16 * 1024 * 1024
 # Reads back as the same text in any place, and never as a number, date, boolean or null.

@@ -4,21 +4,11 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from multibot_rewrite.model import Edit, MultibotError
+
 ERROR, WARNING, NOTE, INCONCLUSIVE = "error", "warning", "note", "inconclusive"
 # From the worst on. Inconclusive is no level to ask for: the view of the graph was incomplete.
 LEVELS = (ERROR, WARNING, NOTE)
-
-
-class Edit(NamedTuple):
-    """Replace source bytes ``start:end`` by ``before + robot + after``.
-
-    ``after`` is None where the new text does not hold the robot's name (``before`` is all of it).
-    """
-
-    start: int
-    end: int
-    before: bytes
-    after: bytes | None
 
 
 class Finding(NamedTuple):
@@ -71,3 +61,15 @@ def same_for(finding: Finding) -> str:
     first, *more = finding.others
     rest = f" and {len(more)} more" if more else ""
     return f"; the same for {first}{rest}"
+
+
+class RewriteRefused(MultibotError):
+    """The content does not allow a rewrite; ``findings`` says why."""
+
+    def __init__(self, findings: tuple[Finding, ...]) -> None:
+        # The base class keeps its arguments, and a pickle is made of them.
+        super().__init__(findings)
+        self.findings = findings
+
+    def __str__(self) -> str:
+        return "\n".join(str(finding) for finding in self.findings)

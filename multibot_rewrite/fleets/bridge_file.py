@@ -27,6 +27,7 @@ from multibot_rewrite.companions.yaml_text import (
     refuse_anchors,
     replaced,
 )
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridge_checks import entry_findings, model_of, other_models, skipped
 from multibot_rewrite.fleets.bridge_entry import (
     BOTH,
@@ -39,7 +40,7 @@ from multibot_rewrite.fleets.bridge_entry import (
     SERVICE,
     BridgeEntry,
 )
-from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import POSTFIX
 
 # gz topics of the whole simulation, like those below /world.

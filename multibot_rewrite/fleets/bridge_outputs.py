@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
 from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
@@ -12,7 +13,6 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, UnbridgedTopic, bridged_topics
 
 BRIDGE = "bridge.yaml"

@@ -9,6 +9,7 @@ from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.companions.yaml_text import quoted
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleets.commands_file import commands_file
@@ -22,7 +23,7 @@ from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.plan_file import to_yaml
-from multibot_rewrite.model import Finding, UsageError
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table_formats import EVERY_ROBOT, launch
 

@@ -11,11 +11,12 @@ from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
-from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
 

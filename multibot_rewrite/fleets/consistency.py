@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -28,7 +29,6 @@ from multibot_rewrite.fleets.value_checks import (
     holds_twice,
 )
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
-from multibot_rewrite.model import ERROR, Finding
 from multibot_rewrite.naming import Naming
 
 # A word twice in a row, as in robot1/robot1/scan.

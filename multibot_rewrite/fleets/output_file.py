@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.model import Finding
 from multibot_rewrite.sources.read import read_file
 
 

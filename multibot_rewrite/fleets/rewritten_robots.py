@@ -7,11 +7,11 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.companions.names.rename_map import CompanionNames
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec
 from multibot_rewrite.library import Rewrite, rewrite_job
-from multibot_rewrite.model import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.job import Job, read_job

@@ -14,11 +14,11 @@ from multibot_rewrite.companions.rviz.rewrite import (
     rewrite_rviz,
     start_command,
 )
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
-from multibot_rewrite.model import Finding
 
 
 class RvizOutput(NamedTuple):

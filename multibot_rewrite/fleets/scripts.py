@@ -17,6 +17,7 @@ from multibot_rewrite.arguments import checked
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.fleets import spawn, start_poses, teleop
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet import Fleet
@@ -32,7 +33,7 @@ from multibot_rewrite.fleets.rcl_parameters import (
 )
 from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot, Sources
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
-from multibot_rewrite.model import ERROR, Finding, RewriteRefused, UsageError
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import placed, target_of

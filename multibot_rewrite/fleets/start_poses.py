@@ -10,12 +10,12 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.rviz.rewrite import world_frame
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.graph.transforms import Edge, description_edges
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.companions.params.sections import PARAMETERS, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -20,7 +21,7 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge, description_edges
-from multibot_rewrite.model import ERROR, WARNING, Finding, InputError
+from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
 
 DESCRIPTION = "the description"

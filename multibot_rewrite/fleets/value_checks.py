@@ -8,11 +8,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.output_values import OutputValue
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
-from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import TF_TOPICS, Naming
 
 TF = tuple(f"/{it}" for it in TF_TOPICS)

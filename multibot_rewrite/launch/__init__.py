@@ -18,10 +18,11 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets import spawn as spawning
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
 from multibot_rewrite.launch.robot_words import WORDS
-from multibot_rewrite.model import Finding, UsageError
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.yaml_with_lines import unknown
 
 # launch's SomeSubstitutionsType: a string, a substitution, or several of both.

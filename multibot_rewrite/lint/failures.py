@@ -5,14 +5,13 @@ from __future__ import annotations
 import re
 import signal
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.findings.selection import level_of
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.model import ERROR
 
 _PLACE = lazy_compile(r"(?P<file>.*?)(?::(?P<line>\d+):(?P<column>\d+))?: (?P<text>.*)", re.DOTALL)
 # A part of a reader's message -> the rule that reports it.

@@ -6,6 +6,7 @@ from collections.abc import Container, Iterator
 
 from lxml import etree
 
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import TOPIC_KINDS
 from multibot_rewrite.remap.records import (
@@ -24,7 +25,6 @@ from multibot_rewrite.rewriters.switches import switched_off, switches
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.steps.collect import Host, Inventory
-from multibot_rewrite.steps.document import locate
 
 ROS_NODE = "ros/remapping"
 

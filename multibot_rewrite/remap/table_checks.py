@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE, Naming
 from multibot_rewrite.remap.records import (
     SERVICE,

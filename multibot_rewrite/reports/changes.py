@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Change, Claim
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled
-from multibot_rewrite.steps.document import locate
 from multibot_rewrite.steps.template import Template
 
 

@@ -6,13 +6,14 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.checks.mentions import kept, mentioned
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.document import locate, value_slot
+from multibot_rewrite.steps.document import value_slot
 from multibot_rewrite.steps.plan import Plan, make_plan
 
 

@@ -9,13 +9,14 @@ from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.checks.audit import is_unknown
 from multibot_rewrite.checks.mentions import MENTIONED, unclaimed_mentions
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.reports.paths import plugin_name, tag_path
 from multibot_rewrite.rewriters.spelling import ResolvedName
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Host, Inventory
-from multibot_rewrite.steps.document import Document, locate, slot_values
+from multibot_rewrite.steps.document import Document, slot_values
 
 # Stands for the kind of a name that this file would have to declare.
 UNRESOLVED = "unresolved"

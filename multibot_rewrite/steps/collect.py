@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
-from multibot_rewrite.steps.document import Document, locate, read_document
+from multibot_rewrite.steps.document import Document, read_document
 
 NOTHING: Declared = {}
 SRDF = "srdf.robot"

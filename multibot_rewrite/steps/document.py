@@ -13,9 +13,10 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.findings.place import locate as locate  # noqa: PLC0414
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.model import Edit, Finding, InputError
+from multibot_rewrite.model import Edit, InputError
 
 MAX_BYTES = 16 * 1024 * 1024
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids

@@ -9,8 +9,9 @@ from collections.abc import Iterator
 from operator import itemgetter
 from typing import NamedTuple
 
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import ERROR, Claim, Edit, Finding
+from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Affix, Naming
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions

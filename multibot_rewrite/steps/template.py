@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from multibot_rewrite.model import Finding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree

@@ -10,7 +10,8 @@ from lxml import etree
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
 from multibot_rewrite.companions.context import JAZZY, Context, make_context
 from multibot_rewrite.companions.template import fill_template
-from multibot_rewrite.model import Finding, InputError
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in

@@ -24,7 +24,8 @@ from multibot_rewrite.companions.params.page import page
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
-from multibot_rewrite.model import Finding, InputError, UsageError
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.node_library import extend, stack_of
 from multibot_rewrite.remap.stacks import built_in, load_stack

@@ -25,7 +25,8 @@ from multibot_rewrite.companions.params.sections import (
 )
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
-from multibot_rewrite.model import ERROR, InputError
+from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
 
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"

@@ -9,6 +9,7 @@ import pytest
 from fleet_folder import PARAMS, SMALL, fleet_folder, mixed
 from paths import CORPUS
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.fleet_file import read_fleet
@@ -16,7 +17,7 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source, values_in
 from multibot_rewrite.fleets.value_checks import twice
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
-from multibot_rewrite.model import Finding, MultibotError
+from multibot_rewrite.model import MultibotError
 
 PARENTS = """\
 layout: L2

@@ -8,12 +8,11 @@ import pytest
 from graph_cases import CASES, Case, as_planned, environment, read_plan, sent, with_node
 from graph_cases import healthy as planned
 
-from multibot_rewrite.findings.finding import INCONCLUSIVE
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot
 from multibot_rewrite.graph.watching import Verdict, next_state
-from multibot_rewrite.model import ERROR, WARNING
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 TEXT, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"

@@ -17,9 +17,9 @@ from paths import FIXTURES
 
 from multibot_rewrite.cli.declared.description import LINT
 from multibot_rewrite.cli.urdf_lint import main
+from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.model import ERROR
 
 pytestmark = pytest.mark.slow
 

@@ -19,9 +19,8 @@ from lint_triage import (
 from paths import CORPUS, FIXTURES
 from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.model import ERROR
 
 pytestmark = pytest.mark.slow
 

@@ -22,14 +22,14 @@ from pydantic import BaseModel
 from sarif_pydantic import Sarif
 
 from multibot_rewrite.findings import formats
-from multibot_rewrite.findings.finding import LEVELS, NOTE, Finding
+from multibot_rewrite.findings.finding import ERROR, LEVELS, NOTE, WARNING, Finding
 from multibot_rewrite.findings.formats import FORMATS, Report, text
 from multibot_rewrite.findings.formats.markdown import ROOM
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.model import ERROR, WARNING, Edit
+from multibot_rewrite.model import Edit
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 NASTY = ("<b>", '"', "|", "a\nb", "%0A", "::error::x", "é😀\u2028", "`*_[x](1)_*`", "\\|", "&amp;")

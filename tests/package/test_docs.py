@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import re
-import shlex
-import subprocess
-import sys
 from pathlib import Path
 
+import live_commands
+import page_commands
 import pytest
 from paths import ROOT
 
+from multibot_rewrite.catalogue import findings_page
 from multibot_rewrite.lint.__main__ import rules_page
-from multibot_rewrite.lint.registry import RULES
-from multibot_rewrite.pipeline import prepare
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
 
 README = (ROOT / "README.md").read_text()
+PROGRAMS = ("urdf-lint", "urdf-postfix", "multibot")
 COMMANDS = re.findall(
     r"^    (urdf-postfix fixtures.*|urdf-lint .*|multibot .*)$", README, re.MULTILINE
 )
-MODULES = {
-    "urdf-lint": "multibot_rewrite.cli.urdf_lint",
-    "urdf-postfix": "multibot_rewrite.cli.urdf_postfix",
-    "multibot": "multibot_rewrite.cli.multibot",
-}
+TRANSCRIPTS = page_commands.sections(README)
 
 
 def test_the_page_of_plugins_is_current() -> None:
@@ -35,39 +30,70 @@ def test_the_page_of_rules_is_current() -> None:
     assert (ROOT / "docs" / "lint-rules.md").read_text() == rules_page()
 
 
+def readers_folder(folder: Path, **more: str) -> page_commands.Reader:
+    """A clone in which the README's fleet file has been saved."""
+    (fleet,) = re.findall(r"```yaml\n(.*?)```", README, re.DOTALL)
+    (folder / "fleet.yaml").write_text(fleet)
+    return page_commands.reader(folder, live_commands.domain(90), **more)
+
+
 def test_the_readme_shows_commands() -> None:
-    assert len(COMMANDS) >= 3
-    assert {line.split()[0] for line in COMMANDS} == set(MODULES)
+    assert {line.split()[0] for line in COMMANDS} == set(PROGRAMS)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", COMMANDS)
 def test_a_command_of_the_readme_runs(line: str, tmp_path: Path) -> None:
-    words = shlex.split(line.replace("out/", f"{tmp_path}/"))
-    command = [sys.executable, "-m", MODULES[words[0]], *words[1:]]
-    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert result.returncode == 0, result.stderr
+    done = readers_folder(tmp_path).run(line)
+    assert done.returncode == 0, done.stdout
 
 
-def test_the_readme_diff_is_what_the_command_prints() -> None:
-    shown = re.search(r"```diff\n(.*?)```", README, re.DOTALL)
-    assert shown is not None
-    command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_postfix"]
-    arguments = ["fixtures/robots/rover.urdf", "robot1", "--diff"]
-    printed = subprocess.run(
-        command + arguments, cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.splitlines()
-    missing = [line for line in shown[1].splitlines() if line[:1] in "+-" and line not in printed]
+def test_every_command_with_a_prompt_is_a_transcript() -> None:
+    found = [it.command for commands in TRANSCRIPTS.values() for it in commands]
+    assert found == re.findall(r"^\$ (.*)$", README, re.MULTILINE)
+    assert {it.split()[0] for it in found} == {"urdf-lint", "multibot"}
+
+
+@pytest.mark.slow
+@pytest.mark.live
+@pytest.mark.parametrize("heading", TRANSCRIPTS)
+def test_a_transcript_of_the_readme_is_the_whole_output(
+    heading: str, tmp_path: Path, tf2: dict[str, str]
+) -> None:
+    there = readers_folder(tmp_path, **tf2)
+    for it in TRANSCRIPTS[heading]:
+        if page_commands.is_live([it]) and not page_commands.has_ros():
+            pytest.skip("no rclpy: pip install '.[ros]' (Python 3.10 to 3.12)")
+        done = there.run(it.command)
+        printed = tuple(line.rstrip() for line in done.stdout.splitlines())
+        assert (done.returncode, printed) == (it.code, it.lines), it.command
+
+
+def test_the_readme_shows_what_its_first_command_prints(tmp_path: Path) -> None:
+    (command,) = re.findall(r"^    python3 .*/bin/(urdf-postfix .*)$", README, re.MULTILINE)
+    (shown,) = re.findall(r"^    (urdf-postfix: .*)$", README, re.MULTILINE)
+    done = readers_folder(tmp_path).run(command)
+    assert (done.returncode, done.stdout) == (0, f"{shown}\n")
+    assert {it.name for it in (tmp_path / "out").iterdir()} == {"robot1.urdf", "robot2.urdf"}
+
+
+def test_the_readme_diff_is_what_the_command_prints(tmp_path: Path) -> None:
+    """Lines are left out of it, none is changed or moved."""
+    (command,) = re.findall(r"`(urdf-postfix [^`]* --diff)`", README)
+    (shown,) = re.findall(r"```diff\n(.*?)```", README, re.DOTALL)
+    printed = iter(readers_folder(tmp_path).run(command).stdout.splitlines())
+    missing = [line for line in shown.splitlines() if line not in printed]
     assert missing == []
 
 
-def test_the_readme_findings_are_what_the_command_prints() -> None:
-    shown = re.search(r"\$ (urdf-lint .*)\n((?:fixtures.*\n)+)", README)
-    assert shown is not None
-    command = [sys.executable, "-m", MODULES["urdf-lint"], *shlex.split(shown[1])[1:]]
-    result = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    printed = [line for line in result.stdout.splitlines() if "note:" not in line]
-    assert (result.returncode, printed) == (1, shown[2].splitlines())
+def test_links_of_the_readme_lead_somewhere() -> None:
+    targets = re.findall(r"\]\(([^)#]+)", README)
+    assert [it for it in targets if not (ROOT / it).exists()] == []
+
+
+def test_the_readme_names_every_page() -> None:
+    pages = {f"docs/{it.name}" for it in (ROOT / "docs").glob("*.md")}
+    assert pages - set(re.findall(r"\]\(([^)#]+)", README)) == set()
 
 
 def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -76,12 +102,5 @@ def test_the_readme_python_example_runs(monkeypatch: pytest.MonkeyPatch) -> None
     exec(compile(code, "README.md", "exec"), {})
 
 
-def test_every_finding_code_is_documented() -> None:
-    page_text = (ROOT / "docs" / "findings.md").read_text()
-    files = (p for p in (ROOT / "multibot_rewrite").rglob("*.py") if "lint" not in p.parts)
-    source = "".join(path.read_text() for path in files)
-    codes = re.findall(r'"(M[BRGF]\d{3})"', source)
-    # What a lint rule tells as well is on the page of rules, too.
-    told = set(re.findall(r"M[BRGF]\d{3}", page_text))
-    assert set(codes) - RULES.keys() == told - RULES.keys()
-    assert prepare.__doc__
+def test_the_page_of_findings_is_current() -> None:
+    assert (ROOT / "docs" / "findings.md").read_text() == findings_page()

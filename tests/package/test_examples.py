@@ -141,17 +141,14 @@ def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:
         assert re.search(sent, lines, re.MULTILINE)
 
 
-def test_the_fleet_file_of_the_readme_works_as_it_stands(tmp_path: Path) -> None:
+def test_the_fleet_file_of_the_readme_works_as_printed(tmp_path: Path) -> None:
     (fleet,) = re.findall(r"```yaml\n(layout.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)
     (tmp_path / "fleet.yaml").write_text(fleet)
     there = page_commands.reader(tmp_path)
-    nav2 = "examples/namespace_and_prefix/nav2"
-    there.run(f"cp fixtures/robots/rover.urdf .; cp {nav2}_params.yaml params.yaml")
-    there.run(f"cp {nav2}.rviz one_robot.rviz")
     done = there.run("multibot build fleet.yaml -o out")
     assert done.returncode == 0, done.stdout
-    assert "robot2/odom" in (tmp_path / "out" / "robot2" / "params.yaml").read_text()
-    assert "/robot2/scan" in (tmp_path / "out" / "one_robot.rviz").read_text()
+    assert "robot2/odom" in (tmp_path / "out" / "robot2" / "nav2_params.yaml").read_text()
+    assert "/robot2/goal_pose" in (tmp_path / "out" / "nav2.rviz").read_text()
 
 
 def test_a_build_is_up_to_date_until_a_source_changes(tmp_path: Path) -> None:

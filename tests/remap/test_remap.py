@@ -12,8 +12,8 @@ import yaml
 from lxml import etree
 from paths import FIXTURES
 
+from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.library import rewrite_all
-from multibot_rewrite.model import ERROR
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (

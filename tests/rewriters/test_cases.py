@@ -13,8 +13,9 @@ from case_files import Case, CaseError, load_cases
 from lxml import etree
 
 from multibot_rewrite import Rewrite, RewriteRefused, pipeline, rewrite, strip
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.library import rewrite_all
-from multibot_rewrite.model import ERROR, Finding, Site
+from multibot_rewrite.model import Site
 from multibot_rewrite.naming import POSTFIX, Policy, make_naming
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared

@@ -15,13 +15,12 @@ from typing import NamedTuple
 from paths import CORPUS, FIXTURES
 from real_robots import corpus_files, wheel_files
 
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import lint_files
-from multibot_rewrite.model import ERROR
 
 COUNTS = FIXTURES / "lint_triage_counts.tsv"
 # So many findings of a rule are judged, or all where there are fewer.

@@ -13,9 +13,9 @@ from multibot_rewrite.companions.names.undeclared import (
     renamed_names,
     undeclared_message,
 )
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import Rule, declare
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.rosnames import check_topic_name
 from multibot_rewrite.steps.document import Document, value_slot
 

@@ -18,8 +18,8 @@ from multibot_rewrite.companions.names.undeclared import (
     undeclared_message,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, is_text
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.rosnames import check_topic_name
 
 GRAPH_WORDS = ("topic", "service")

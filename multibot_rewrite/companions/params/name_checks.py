@@ -17,8 +17,8 @@ from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import ERROR, WARNING, Finding
 from multibot_rewrite.nearest import did_you_mean
 from multibot_rewrite.rosnames import check_topic_name
 

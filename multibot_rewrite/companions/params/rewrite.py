@@ -44,8 +44,8 @@ from multibot_rewrite.companions.template import (
     make_template,
 )
 from multibot_rewrite.companions.yaml_text import Splice, YamlText
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.gc_pause import gc_paused
-from multibot_rewrite.model import Finding
 from multibot_rewrite.remap.records import NodeFacts
 
 Page = tuple[ParamSection, SectionNames]

@@ -10,8 +10,8 @@ from multibot_rewrite.companions.names.by_kind import is_plain
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import ANY, PLACEHOLDER, ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import ERROR, WARNING, Finding
 
 _IN_VALUE = re.compile(r"<[^>]*>|\$\([^)]*\)|\$?\{[^}]*\}")
 

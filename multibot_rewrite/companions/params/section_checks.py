@@ -14,8 +14,8 @@ from multibot_rewrite.companions.params.sections import (
     pattern_of,
 )
 from multibot_rewrite.companions.yaml_text import YamlText, found_at, line_of
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.rosnames import check_node_name
 
 SHARED_NODE = declare(

@@ -24,8 +24,9 @@ from multibot_rewrite.companions.yaml_text import (
     pairs,
     replaced,
 )
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import ERROR, Finding, InputError
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import spelled
 
 PARAMETERS = "ros__parameters"

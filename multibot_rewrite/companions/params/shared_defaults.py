@@ -22,8 +22,8 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
 DEFAULT = "# multibot: the default is every robot's"

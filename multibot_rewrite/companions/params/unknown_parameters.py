@@ -9,8 +9,8 @@ from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
 from multibot_rewrite.companions.yaml_text import found_at
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import WARNING, Finding
 
 UNKNOWN_NODE = declare(
     "MF114",

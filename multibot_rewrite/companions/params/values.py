@@ -21,8 +21,8 @@ from multibot_rewrite.companions.params.known_nodes import KnownNodes, in_releas
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import WARNING, Finding
 
 # Kinds that are only guessed where the description declares the name.
 _UNSURE = ("frame", "sensor", "interface")

@@ -16,8 +16,8 @@ from multibot_rewrite.companions.rviz.read_config import (
 )
 from multibot_rewrite.companions.rviz.values import GRAPH_NAMESPACE, TF_PREFIX, RvizRobot
 from multibot_rewrite.companions.yaml_text import found_at, pairs
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.naming import NAMESPACE
 
 

@@ -9,7 +9,7 @@ from multibot_rewrite.companions.rviz.display_groups import Robots, leaves
 from multibot_rewrite.companions.rviz.name_checks import name_findings
 from multibot_rewrite.companions.rviz.read_config import RvizConfig
 from multibot_rewrite.companions.rviz.window_checks import window_findings
-from multibot_rewrite.model import Finding
+from multibot_rewrite.findings.finding import Finding
 
 
 def config_findings(

@@ -18,8 +18,8 @@ from multibot_rewrite.companions.rviz.values import (
     without_placeholder,
 )
 from multibot_rewrite.companions.yaml_text import found_at, is_text, pairs
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.model import WARNING, Finding
 from multibot_rewrite.nearest import MISTYPED, did_you_mean
 
 # Titles of displays and windows: never names of links.

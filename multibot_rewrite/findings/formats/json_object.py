@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from multibot_rewrite.findings.finding import Edit, Finding
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.formats.shared import calls, counts, json_text, path_given
+from multibot_rewrite.model import Edit
 
 # Grows when a key goes or means something else; a new key is no new version.
 VERSION = 2

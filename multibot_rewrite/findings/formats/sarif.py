@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
-from multibot_rewrite.findings.finding import INCONCLUSIVE, WARNING, Edit, Finding
+from multibot_rewrite.findings.finding import INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.formats.shared import (
     calls,
@@ -22,6 +22,7 @@ from multibot_rewrite.findings.formats.shared import (
 )
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.model import Edit
 from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]

@@ -13,6 +13,7 @@ from multibot_rewrite.config import (
     read,
     type_name,
 )
+from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.selection import OFF
 from multibot_rewrite.lint.config.settings import EVERY_FILE, ArgumentSet, Settings, matches
 from multibot_rewrite.lint.config.values import (
@@ -23,7 +24,7 @@ from multibot_rewrite.lint.config.values import (
     checked_robots,
     targets,
 )
-from multibot_rewrite.model import WARNING, UsageError
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.nearest import nearest
 

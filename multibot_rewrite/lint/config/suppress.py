@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.selection import is_on, level_of
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.directives import (
@@ -19,7 +20,6 @@ from multibot_rewrite.lint.config.directives import (
 from multibot_rewrite.lint.config.settings import Settings, is_silent
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import Edit
-from multibot_rewrite.steps.document import locate
 
 UNUSED, BROKEN = "MB002", "MB003"
 # With one of these the file was not checked completely.

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from multibot_rewrite.checks.problem import Problem
-from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
+from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.model import Edit
 
 BOM = b"\xef\xbb\xbf"
 _DECLARED = lazy_compile(rb"<\?xml\s+version\s*=\s*[\"']([^\"']*)[\"']")

@@ -6,12 +6,12 @@ import re
 from collections.abc import Iterator
 
 from multibot_rewrite.checks.problem import Problem
-from multibot_rewrite.findings.finding import NOTE, WARNING, Edit
+from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.names.shared import BLANK, SUBSTITUTION, TOKEN, name_of_robot
-from multibot_rewrite.model import Claim
+from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import FRAME_KINDS, NOT_PLAIN
 from multibot_rewrite.rosnames import check_topic_name, propose_token, split_remap
 from multibot_rewrite.steps.document import value_slot

@@ -12,12 +12,12 @@ from lxml.etree import _Element
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.checks.references import repeated
 from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.shared import ARM, IMU, a_plugin, a_system, name_of
 from multibot_rewrite.model import Claim
-from multibot_rewrite.steps.document import locate
 
 if TYPE_CHECKING:
     from multibot_rewrite.sources.trace import Origin
