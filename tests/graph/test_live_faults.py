@@ -185,7 +185,7 @@ def check(at: int, scenario: Scenario, more: Mapping[str, str], looks: int) -> l
     scenario.fault(fleet)
     env = {**live_fleet.environ(domain), **more}
     with live_fleet.running(domain, *(list(nodes.values()) for nodes in fleet.values()), **more):
-        command = ("check", plan_of(scenario.layout), *live_commands.PATIENTLY)
+        command = ("check", plan_of(scenario.layout), "-v", *live_commands.PATIENTLY)
         with ThreadPoolExecutor(looks) as pool:
             look = partial(live_commands.multibot, *command, env=env)
             ended = [it.result() for it in [pool.submit(look) for _ in range(looks)]]

@@ -77,10 +77,10 @@ def test_the_participants_beyond_32_are_not_called_missing(ros: None, tmp_path: 
     names, nodes = crowd(36)
     plan = write_plan(tmp_path / "plan.yaml", names, ("drive", "pilot"))
     with live_fleet.running(domain(80), nodes):
-        done = check(plan, 80)
+        done = check(plan, 80, "-v")
     assert_inconclusive(done)
     assert done.stdout.count(": inconclusive: MG101 node /robot") == 36 - LIMIT
-    limit, verdict = done.stderr.splitlines()
+    limit, verdict, _ = done.stderr.splitlines()
     assert "32 participants of one machine under LOCALHOST" in limit
     assert "use range SUBNET for all, or a discovery server with ROS_SUPER_CLIENT=TRUE" in limit
     assert verdict.endswith("inconclusive, the view may be incomplete")
@@ -92,7 +92,7 @@ def test_how_many_participants_are_seen(ros: None, count: int, tmp_path: Path) -
     names, nodes = crowd(count)
     plan = write_plan(tmp_path / "plan.yaml", names, ("drive", "pilot"))
     with live_fleet.running(domain(81), nodes):
-        done = check(plan, 81)
+        done = check(plan, 81, "-v")
     # Of a robot without any node that alone is told.
     absent = done.stdout.count("MG101") + 2 * done.stdout.count("MG109")
     assert absent == max(0, count - LIMIT)

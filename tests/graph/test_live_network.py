@@ -60,7 +60,7 @@ def test_robots_on_two_hosts_are_checked_from_a_third_by_multicast(plan: Path) -
     with hosts(3) as (one, two, base):
         robots = (one, [node("robot1")]), (two, [node("robot2")])
         with fleet(*robots, **SUBNET):
-            done = run(base, "check", plan, **SUBNET)
+            done = run(base, "check", plan, "-v", **SUBNET)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert "2 robots, 0 findings: as planned" in done.stderr
 
@@ -70,7 +70,7 @@ def test_a_leak_on_another_host_is_named(plan: Path) -> None:
     with hosts(3) as (one, two, base):
         leaky = node("robot2", subscriptions=[["/cmd_vel", "String"]])
         with fleet((one, [node("robot1")]), (two, [leaky]), **SUBNET):
-            done = run(base, "check", plan, **SUBNET)
+            done = run(base, "check", plan, "-v", **SUBNET)
     assert done.returncode == 1, done.stderr
     assert "/robot2/drive: error: MG102" in done.stdout
     assert "/robot2/drive: error: MG103 uses /cmd_vel" in done.stdout
@@ -83,9 +83,9 @@ def test_peers_are_named_on_one_side_only(plan: Path) -> None:
     with hosts(3) as (one, two, base):
         robots = (one, [node("robot1")]), (two, [node("robot2")])
         with fleet(*robots, **LOCALHOST):
-            alone = run(base, "check", plan, **LOCALHOST)
+            alone = run(base, "check", plan, "-v", **LOCALHOST)
             peers = f"{one.address};{two.address}"
-            named = run(base, "check", plan, **LOCALHOST, ROS_STATIC_PEERS=peers)
+            named = run(base, "check", plan, "-v", **LOCALHOST, ROS_STATIC_PEERS=peers)
     assert_inconclusive(alone)
     assert f"no node was seen (domain {DOMAIN}, range LOCALHOST)" in alone.stderr
     assert "For robots on other machines set ROS_STATIC_PEERS" in alone.stderr
@@ -96,7 +96,7 @@ def test_peers_where_multicast_is_lost(tmp_path: Path) -> None:
     """Under SUBNET Fast DDS asks 4 participants of a peer."""
     plan = write_plan(tmp_path / "plan.yaml", MANY[:6])
     with hosts(2, multicast=False) as (robots, base), crowd(robots, MANY[:6], **SUBNET):
-        done = run(base, "check", plan, **SUBNET, ROS_STATIC_PEERS=robots.address)
+        done = run(base, "check", plan, "-v", **SUBNET, ROS_STATIC_PEERS=robots.address)
     assert_inconclusive(done)
     assert len(done.stdout.splitlines()) == 2
     assert "use ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST" in done.stderr
@@ -107,7 +107,7 @@ def test_peers_under_localhost_where_multicast_is_lost(tmp_path: Path) -> None:
     """What the message above advises: 32 participants of a peer are asked."""
     plan = write_plan(tmp_path / "plan.yaml", MANY[:31])
     with hosts(2, multicast=False) as (robots, base), crowd(robots, MANY[:31], **SUBNET):
-        done = run(base, "check", plan, **LOCALHOST, ROS_STATIC_PEERS=robots.address)
+        done = run(base, "check", plan, "-v", **LOCALHOST, ROS_STATIC_PEERS=robots.address)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
@@ -121,10 +121,10 @@ def test_a_super_client_sees_forty_participants_and_a_plain_one_has_a_caveat(
         server = {**SUBNET, "ROS_DISCOVERY_SERVER": address}
         with crowd(robots, MANY, **server):
             look = run(base, "snapshot", "-o", graph, **server, ROS_SUPER_CLIENT="TRUE")
-            plain = run(base, "check", plan, **server)
+            plain = run(base, "check", plan, "-v", **server)
     assert look.returncode == 0, look.stderr
     assert "40 nodes in 40 participants" in look.stderr
-    done = multibot("check", plan, "--snapshot", graph, env=live_fleet.environ(DOMAIN))
+    done = multibot("check", plan, "-v", "--snapshot", graph, env=live_fleet.environ(DOMAIN))
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert_inconclusive(plain)
     assert "MG102" in plain.stdout
@@ -144,7 +144,7 @@ def test_the_profile_of_the_page_lifts_the_limit(tmp_path: Path) -> None:
     with hosts(2) as (robots, base), crowd(robots, MANY, **LOCALHOST):
         # The page names the first host, and every host itself.
         for host in (robots, base):
-            done = run(host, "check", plan, **settings)
+            done = run(host, "check", plan, "-v", **settings)
             assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
@@ -152,7 +152,7 @@ def test_the_profile_of_the_page_lifts_the_limit(tmp_path: Path) -> None:
 def test_a_discovery_server_that_is_not_there(plan: Path) -> None:
     with hosts(1) as (base,):
         server = {"ROS_DISCOVERY_SERVER": f"{base.address}:11811", "ROS_SUPER_CLIENT": "TRUE"}
-        done = run(base, "check", plan, **SUBNET, **server)
+        done = run(base, "check", plan, "-v", **SUBNET, **server)
     assert_inconclusive(done)
     assert f"discovery server {base.address}:11811); is the server running there" in done.stderr
 
@@ -163,5 +163,5 @@ def test_multicast_has_no_limit(count: int, tmp_path: Path) -> None:
     names = [f"robot{number}" for number in range(1, count + 1)]
     plan = write_plan(tmp_path / "plan.yaml", names)
     with hosts(2) as (robots, base), crowd(robots, names, **SUBNET):
-        done = run(base, "check", plan, **SUBNET)
+        done = run(base, "check", plan, "-v", **SUBNET)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
