@@ -22,7 +22,7 @@ def find_files(
 ) -> list[str]:
     """The files named, and those with one of the suffixes below the folders named; each file once.
 
-    ``unreadable`` is told of folders that cannot be read. Raises UsageError where a path is not
+    ``unreadable`` is called for folders that cannot be read. Raises UsageError where a path is not
     there or nothing is found; InputError for such a folder unless ``unreadable`` goes on.
     """
     found: dict[str, str] = {}
@@ -50,7 +50,7 @@ def _below(
         seen.add(real)
         folders[:] = sorted(it for it in folders if not it.startswith("."))
         paths = [os.path.join(folder, name) for name in sorted(_named(files, suffixes))]
-        # A dead link is told of when it is read; a pipe would never end.
+        # A dead link is reported when it is read; a pipe would never end.
         yield from (path for path in paths if os.path.isfile(path) or not os.path.exists(path))
 
 

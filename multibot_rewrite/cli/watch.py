@@ -44,8 +44,8 @@ def _print_lines(state: WatchState) -> None:
     """What changed, for a log: findings come with + and go with -."""
     at = f"{state.graph.environment.seconds:7.1f} s"
     changes = (("+", state.appeared), ("-", state.solved)) if state.complete else ()
-    told = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
-    print_lines([*told, f"{at}  {_headline(state)}"])
+    lines = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
+    print_lines([*lines, f"{at}  {_headline(state)}"])
 
 
 @contextmanager

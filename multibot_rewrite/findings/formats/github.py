@@ -34,6 +34,6 @@ def _command(finding: Finding, report: Report) -> str:
         **place,
         "title": title(it, report),
     }
-    told = ",".join(f"{key}={value.translate(_PROPERTY)}" for key, value in properties.items())
+    pairs = ",".join(f"{key}={value.translate(_PROPERTY)}" for key, value in properties.items())
     message = [f"{said_of(it)}{circumstances(it)}", *via(it, path_below)]
-    return f"::{_COMMANDS[it.level]} {told}::{chr(10).join(message).translate(_DATA)}"
+    return f"::{_COMMANDS[it.level]} {pairs}::{chr(10).join(message).translate(_DATA)}"

@@ -26,14 +26,14 @@ _MARKUP = re.compile(r"([\\`*_{}\[\]<>|~#&!$])")
 
 def render(findings: Sequence[Finding], report: Report) -> str:
     """Counts, then a table for each file with findings, as many as a comment holds."""
-    told = _sum(findings, report)
+    text = _sum(findings, report)
     shown = 0
     for is_row, part in _parts(findings, report):
-        if len(told) + len(part) > ROOM:
-            return f"{told}\n{len(findings) - shown} more are not shown here.\n"
-        told += part
+        if len(text) + len(part) > ROOM:
+            return f"{text}\n{len(findings) - shown} more are not shown here.\n"
+        text += part
         shown += is_row
-    return told
+    return text
 
 
 def _sum(findings: Sequence[Finding], report: Report) -> str:
