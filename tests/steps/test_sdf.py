@@ -21,7 +21,7 @@ from lxml import etree
 from paths import CORPUS, FIXTURES
 from postfix_command import run
 from real_robots import spread
-from refusals import STOPPED, UNUSABLE, check_refusal
+from refusals import STOPPED, check_refusal
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, strip
 
@@ -441,7 +441,8 @@ def test_libsdformat_notices_a_wrong_name(
 @pytest.mark.slow
 def test_a_model_is_rewritten_and_stripped(tmp_path: Path) -> None:
     (tmp_path / "model.sdf").write_bytes(NESTED)
-    assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}/model.sdf").code == UNUSABLE
+    assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}/model.sdf").code == 0
+    assert (tmp_path / "r2" / "model.sdf").read_bytes() == rewrite(NESTED, "r2").data
     assert run(tmp_path, "model.sdf", "r1", "r2", "-o", "{robot}.sdf").code == 0
     for robot in ("r1", "r2"):
         assert (tmp_path / f"{robot}.sdf").read_bytes() == rewrite(NESTED, robot).data
