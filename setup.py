@@ -13,7 +13,10 @@ from setuptools import Distribution, find_packages, setup
 try:
     import tomllib
 except ModuleNotFoundError:
-    import tomli as tomllib
+    try:
+        import tomli as tomllib
+    except ModuleNotFoundError:
+        sys.exit("setup.py: Python 3.10 has no tomllib; install tomli: sudo apt install python3-tomli")
 
 
 class FromHere(Distribution):

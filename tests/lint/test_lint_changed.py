@@ -279,14 +279,14 @@ def test_what_cannot_be_read_is_left_to_the_lint(repo: Path) -> None:
 
 
 REVISIONS = [
-    ("nowhere", "git knows no revision 'nowhere' here"),
+    ("nowhere", "git does not know the revision 'nowhere'"),
     ("", "'' is not a revision"),
     ("-x", "'-x' is not a revision"),
     ("--output=x", "'--output=x' is not a revision"),
     ("a\0b", "is not a revision"),
-    ("main..HEAD", "git knows no revision 'main..HEAD' here"),
-    ("main:a.urdf", "git knows no revision"),
-    ("two\nlines", "git knows no revision 'two\\nlines'"),
+    ("main..HEAD", "git does not know the revision 'main..HEAD'"),
+    ("main:a.urdf", "git does not know the revision"),
+    ("two\nlines", "git does not know the revision 'two\\nlines'"),
 ]
 
 
@@ -301,7 +301,7 @@ def test_a_wrong_revision_is_one_line(repo: Path, rev: str, words: str) -> None:
 def test_histories_that_never_met(repo: Path) -> None:
     git(repo, "checkout", "-q", "--orphan", "new")
     git(repo, "commit", "-qm", "another beginning")
-    with pytest.raises(UsageError, match="no commit in common here; fetch the whole history"):
+    with pytest.raises(UsageError, match="no commit in common; fetch the whole history"):
         changed_since("main", ["a.urdf"])
 
 
@@ -309,7 +309,7 @@ def test_a_repository_without_a_commit(repo: Path, monkeypatch: pytest.MonkeyPat
     (repo / "empty").mkdir()
     git(repo / "empty", "init", "-q")
     monkeypatch.chdir(repo / "empty")
-    with pytest.raises(UsageError, match="git knows no revision 'HEAD'"):
+    with pytest.raises(UsageError, match="git does not know the revision 'HEAD'"):
         changed_since("HEAD", ["../a.urdf"])
 
 
@@ -318,13 +318,13 @@ def test_no_repository_is_one_line(repo: Path, monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.chdir(repo.parent)
     with pytest.raises(UsageError) as caught:
         changed_since("main", ["repo/a.urdf"])
-    assert str(caught.value).startswith("git says: not a git repository")
+    assert str(caught.value).startswith("git reports: not a git repository")
     assert "\n" not in str(caught.value)
 
 
 def test_no_work_tree_is_one_line(repo: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(repo / ".git")
-    with pytest.raises(UsageError, match="git says: this operation must be run in a work tree"):
+    with pytest.raises(UsageError, match="git reports: this operation must be run in a work tree"):
         changed_since("main", ["../a.urdf"])
 
 
