@@ -16,7 +16,9 @@ except ModuleNotFoundError:
     try:
         import tomli as tomllib
     except ModuleNotFoundError:
-        sys.exit("setup.py: Python 3.10 has no tomllib; install tomli: sudo apt install python3-tomli")
+        sys.exit(
+            "setup.py: Python 3.10 has no tomllib; install tomli: sudo apt install python3-tomli"
+        )
 
 
 class FromHere(Distribution):
