@@ -75,6 +75,7 @@ import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
+from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.rewriters.vocabulary.grammar import (
@@ -232,8 +233,7 @@ def _more(extra: tuple[str, ...], packages: bool, builtin: Sequence[str]) -> dic
 
 def _text(name: str, path: str) -> str:
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            return file.read()
+        return read_text(path)
     except OSError as error:
         raise VocabularyError(f"{name}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
