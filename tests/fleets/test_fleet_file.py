@@ -198,7 +198,7 @@ BAD: dict[str, tuple[str, ...]] = {
     ),
     "ring-of-aliases": (
         "robots: &a [*a]\n",
-        "1:13: not YAML: the alias is inside the value that it repeats",
+        "1:13: not YAML: the alias is inside",
     ),
     "merge": (
         "x: &d {a: 1}\nrobots:\n  - {<<: *d, name: a}\n",
@@ -281,7 +281,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "two-documents": (f"{ONE}---\n{ONE}", "3:1: not YAML: there is more than one document"),
     "too-deep": (
         f"robots: {'[' * 3000}{']' * 3000}\n",
-        "1:108: not YAML: it is nested deeper than 100 levels",
+        "1:108: not YAML: it is nested deeper",
     ),
     "nul": ("robots:\n  - {name: a\0}\n", " not YAML: unacceptable character #x0000"),
     "params-of-rviz": (
