@@ -17,6 +17,7 @@ from multibot_rewrite.steps.document import Document
 # Stands for a robot: a word that is in no file and no vocabulary.
 TWIN = "multibot_twin"
 SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
+SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP})
 
 
 def shared_by_all(

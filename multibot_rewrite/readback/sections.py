@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from lxml.etree import _Element
 
@@ -27,8 +27,9 @@ def plugin_section(
         found = vocabulary.find("plugin", key)
         if found:
             return _of_release(found, plugin), True
-    found = vocabulary.find("plugin", WITH_ROS) if plugin.find("ros") is not None else []
-    return (found[0] if found else None), False
+    if plugin.find("ros") is None:
+        return None, False
+    return vocabulary.find("plugin", WITH_ROS)[0], False
 
 
 def _keys(plugin: _Element) -> Iterator[str]:
@@ -41,7 +42,7 @@ def _keys(plugin: _Element) -> Iterator[str]:
         yield class_.replace("ignition::gazebo::", "gz::sim::")
 
 
-def _of_release(found: list[VocabularySection], plugin: _Element) -> VocabularySection:
+def _of_release(found: Sequence[VocabularySection], plugin: _Element) -> VocabularySection:
     """ROS 1 and ROS 2 have plugins of one name. Only ROS 2 reads <ros>; without it the release that
     reads more of its parameters counts, ROS 2 if both do."""
     by_release = {section.ros: section for section in found}
