@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Sequence
 from math import inf
 
+from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
@@ -53,7 +54,7 @@ def _plan(path: str) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
     from multibot_rewrite.fleets.fleet_file import is_fleet, read_fleet
 
-    data = read_file(path)
+    data = read_file(path, MAX_FLEET_BYTES)
     if not is_fleet(data):
         return from_yaml(data, path)
     from multibot_rewrite.fleets.fleet import expected
@@ -99,7 +100,7 @@ def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdi
 
 def _graph(options: argparse.Namespace) -> Snapshot:
     if options.snapshot:
-        return from_json(read_file(options.snapshot), options.snapshot)
+        return from_json(read_file(options.snapshot, MAX_FLEET_BYTES), options.snapshot)
     # Not only until the planned nodes are there: a twin or a leak may come after them.
     return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
 

@@ -32,6 +32,7 @@ from multibot_rewrite.reports.survey import (
 )
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.own_names import filled
 from multibot_rewrite.sources.read import read_file, read_source
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -65,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
         )
     tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
     unreadable: list[Unreadable] = []
-    arguments = xacro_args(options)
+    arguments = filled(xacro_args(options))
     found = _surveys(watched(paths, len(paths), "reading"), tree, arguments, unreadable)
     total = add(found)
     report = CoverageReport(total, unreadable, explain(total, reasons))

@@ -6,11 +6,10 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
-from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
 from multibot_rewrite.fleets.rewritten_robots import (
     Jobs,
     RewrittenRobot,
-    Sources,
     read_jobs,
     rewrite_robots,
 )

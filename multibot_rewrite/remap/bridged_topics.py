@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, cast
 
 from lxml import etree
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
@@ -39,10 +40,8 @@ class UnbridgedTopic(NamedTuple):
 @lru_cache(maxsize=1)
 def bridge_data() -> Mapping[str, Any]:
     """The data of ``bridge.yaml``."""
-    import yaml
-
     text = files("multibot_rewrite.remap").joinpath("bridge.yaml").read_text()
-    data: Mapping[str, Any] = yaml.safe_load(text)
+    data: Mapping[str, Any] = load_yaml(text)
     return data
 
 

@@ -90,6 +90,7 @@ def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
     bare = name.strip("/")
     reasons = (
         (not kind, "not declared, so it is not renamed"),
+        ((kind, name) in naming.own, "the xacro's arguments have put the robot's name into it"),
         (kind not in naming.separators, f"layout {naming.layout.name} does not rename {kind}s"),
         (kind in FRAME_KINDS and bare in naming.shared_frames, "a shared frame (--shared-frames)"),
         (kind in TOPIC_KINDS and bare in naming.shared_topics, "a shared topic (--shared-topics)"),

@@ -11,10 +11,11 @@ from typing import Any
 from xml.dom import DOMException
 from xml.parsers.expat import ExpatError, errors
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.trace import ORIGIN, Origin, Trace, alike, tracing
-from multibot_rewrite.steps.document import MAX_BYTES, tag_end
+from multibot_rewrite.steps.document import tag_end
 
 # What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
 # missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Edit, InputError
 
-MAX_BYTES = 16 * 1024 * 1024
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
 # stays on: without it lxml makes libxml2 load external DTDs.) Blanks between elements are most of a
 # tree, and mean nothing.
