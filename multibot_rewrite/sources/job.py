@@ -41,9 +41,13 @@ def read_job(
     xacro_args: Mapping[str, str] | None = None,
     vocabulary: Iterable[str] = (),
     file: str = "",
+    trust: bool = False,
 ) -> Job:
-    """Read the sources; raises InputError, and UsageError for arguments that no xacro takes."""
+    """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
+
+    ``trust`` lets xacro files do anything.
+    """
     args = xacro_args or {}
-    data, name = read_source(source, args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
+    data, name = read_source(source, args_for(source, urdf, args), trust)
+    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
     return Job(data, file or name, naming, tuple(vocabulary), beside)
