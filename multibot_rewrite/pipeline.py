@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.checks import audit
@@ -75,6 +75,14 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
             declared = respelled_names(urdf_declarations, renames, robot)
             verify(inventory, plan, values, output, robot, naming, tree, declared)
         yield output
+
+
+def check_apart(made: Mapping[str, Template]) -> None:
+    """Raise RewriteRefused for names that robots with descriptions of their own both have."""
+    first = next(iter(made.values())).inventory.document
+    parts = ((robot, it.inventory, it.plan.renames) for robot, it in made.items())
+    both = checks.meeting_descriptions(parts)
+    _stop_on_errors([*to_findings(first, both, ERROR, of_file=True)])
 
 
 def strip(

@@ -137,12 +137,29 @@ def meeting(
             yield Problem(inventory.document.root, message, None, hint, (), "MB421")
 
 
+def meeting_descriptions(
+    made: Iterable[tuple[str, Inventory, RenameMap]],
+) -> Iterator[Problem]:
+    """Names that two robots both have, each in a description of its own."""
+    first: dict[tuple[str, str], str] = {}
+    for robot, inventory, renames in made:
+        names = {(name[0], renames.spelled(robot, *name)) for name in _changing(renames)}
+        for kind, name in sorted(names | set(renames.naming.own)):
+            other = first.setdefault((kind, name), robot)
+            if other != robot:
+                message = f"{other} and {robot} would both have a {kind} {name!r}"
+                hint = "rename a robot, or give its xacro another argument"
+                yield Problem(inventory.document.root, message, None, hint, (), "MB421")
+
+
 def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
     """Links and joints without the affix that ``--strip`` is to take off."""
     for kind, name, claim, changes in _declarations(inventory, renames):
         if changes and removal(renames.naming, robot, kind, name) is None:
             message = f"{kind} {name!r} does not have the name of {robot}"
             hint = "give --strip the robot and the options that the file was made with"
+            if robot in name:
+                hint += ", and --xacro if an argument of it made the name"
             return [_other_robot(inventory, claim.start, message, hint)]
     return []
 

@@ -22,6 +22,7 @@ from multibot_rewrite.remap.records import (
     NodeTable,
 )
 from multibot_rewrite.rewriters.switches import switched_off, switches
+from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.steps.collect import Host, Inventory
@@ -71,7 +72,7 @@ def _node_name(plugin: etree._Element, section: VocabularySection) -> str:
     sites = [site for site in section.sites if site.kinds[:1] == ("node",) and site.default]
     if any(site.path == "@name" for site in section.sites if site.role == "declares"):
         return plugin.get("name", "").strip()
-    named = (plugin.findtext(site.path, "").strip() or site.default for site in sites)
+    named = (text_at(plugin, site.path) or site.default for site in sites)
     return next(named, "") or section.names[0].replace("-", "_")
 
 
@@ -135,11 +136,12 @@ def _sets_topic(claim: Claim) -> bool:
 def _rules(host: Host, robot: str, node: str) -> Iterator[NodeRule]:
     for element in (host.element.find("ros"), host.element):
         for remapping in element.iterchildren("remapping") if element is not None else ():
-            rule = parse_remap((remapping.text or "").strip())
+            rule = parse_remap(text_of(remapping))
             if rule is not None:
                 why = f"in the description, line {remapping.sourceline}"
                 yield NodeRule(robot, node, rule.source, rule.target, "", why)
 
 
 def _ros_text(element: etree._Element, tag: str) -> str:
-    return (element.findtext(f"ros/{tag}") or element.findtext(tag) or "").strip()
+    ros = element.find("ros")
+    return text_at(element if ros is None else ros, tag)

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.model import MultibotError
 from multibot_rewrite.sources.child.frames import FENCES
-from multibot_rewrite.steps.document import MAX_BYTES
 
 # The folder of a package for $(find PACKAGE), empty where it is not known.
 Find = Callable[[str], str]

@@ -10,6 +10,7 @@ from array import array
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.access import Access, NotAllowedError
 from multibot_rewrite.sources.child.frames import (
@@ -32,7 +33,6 @@ from multibot_rewrite.sources.child.frames import (
     received,
 )
 from multibot_rewrite.sources.processes import Child, child
-from multibot_rewrite.steps.document import MAX_BYTES
 
 # What a child may ask, and read in all.
 MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES

@@ -8,12 +8,13 @@ import sys
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.access import BOUNDED, Access, Find, Reach
 from multibot_rewrite.sources.conversation import Failure, Result, Sources, converse
 from multibot_rewrite.sources.trace import Origins, Trace, alike
-from multibot_rewrite.steps.document import MAX_BYTES, start_offsets, tag_end
+from multibot_rewrite.steps.document import start_offsets, tag_end
 
 __all__ = ["Expansion", "Find", "Reach", "expand", "expand_traced"]
 # Of a longer message no repetition is looked for.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
+from multibot_rewrite.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.steps.document import MAX_BYTES
 
 Source = str | bytes | os.PathLike[str]
 
@@ -47,12 +47,10 @@ def _encoded(text: str) -> bytes:
         raise InputError(f"<text>: character {error.start + 1} is half of one: {error}") from None
 
 
-def read_file(path: str) -> bytes:
-    """The bytes of a file; raises InputError with the reason."""
+def read_file(path: str, limit: int = MAX_BYTES) -> bytes:
+    """The bytes of a file; raises InputError with the reason, which may be its size."""
     try:
-        with open(path, "rb") as file:
-            # A device may have no end; one byte too many tells that it is too large.
-            return file.read(MAX_BYTES + 1)
+        return read_bytes(path, limit)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
         raise InputError(f"{path}: cannot be read: {reason}") from None
