@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.arguments import checked
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
@@ -76,6 +77,12 @@ class Rewrite(NamedTuple):
         return self.data.decode()
 
     @property
+    def not_proved(self) -> tuple[str, ...]:
+        """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
+        rewrite is proved. Raises nothing."""
+        return not_proved(self.findings)
+
+    @property
     def changes(self) -> list[Change]:
         """Every renamed or inserted value, in source order; raises as ``template`` does."""
         return list_changes(self.template, self.robot)
@@ -100,7 +107,7 @@ def rewrite(
     file: str = "",
     trust: bool = False,
 ) -> Rewrite:
-    """Rewrite a robot description for ``robot`` and prove the result.
+    """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
     ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
     ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:

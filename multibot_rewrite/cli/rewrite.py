@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
 
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.output import (
     STANDARD,
@@ -162,4 +163,6 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     known += [f"{plural(len(own), 'name')} by {own_arguments}"] if own else []
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
-    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"
+    why = not_proved(first.findings)
+    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.rewritten_robots import (
     Jobs,
     RewrittenRobot,
@@ -56,4 +57,6 @@ def _fleet(
         assemble([it.member for it in group], facts_of((*names, *also), file.nodes or None), naming)
         for names, group in stacks.items()
     ]
-    return merge(fleets)
+    fleet = merge(fleets)
+    members = [it.member for it in robots]
+    return fleet._replace(table=with_meetings(fleet.table, members, naming))

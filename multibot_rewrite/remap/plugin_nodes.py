@@ -1,9 +1,14 @@
-"""The ROS nodes in a rewritten description: its plugins, with their remap rules."""
+"""The ROS nodes in a rewritten description, as the second reading has them: facts and tables."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Iterator
 
+<<<<<<< HEAD
+from multibot_rewrite.readback.nodes import ReadNode
+from multibot_rewrite.readback.reading import Reading
+from multibot_rewrite.remap.records import Endpoint, FrameParameter, NodeFacts, NodeRule, NodeTable
+=======
 from lxml import etree
 
 from multibot_rewrite.findings.place import locate
@@ -28,28 +33,22 @@ from multibot_rewrite.rosnames import parse_remap
 from multibot_rewrite.steps.collect import Host, Inventory
 
 ROS_NODE = "ros/remapping"
+>>>>>>> main
 
 
-def plugin_nodes(inventory: Inventory, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
+def plugin_nodes(reading: Reading, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
     """Each ROS 2 plugin of ``robot``'s rewritten description: its endpoints, its names and rules."""
-    for host, section in _ros_nodes(inventory):
-        name = _node_name(host.element, section)
-        rules = tuple(_rules(host, robot, name))
-        # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
-        private = (Endpoint(TOPIC, "", rule.source) for rule in rules if rule.source[0] == "~")
-        frames = tuple(_frames(inventory, host))
-        off = _odometry_is_off(host, section)
-        facts = NodeFacts(
-            name,
-            section.names[0],
-            (*_endpoints(inventory, host), *private),
-            frames=frames,
-            sends=tuple(_sends(section, frames, inventory.declared["link"], off)),
-        )
-        namespace = "/" + _ros_text(host.element, "namespace").strip("/")
-        yield facts, NodeTable(robot, name, namespace, name, rules)
+    for node in reading.nodes:
+        rules = tuple(_rules(node, robot))
+        yield _facts(node), NodeTable(robot, node.name, node.namespace, node.name, rules)
 
 
+<<<<<<< HEAD
+def _facts(node: ReadNode) -> NodeFacts:
+    endpoints = (
+        Endpoint(it.kind, it.role, it.name, parameter=it.parameter, when=it.off)
+        for it in node.endpoints
+=======
 def plugin_places(inventory: Inventory) -> list[str]:
     """The places (``file:line``) of the plugins of ``plugin_nodes``, in its order.
 
@@ -84,16 +83,19 @@ def _endpoints(inventory: Inventory, host: Host) -> Iterator[Endpoint]:
         (PUBLISHES, TOPIC, section.publishes),
         (SUBSCRIBES, TOPIC, section.subscribes),
         (SERVES, SERVICE, section.serves),
+>>>>>>> main
     )
-    off = switched_off(host.element, section)
-    for role, kind, names in wired:
-        yield from (Endpoint(kind, role, name, when=off.get(name, "")) for name in names)
-    for claim in inventory.claims:
-        if _sets_topic(claim) and host.element in claim.element.iterancestors():
-            kind = SERVICE if claim.site.kinds[0] == SERVICE else TOPIC
-            yield Endpoint(kind, "", claim.value, parameter=claim.site.path)
+    frames = tuple(FrameParameter(*frame) for frame in node.frames)
+    package = node.section.names[0]
+    return NodeFacts(node.name, package, tuple(endpoints), frames=frames, sends=node.sends)
 
 
+<<<<<<< HEAD
+def _rules(node: ReadNode, robot: str) -> Iterator[NodeRule]:
+    for rule, line in node.rules:
+        why = f"in the description, line {line}"
+        yield NodeRule(robot, node.name, rule.source, rule.target, "", why)
+=======
 def _frames(inventory: Inventory, host: Host) -> Iterator[FrameParameter]:
     """The frames in its parameters, as in the description, or their defaults."""
     given = {
@@ -145,3 +147,4 @@ def _rules(host: Host, robot: str, node: str) -> Iterator[NodeRule]:
 def _ros_text(element: etree._Element, tag: str) -> str:
     ros = element.find("ros")
     return text_at(element if ros is None else ros, tag)
+>>>>>>> main
