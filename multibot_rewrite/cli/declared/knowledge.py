@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, VOCABULARY
+from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
 from multibot_rewrite.cli.options import (
     Command,
     Example,
@@ -58,6 +58,7 @@ COVERAGE = Command(
             (
                 argument("words", "PATH", "files and folders; NAME:=VALUE is for xacro", "+"),
                 VOCABULARY,
+                TRUST,
                 value(
                     "--explained",
                     metavar="FILE",
@@ -143,6 +144,7 @@ VOCABULARY_LOOKUP = Command(
                     type=values.path,
                 ),
                 VOCABULARY,
+                TRUST,
             ),
         ),
         output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),
