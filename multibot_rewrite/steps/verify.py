@@ -16,7 +16,7 @@ from multibot_rewrite.model import Claim, Edit, InputError, ProofError
 from multibot_rewrite.naming import Naming, affix, removal, spelled
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.insert import insertions
+from multibot_rewrite.rewriters.insert import ESCAPES, insertions
 from multibot_rewrite.rewriters.spelling import (
     ROBOT_SLOT,
     ResolvedName,
@@ -27,7 +27,7 @@ from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.steps.inserted import markers, removals
+from multibot_rewrite.steps.inserted import Marker, markers, removals
 from multibot_rewrite.steps.plan import Plan
 from multibot_rewrite.steps.strip import is_inside, strip_edits
 
@@ -39,8 +39,8 @@ class Evidence(NamedTuple):
 
     ``slots`` says how often a robot's name is put in; ``expected`` is what each claimed value is to
     become, with ``ROBOT_SLOT`` where that name goes. ``inserted`` are the spans of the output that
-    its markers say were inserted; ``added`` are the claims in them with their names, ``found`` all
-    others.
+    the robot's ``markers`` say were inserted; ``added`` are the claims in them with their names,
+    ``found`` all others.
     """
 
     inventory: Inventory
@@ -50,6 +50,7 @@ class Evidence(NamedTuple):
     naming: Naming
     expected: list[str]
     result: Inventory
+    markers: list[Marker]
     inserted: list[Edit]
     found: list[tuple[Claim, Names]]
     added: list[tuple[Claim, Names]]
@@ -74,6 +75,7 @@ def verify(
     beside = spelled_names(urdf_declarations, naming, robot)
     try:
         result = collect(read_document(output, f"{file} for {robot}"), tree, beside)
+        mine = [marker for marker in markers(result.document) if marker.robot == robot]
         inserted = removals(result.document, robot)
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
@@ -81,7 +83,9 @@ def verify(
     added = [pair for pair in pairs if is_inside(pair[0], inserted)] if inserted else []
     found = [pair for pair in pairs if not is_inside(pair[0], inserted)] if inserted else pairs
     expected = list(_expected(inventory, naming))
-    it = Evidence(inventory, plan, slots, robot, naming, expected, result, inserted, found, added)
+    it = Evidence(
+        inventory, plan, slots, robot, naming, expected, result, mine, inserted, found, added
+    )
     for check in CHECKS:
         check(it)
 
@@ -174,8 +178,7 @@ def nothing_to_add(it: Evidence) -> None:
 
 def added_once(it: Evidence) -> None:
     """No inserted element is there already: consumers read the first, or both."""
-    mine = (mark for mark in markers(it.result.document) if mark.robot == it.robot)
-    for marker in mine if it.inserted else ():
+    for marker in it.markers:
         behind = list(marker.comment.itersiblings("*"))
         added = behind[: marker.elements]
         _once(it, added, [*behind, *marker.comment.itersiblings("*", preceding=True)])
@@ -205,7 +208,8 @@ def as_planned(it: Evidence) -> None:
         raise ProofError(f"{file}: the text is not the source with the planned edits")
     inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
     for item in it.plan.insertions:
-        if item.xml.replace(ROBOT_SLOT, it.robot).encode() not in inserted:
+        text = item.new.translate(ESCAPES) if item.step else item.xml
+        if text.replace(ROBOT_SLOT, it.robot).encode() not in inserted:
             raise ProofError(f"{file}: {item.new!r} was to be inserted and is not there")
 
 
@@ -222,7 +226,7 @@ def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
 def a_slot_each(it: Evidence) -> None:
     """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
     values = sum(value.count(ROBOT_SLOT) for value in it.expected)
-    wanted = values + len(list(_inserted_names(it))) + len(it.inserted)
+    wanted = values + len(list(_inserted_names(it))) + len(it.markers)
     if it.slots != wanted:
         file = it.inventory.document.file
         raise ProofError(f"{file}: {it.robot} is named {wanted} times, in {it.slots} slots")
