@@ -26,6 +26,9 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
                        with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
                        these texts
     when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
+    empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
+                       if it was not there (usual for a namespace: the root); ``model``, the model's
+                       name; ``itself``, the empty text (usual for the rest)
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
@@ -84,6 +87,7 @@ from multibot_rewrite.rewriters.vocabulary.grammar import (
     TYPES,
     VocabularySection,
     assemble,
+    is_step,
     merge,
     read_header,
     read_section,
@@ -104,6 +108,7 @@ __all__ = [
     "VocabularySection",
     "advice",
     "check_vocabulary",
+    "is_step",
     "load_vocabulary",
     "split_path",
     "split_step",
