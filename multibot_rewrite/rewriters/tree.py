@@ -14,6 +14,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.model import Site, VocabularyError
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.vocabulary import (
     Vocabulary,
     VocabularySection,
@@ -264,8 +265,8 @@ def library_key(library: str) -> str:
 
 def hardware_keys(element: _Element) -> list[str]:
     """The class a ``<ros2_control>`` loads."""
-    class_ = element.findtext("hardware/plugin")
-    return [class_.strip()] if class_ else []
+    class_ = text_at(element, "hardware/plugin")
+    return [class_] if class_ else []
 
 
 def sensor_keys(element: _Element) -> list[str]:

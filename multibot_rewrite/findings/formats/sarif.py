@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
+from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.findings.finding import INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.formats.shared import (
@@ -146,7 +147,6 @@ def _replacement(source: bytes, edit: Edit) -> Json:
 
 def _source(path: str) -> bytes:
     try:
-        with open(path, "rb") as file:
-            return file.read()
+        return read_bytes(path)
     except OSError:
         return b""

@@ -9,6 +9,7 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from typing import NamedTuple
 
+from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.model import UsageError
 
 _INCLUDE = re.compile(
@@ -151,8 +152,7 @@ def _includes(path: str) -> Iterator[str]:
     if path.endswith(".urdf"):
         return
     try:
-        with open(path, "rb") as file:
-            data = file.read()
+        data = read_bytes(path)
     except (OSError, ValueError):  # reported when it is linted
         return
     if _YAML[0] in data:

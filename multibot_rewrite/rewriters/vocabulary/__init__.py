@@ -26,6 +26,9 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
                        with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
                        these texts
     when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
+    empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
+                       if it was not there (usual for a namespace: the root); ``model``, the model's
+                       name; ``itself``, the empty text (usual for the rest)
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
@@ -75,6 +78,7 @@ import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
+from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.rewriters.vocabulary.grammar import (
@@ -83,6 +87,7 @@ from multibot_rewrite.rewriters.vocabulary.grammar import (
     TYPES,
     VocabularySection,
     assemble,
+    is_step,
     merge,
     read_header,
     read_section,
@@ -103,6 +108,7 @@ __all__ = [
     "VocabularySection",
     "advice",
     "check_vocabulary",
+    "is_step",
     "load_vocabulary",
     "split_path",
     "split_step",
@@ -237,8 +243,7 @@ def _more(extra: tuple[str, ...], packages: bool, builtin: Sequence[str]) -> dic
 
 def _text(name: str, path: str) -> str:
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            return file.read()
+        return read_text(path)
     except OSError as error:
         raise VocabularyError(f"{name}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
