@@ -60,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     (robot,) = names
     # Read once: it may be a pipe, and --diff shows it again.
-    before, _ = read_source(source, {} if options.xacro else xacro_args(options))
+    before, _ = read_source(source, {} if options.xacro else xacro_args(options), options.trust)
     _deliver(options, [(robot, before, _strip(options, before, robot))], [], 1)
     note(options, f"{robot} taken out, proved by rewriting again")
     return DONE
@@ -76,6 +76,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         vocabulary=options.vocabulary,
         again=options.again,
         file=input_name(options),
+        trust=options.trust,
     )
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
@@ -105,6 +106,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         xacro_args=xacro_args(options) if options.xacro else None,
         vocabulary=vocabulary,
         file=name,
+        trust=options.trust,
         **extra,
     )
 

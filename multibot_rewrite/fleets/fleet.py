@@ -46,14 +46,17 @@ def make_fleet(
     nodes: str | None = None,
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
+    trust: bool = False,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file with more nodes and stacks. Raises as ``rewrite_all``, and
-    UsageError for an unknown stack.
+    ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
+    as ``rewrite_all``, and UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes)
-    found = rewrite_all(source, robots, vocabulary=vocabulary, xacro_args=xacro_args, **policy)
+    found = rewrite_all(
+        source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
+    )
     members = [member(it, it.data, it.robot) for it in found]
     fleet = assemble(members, facts, make_naming(**policy))
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))

@@ -29,16 +29,20 @@ class FleetPlan(NamedTuple):
 
 
 def plan_fleet(
-    file: FleetFile, also: Sequence[str] = (), jobs: Mapping[Sources, Jobs] | None = None
+    file: FleetFile,
+    also: Sequence[str] = (),
+    jobs: Mapping[Sources, Jobs] | None = None,
+    trust: bool = False,
 ) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
     ``also`` are more nodes that every robot runs; ``jobs`` are the descriptions if they have been
-    read already. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    read already; ``trust`` lets xacro files do anything. Raises as ``rewrite_all``, and UsageError
+    for an unknown stack.
     """
     with gc_paused():
         naming = make_naming(**file.policy)
-        read = jobs or read_jobs(file.robots, naming, file.vocabulary)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust)
         robots = rewrite_robots(file.robots, read)
         return FleetPlan(file, tuple(robots), _fleet(file, robots, naming, also), read)
 

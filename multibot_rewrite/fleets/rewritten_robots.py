@@ -57,13 +57,14 @@ def at_robot(
 
 
 def read_jobs(
-    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str]
+    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str], trust: bool = False
 ) -> dict[Sources, Jobs]:
-    """Read every description and SRDF once; raises as ``read_job``."""
+    """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
+    anything."""
     found: dict[Sources, Jobs] = {}
     for it in robots:
         if it.sources not in found:
-            more = it.arguments, vocabulary, "", it.words
+            more = it.arguments, vocabulary, "", it.words, trust
             description = read_job(it.description, naming, None, *more)
             srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
             found[it.sources] = Jobs(description, srdf)
