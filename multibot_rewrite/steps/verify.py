@@ -16,13 +16,14 @@ from multibot_rewrite.model import Claim, Edit, InputError, ProofError
 from multibot_rewrite.naming import Naming, affix, removal, spelled
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.insert import ESCAPES, insertions
+from multibot_rewrite.rewriters.insert import insertions, query
 from multibot_rewrite.rewriters.spelling import (
     ROBOT_SLOT,
     ResolvedName,
     is_reached,
     spelled_names,
 )
+from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.collect import Inventory, collect
@@ -200,17 +201,33 @@ def _key(element: etree._Element) -> tuple[str, str | None, str]:
     return str(element.tag), element.get("name"), rule if is_rule else ""
 
 
-def as_planned(it: Evidence) -> None:
-    """The text is the source with the planned edits, and holds every element planned."""
-    source, file, *_ = it.inventory.document
-    output = it.result.document.source
-    if b"".join(_planned(source, it.plan.edits, it.robot.encode())) != output:
-        raise ProofError(f"{file}: the text is not the source with the planned edits")
+def as_decided(it: Evidence) -> None:
+    """What the plan decided to insert is what its edits write."""
+    output, file, robot = it.result.document.source, it.inventory.document.file, it.robot
     inserted = b"".join(output[edit.start : edit.end] for edit in it.inserted)
     for item in it.plan.insertions:
-        text = item.new.translate(ESCAPES) if item.step else item.xml
-        if text.replace(ROBOT_SLOT, it.robot).encode() not in inserted:
-            raise ProofError(f"{file}: {item.new!r} was to be inserted and is not there")
+        if not item.step and item.xml.replace(ROBOT_SLOT, robot).encode() not in inserted:
+            raise ProofError(f"{file}: {item.old!r} was to be replaced by {item.xml}")
+    filled = (item.new for item in it.plan.insertions if item.step)
+    wanted = sorted(text.replace(ROBOT_SLOT, robot) for text in filled)
+    if sorted(_filled(it)) != wanted:
+        raise ProofError(f"{file}: empty elements were to be filled with {', '.join(wanted)}")
+
+
+def _filled(it: Evidence) -> Iterator[str]:
+    """The texts of the elements that the markers say were empty."""
+    for marker in it.markers:
+        parent = marker.comment.getparent()
+        if parent is not None:
+            found = (parent.find(query(step)) for step in marker.filled)
+            yield from (text_of(element) for element in found if element is not None)
+
+
+def as_planned(it: Evidence) -> None:
+    """The text is the source with the planned edits."""
+    source, file, *_ = it.inventory.document
+    if b"".join(_planned(source, it.plan.edits, it.robot.encode())) != it.result.document.source:
+        raise ProofError(f"{file}: the text is not the source with the planned edits")
 
 
 def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
@@ -251,5 +268,6 @@ CHECKS = (
     added_once,
     a_slot_each,
     strips_to_source,
+    as_decided,
     as_planned,
 )

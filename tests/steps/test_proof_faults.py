@@ -92,7 +92,8 @@ ONLY = {
     "added_once": ["an insertion of what is there", "a rule twice"],
     "a_slot_each": ["an edit with the robot's name as it is"],
     "strips_to_source": ["an edit of a line end", "nothing is stripped"],
-    "as_planned": ["a blank in an inserted element", "an inserted text is longer"],
+    "as_decided": ["an insertion that is written otherwise"],
+    "as_planned": ["a marker says something else", "an inserted element has another indentation"],
 }
 
 

@@ -6,6 +6,8 @@ import random
 import re
 from collections.abc import Callable, Iterator
 
+from lxml import etree
+
 from multibot_rewrite.model import Edit
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.template import Template
@@ -95,10 +97,8 @@ def wrong_edits(edit: Edit) -> Iterator[tuple[str, list[Edit]]]:
         yield "name as it is", [Edit(start, end, before + b"robot1" + after, None)]
         yield "another robot's name", [Edit(start, end, before + b"robot2" + after, None)]
         yield "halves swapped", [Edit(start, end, after, before)]
-        # In a marker it is about words only.
-        if b"multibot" not in before + after:
-            other = before.translate(_OTHER), after.translate(_OTHER)
-            yield "another separator", [Edit(start, end, *other)]
+        other = before.translate(_OTHER), after.translate(_OTHER)
+        yield "another separator", [Edit(start, end, *other)]
 
 
 _OTHER = bytes.maketrans(b"/_", b"_/")
@@ -116,8 +116,23 @@ def wrong_plans(template: Template) -> Iterator[tuple[str, Template]]:
                 plan=template.plan._replace(edits=new), pieces=cut(source, new)
             )
             # An edit may be at another place and come to the same.
-            if texts(wrong) != right:
+            if any(not is_same(*pair) for pair in zip(texts(wrong), right, strict=True)):
                 yield f"edit {number} at {edit.start} {about}", wrong
+
+
+def is_same(wrong: bytes, right: bytes) -> bool:
+    """Do two texts say the same, words in comments and white space around texts aside?"""
+    if wrong == right:
+        return True
+    try:
+        return _said(wrong) == _said(right)
+    except etree.XMLSyntaxError:
+        return False
+
+
+def _said(text: bytes) -> list[tuple[str, dict[str, str], str]]:
+    root = etree.fromstring(text, etree.XMLParser(remove_comments=True))
+    return [(it.tag, dict(it.attrib), " ".join(it.xpath("text()")).strip()) for it in root.iter()]
 
 
 def texts(template: Template) -> list[bytes]:

@@ -65,7 +65,22 @@ GROUPS = b"""\
 """
 ARM = b'<robot name="arm"><link name="a"/><link name="b"/><joint name="j" type="fixed"/></robot>'
 
-SOURCES = {"rover": ROVER, "touch": TOUCH, "model": MODEL, "groups": GROUPS}
+# Elements that are there and empty.
+EMPTY = b"""\
+<robot name="empty">
+  <link name="base"/>
+  <gazebo>
+    <plugin name="imu" filename="libgazebo_ros_imu_sensor.so">
+      <ros><namespace></namespace></ros>
+    </plugin>
+    <plugin name="spare" filename="libgazebo_ros_imu_sensor.so">
+      <ros><namespace/></ros>
+    </plugin>
+  </gazebo>
+</robot>
+"""
+
+SOURCES = {"rover": ROVER, "touch": TOUCH, "model": MODEL, "groups": GROUPS, "empty": EMPTY}
 
 
 class Fault(NamedTuple):

@@ -82,7 +82,12 @@ def in_marker(plan: Plan) -> Plan:
     """A plan that misses the model's name, with one slot more in inserted text: as many as ever."""
     kept = [it for it in plan.edits if it.start != behind(b'<robot name="rover')]
     first = next(number for number, it in enumerate(kept) if b"multibot" in it.before)
-    kept.insert(first, kept[first]._replace(before=b"<!-- ", after=b" -->"))
+    words, bracket, rest = (kept[first].after or b"").partition(b"(")
+    end = kept[first].end
+    kept[first : first + 1] = [
+        kept[first]._replace(after=words + bracket),
+        Edit(end, end, b"", rest),
+    ]
     return plan._replace(edits=kept)
 
 
@@ -226,6 +231,27 @@ NAMINGS = (
 )
 
 
+def written(old: bytes, new: bytes) -> Wrong:
+    """Edits that write something else than was to be inserted."""
+    return lambda found: [
+        it._replace(
+            before=it.before.replace(old, new), after=it.after and it.after.replace(old, new)
+        )
+        for it in found
+    ]
+
+
+WRITTEN = (
+    ("an insertion that is written otherwise", "rover", written(b"odom/", b"odox/")),
+    ("a rule that is written otherwise", "rover", written(b">/tf:=tf<", b">/tf:=tf_static<")),
+    (
+        "a filled element that is written otherwise",
+        "empty",
+        written(b"</namespace ", b"/x</namespace "),
+    ),
+)
+
+
 # ---------------------------------------------------------------- insertions and collisions
 
 
@@ -337,6 +363,10 @@ PLANS = [
         for about, wrong in NAMINGS
     ),
     *(Fault(about, by, planning, "insertions", wrong) for about, by, wrong in INSERTIONS),
+    *(
+        Fault(about, "as_decided", planning, "insertion_edits", wrong, source)
+        for about, source, wrong in WRITTEN
+    ),
     *(
         Fault(about, by, planning, "respell_collisions", wrong, "touch", "postfix")
         for about, by, wrong in COLLISIONS
