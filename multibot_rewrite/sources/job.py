@@ -54,14 +54,16 @@ def read_job(
     vocabulary: Iterable[str] = (),
     file: str = "",
     words: Sequence[str] = (),
+    trust: bool = False,
 ) -> Job:
     """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
 
     ``words`` are those of the robot that the job is for: the first one is filled into the arguments,
-    and what they name after any of the words is the robot's own.
+    and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
+    anything.
     """
     given = xacro_args or {}
-    read = partial(_read, source, naming, urdf, tuple(vocabulary), file)
+    read = partial(_read, source, naming, urdf, tuple(vocabulary), file, trust)
     job = read(filled(given, *words[:1]))
     if not name_robot(given, words):
         return job
@@ -76,10 +78,11 @@ def read_jobs(
     xacro_args: Arguments | None,
     vocabulary: Iterable[str],
     file: str,
+    trust: bool = False,
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = partial(read_job, source, naming, urdf, given, tuple(vocabulary), file)
+    read = partial(read_job, source, naming, urdf, given, tuple(vocabulary), file, trust=trust)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
     jobs = {robot: read(words=[robot]) for robot in named}
@@ -106,10 +109,11 @@ def _read(
     urdf: Source | None,
     vocabulary: tuple[str, ...],
     file: str,
+    trust: bool,
     args: Arguments,
 ) -> Job:
-    data, name = read_source(source, args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
+    data, name = read_source(source, args_for(source, urdf, args), trust)
+    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
     return Job(data, file or name, naming, vocabulary, beside)
 
 

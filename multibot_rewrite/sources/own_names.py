@@ -16,6 +16,7 @@ from multibot_rewrite.steps.collect import Inventory
 ROBOT = "{robot}"
 # Stand for the words of a robot. Letters alone are taken by every file that takes a name.
 MARKS = ("qzrobotzq", "qznamespacezq", "qztagzq")
+_TWICE = re.compile(r"(qz\w+?zq)[/_]*\1")
 _PLACEHOLDER = re.compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
 Arguments = Mapping[str, str]
 
@@ -53,14 +54,24 @@ def name_robot(arguments: Arguments, words: Sequence[str]) -> bool:
 
 
 def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
-    """The names with a mark in them, as they are for the robot with these words."""
-    return {(kind, _unmarked(text, words)): None for kind, text in _names(inventory, MARKS)}
+    """The names with a mark in them, as they are for the robot with these words.
+
+    Raises UsageError for a name that has the robot's name twice in a row.
+    """
+    found: dict[tuple[str, str], None] = {}
+    for kind, text in _marked_names(inventory):
+        name = _unmarked(text, words)
+        if _TWICE.search(text):
+            hint = "give one argument only, or none: the rewrite names what is left"
+            raise UsageError(f"the xacro's arguments would make {name!r} of a {kind}; {hint}")
+        found[kind, name] = None
+    return found
 
 
-def _names(inventory: Inventory, marks: Sequence[str]) -> Iterator[tuple[str, str]]:
+def _marked_names(inventory: Inventory) -> Iterator[tuple[str, str]]:
     for names in inventory.names:
         for name in names:
-            if name.kind and any(mark in name.text for mark in marks):
+            if name.kind and any(mark in name.text for mark in MARKS):
                 yield name.kind, name.text
 
 

@@ -219,3 +219,12 @@ def test_an_explanation_says_where_the_name_is_from() -> None:
     (found,) = explain(ARM, line, "left", xacro_args=PREFIX)
     assert found.new == found.value == "left_tool0"
     assert "the xacro's arguments have put the robot's name into it" in found.reason
+
+
+def test_two_arguments_of_one_name_are_refused(tmp_path: Path) -> None:
+    head = '<xacro:arg name="p" default=""/><xacro:arg name="q" default="arm"/>'
+    path = made(head, '<link name="$(arg p)$(arg q)"/>', tmp_path)
+    with pytest.raises(UsageError, match="would make 'left_left_arm' of a link; give one argument"):
+        rewrite(path, "left", xacro_args={"p": "{robot}_", "q": "left_arm"})
+    done = rewrite(path, "left", xacro_args={"p": "{robot}_", "q": "arm_{robot}"}).text
+    assert names(done, "link") == ["left_arm_left"]
