@@ -98,4 +98,5 @@ parameter_of_ros_1 = rule(
     "    <ros><namespace>/demo</namespace></ros>\n"
     "  </plugin>\n"
     "</gazebo>\n",
+    line=2,
 )(partial(_audit, other_ros))
