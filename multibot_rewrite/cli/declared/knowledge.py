@@ -34,6 +34,7 @@ ARGUMENTS = Command(
             (
                 argument("words", "FILE.xacro", "a xacro; NAME:=VALUE are arguments of it", "*"),
                 VOCABULARY,
+                TRUST,
             ),
         ),
         output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),
