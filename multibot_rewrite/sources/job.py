@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.model import InputError, UsageError
@@ -15,25 +15,34 @@ from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.own_names import (
     ROBOT,
     Arguments,
+    NameTexts,
     filled,
+    has_mark,
     marked,
+    marked_texts,
     name_robot,
+    own_affixes,
     own_names,
+    own_texts,
 )
 from multibot_rewrite.sources.read import Source, args_for, read_source
-from multibot_rewrite.steps.collect import NOTHING, collect, declarations
+from multibot_rewrite.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.steps.document import read_document
+
+NO_TEXTS: NameTexts = {}
 
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF. It holds no parsed document, so it can be pickled."""
+    name of the URDF beside an SRDF. ``plain`` are the names that the xacro's own arguments make,
+    by what they are without these. It holds no parsed document, so it can be pickled."""
 
     data: bytes
     file: str
     naming: Naming
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
+    plain: NameTexts = NO_TEXTS
 
     @property
     def tree(self) -> Tree:
@@ -44,6 +53,12 @@ class Job(NamedTuple):
     def urdf_declarations(self) -> Declared:
         """What the URDF beside an SRDF declares; raises InputError."""
         return declarations(*self.urdf, self.tree) if self.urdf else NOTHING
+
+    @property
+    def inventories(self) -> list[Inventory]:
+        """What is in the description, and in the URDF beside an SRDF; raises InputError."""
+        own = collect(read_document(self.data, self.file), self.tree, self.urdf_declarations)
+        return [own, collect(read_document(*self.urdf), self.tree)] if self.urdf else [own]
 
 
 def read_job(
@@ -60,12 +75,8 @@ def read_job(
     ``words`` are those of the robot that the job is for: the first one is filled into the arguments,
     and what they name after any of the words is the robot's own.
     """
-    given = xacro_args or {}
-    read = partial(_read, source, naming, urdf, tuple(vocabulary), file)
-    job = read(filled(given, *words[:1]))
-    if not name_robot(given, words):
-        return job
-    return job._replace(naming=naming._replace(own=_own_names(read, given, words)))
+    read = reader(source, naming, urdf, tuple(vocabulary), file)
+    return job_for(read, xacro_args or {}, words)
 
 
 def read_jobs(
@@ -79,13 +90,13 @@ def read_jobs(
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = partial(read_job, source, naming, urdf, given, tuple(vocabulary), file)
+    read = reader(source, naming, urdf, tuple(vocabulary), file)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
-    jobs = {robot: read(words=[robot]) for robot in named}
+    jobs = {robot: job_for(read, given, [robot]) for robot in named}
     if others:
         _check_meant(given, {robot: job for robot, job in jobs.items() if job.naming.own}, others)
-        jobs |= dict.fromkeys(others, read(words=others[:1]))
+        jobs |= dict.fromkeys(others, job_for(read, given, others[:1]))
     return {robot: jobs[robot] for robot in robots}
 
 
@@ -100,36 +111,65 @@ def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) ->
         raise UsageError(f"{what}, and {others[0]} gets it, too; write {hint}")
 
 
-def _read(
-    source: Source,
-    naming: Naming,
-    urdf: Source | None,
-    vocabulary: tuple[str, ...],
-    file: str,
-    args: Arguments,
-) -> Job:
-    data, name = read_source(source, args_for(source, urdf, args))
-    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
-    return Job(data, file or name, naming, vocabulary, beside)
+Reader = Callable[[Arguments], Job]
 
 
-def _own_names(
-    read: Callable[[Arguments], Job], given: Arguments, words: Sequence[str]
-) -> OwnNames:
-    """The names that the arguments make of the robot's words, found with other words in their place."""
+def reader(
+    source: Source, naming: Naming, urdf: Source | None, vocabulary: tuple[str, ...], file: str
+) -> Reader:
+    """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
+
+    @cache
+    def read(pairs: frozenset[tuple[str, str]]) -> Job:
+        args = dict(pairs)
+        data, name = read_source(source, args_for(source, urdf, args))
+        beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
+        return Job(data, file or name, naming, vocabulary, beside)
+
+    return lambda args: read(frozenset(args.items()))
+
+
+def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
+    """The job of the robot with these words; raises as ``read_job``."""
+    job = read(filled(given, *words[:1]))
+    if not name_robot(given, words):
+        return job
+    found = list(_marked_jobs(read, given, words))
+    own = {key: None for it in found for part in it.inventories for key in own_names(part, words)}
+    job = job._replace(naming=job.naming._replace(own=own))
+    try:
+        plain = read({it: text for it, text in given.items() if not name_robot({it: text}, words)})
+    except InputError:
+        # An argument without a default: nothing is known of names without it.
+        return job
+    texts = _marked_texts(plain, found)
+    job = job._replace(plain=own_texts(texts, words))
+    beside_plain = job.urdf and len(set(words)) == 1 and not any(has_mark(it.data) for it in found)
+    affixes = own_affixes(texts) if beside_plain else None
+    return _of_plain(job, plain, affixes) if affixes else job
+
+
+def _marked_jobs(read: Reader, given: Arguments, words: Sequence[str]) -> Iterator[Job]:
+    """The sources with marks for the robot's words in all arguments, or in one after the other where
+    some file takes only words that it knows for one of them."""
     with suppress(InputError):
-        return _marked_names(read(marked(given, words)), words)
-    # Some file takes only words that it knows for one of them.
-    found: OwnNames = {}
-    plain = filled(given, words[0])
+        yield read(marked(given, words))
+        return
     for name, text in marked(given, words).items():
         with suppress(InputError):
-            found = {**found, **_marked_names(read({**plain, name: text}), words)}
-    return found
+            yield read({**filled(given, words[0]), name: text})
 
 
-def _marked_names(job: Job, words: Sequence[str]) -> OwnNames:
-    inventories = [collect(read_document(job.data, job.file), job.tree, job.urdf_declarations)]
-    if job.urdf:
-        inventories.append(collect(read_document(*job.urdf), job.tree))
-    return {key: None for it in inventories for key in own_names(it, words)}
+def _marked_texts(plain: Job, found: Iterable[Job]) -> NameTexts:
+    texts: dict[tuple[str, str], str] = {}
+    before = plain.inventories
+    for job in found:
+        for one, other in zip(before, job.inventories, strict=True):
+            texts |= marked_texts(one, other)
+    return texts
+
+
+def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:
+    """An SRDF that knows nothing of the arguments: its names are those of the URDF without them, and
+    become what the arguments make of these."""
+    return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
