@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.arguments import checked
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
@@ -76,6 +77,12 @@ class Rewrite(NamedTuple):
         return self.data.decode()
 
     @property
+    def not_proved(self) -> tuple[str, ...]:
+        """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
+        rewrite is proved. Raises nothing."""
+        return not_proved(self.findings)
+
+    @property
     def changes(self) -> list[Change]:
         """Every renamed or inserted value, in source order; raises as ``template`` does."""
         return list_changes(self.template, self.robot)
@@ -98,8 +105,9 @@ def rewrite(
     vocabulary: Iterable[str] = (),
     again: bool = False,
     file: str = "",
+    trust: bool = False,
 ) -> Rewrite:
-    """Rewrite a robot description for ``robot`` and prove the result.
+    """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
     ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
     ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:
@@ -111,7 +119,7 @@ def rewrite(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot])
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
     return next(rewrite_job(job, [robot], again))
 
 
@@ -132,6 +140,7 @@ def rewrite_all(
     vocabulary: Iterable[str] = (),
     again: bool = False,
     file: str = "",
+    trust: bool = False,
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -142,12 +151,13 @@ def rewrite_all(
     ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
-    name used in messages. Raises as ``rewrite`` does, before the first result.
+    name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
+    read what is near them (SECURITY.md). Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = tuple(robots)
     _check_robots(names)
-    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file)
+    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file, trust)
     return rewrite_jobs(jobs, again)
 
 
@@ -195,6 +205,7 @@ def explain(
     xacro_args: Mapping[str, str] | None = None,
     vocabulary: Iterable[str] = (),
     file: str = "",
+    trust: bool = False,
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``.
 
@@ -203,7 +214,7 @@ def explain(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot])
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
     urdf_declarations = job.urdf_declarations
@@ -229,6 +240,7 @@ def strip(
     xacro_args: Mapping[str, str] | None = None,
     vocabulary: Iterable[str] = (),
     file: str = "",
+    trust: bool = False,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
@@ -240,8 +252,8 @@ def strip(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     if xacro is not None:
-        naming = read_job(xacro, naming, None, xacro_args, vocabulary, "", [robot]).naming
-    job = read_job(source, naming, urdf, None, vocabulary, file)
+        naming = read_job(xacro, naming, None, xacro_args, vocabulary, "", [robot], trust).naming
+    job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust)
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.urdf_declarations)
 
 

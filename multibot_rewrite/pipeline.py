@@ -7,9 +7,10 @@ from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
+from multibot_rewrite.checks.meeting import shared_by_all
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import to_findings
-from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -40,7 +41,18 @@ def prepare(
     values = slot_values(inventory.document.root)
     findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
     pieces = cut(source, plan.edits)
+    findings += _shared(inventory, pieces, naming, tree)
     return Template(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
+
+
+def _shared(
+    inventory: Inventory, pieces: list[bytes], naming: Naming, tree: Tree
+) -> Iterator[Finding]:
+    """What all robots would share; an SRDF starts nothing."""
+    if inventory.format != SRDF:
+        document = inventory.document
+        found = shared_by_all(document, pieces, naming, tree.vocabulary)
+        yield from to_findings(document, found, WARNING)
 
 
 def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:

@@ -20,6 +20,7 @@ from multibot_rewrite.reports.xacro_arguments import (
     find_arguments,
 )
 from multibot_rewrite.rewriters.builtin import builtin_tree
+from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.own_names import filled
 
 COLUMNS = ("argument", "default", "goes into", "as", "count", "example")
@@ -31,7 +32,9 @@ def run(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [path, *options.vocabulary])
     tree = builtin_tree((*configured_vocabulary(path), *options.vocabulary))
-    found = find_arguments(path, filled(xacro_args(options)), tree)
+    found = find_arguments(
+        path, filled(xacro_args(options)), tree, reach=Reach(trust=options.trust)
+    )
     if options.form == JSON:
         deliver(options, json_bytes(as_json(found)))
     else:

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     check_report(options, printed=False)
-    plan = plan_fleet(read_fleet(options.fleet))
+    plan = plan_fleet(read_fleet(options.fleet), trust=options.trust)
     made = make_outputs(plan)
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)

@@ -31,7 +31,7 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
     _check_use(options)
-    plan = _plan(options.plan)
+    plan = _plan(options.plan, options.trust)
     try:
         return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
     except RosUnusable as error:
@@ -50,7 +50,7 @@ def _check_use(options: argparse.Namespace) -> None:
         check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
 
 
-def _plan(path: str) -> Expectation:
+def _plan(path: str, trust: bool) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
     from multibot_rewrite.fleets.fleet_file import is_fleet, read_fleet
 
@@ -61,7 +61,7 @@ def _plan(path: str) -> Expectation:
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path))))
+    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path), trust=trust)))
 
 
 def conclude(

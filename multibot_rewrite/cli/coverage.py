@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.cli.output import deliver, say, watched
@@ -67,7 +67,11 @@ def run(options: argparse.Namespace) -> int:
     tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
     unreadable: list[Unreadable] = []
     arguments = filled(xacro_args(options))
-    found = _surveys(watched(paths, len(paths), "reading"), tree, arguments, unreadable)
+
+    def read(path: str) -> tuple[bytes, str]:
+        return read_source(path, arguments if path.endswith(".xacro") else {}, options.trust)
+
+    found = _surveys(watched(paths, len(paths), "reading"), tree, read, unreadable)
     total = add(found)
     report = CoverageReport(total, unreadable, explain(total, reasons))
     if options.form == JSON:
@@ -88,12 +92,15 @@ def _reasons(path: str | None) -> list[Reason]:
 
 
 def _surveys(
-    paths: Iterable[str], tree: Tree, arguments: dict[str, str], unreadable: list[Unreadable]
+    paths: Iterable[str],
+    tree: Tree,
+    read: Callable[[str], tuple[bytes, str]],
+    unreadable: list[Unreadable],
 ) -> Iterator[Survey]:
     """One survey a file; what cannot be read is put into ``unreadable``."""
     for path in paths:
         try:
-            data, name = read_source(path, arguments if path.endswith(".xacro") else {})
+            data, name = read(path)
             yield survey(collect(read_document(data, name), tree), tree)
         except InputError as error:
             unreadable.append(Unreadable(path, str(error)))

@@ -54,7 +54,7 @@ def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also))
+    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also, trust=options.trust))
 
 
 def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
@@ -70,6 +70,7 @@ def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
         nodes=options.nodes,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
+        trust=options.trust,
     )
 
 

@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
 
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.output import (
     STANDARD,
@@ -59,7 +60,7 @@ def run(options: argparse.Namespace) -> int:
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     (robot,) = names
     # Read once: it may be a pipe, and --diff shows it again.
-    before, _ = read_source(source, {} if options.xacro else xacro_args(options))
+    before, _ = read_source(source, {} if options.xacro else xacro_args(options), options.trust)
     _deliver(options, [(robot, before, _strip(options, before, robot))], [], 1)
     note(options, f"{robot} taken out, proved by rewriting again")
     return DONE
@@ -75,6 +76,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         vocabulary=options.vocabulary,
         again=options.again,
         file=input_name(options),
+        trust=options.trust,
     )
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
@@ -104,6 +106,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         xacro_args=xacro_args(options) if options.xacro else None,
         vocabulary=vocabulary,
         file=name,
+        trust=options.trust,
         **extra,
     )
 
@@ -160,4 +163,6 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     known += [f"{plural(len(own), 'name')} by {own_arguments}"] if own else []
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
-    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"
+    why = not_proved(first.findings)
+    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -132,7 +132,7 @@ def _suggest(options: argparse.Namespace) -> int:
     check_xacro(options, [options.suggest])
     if options.output:
         check_target(options.output, [options.suggest, *options.vocabulary])
-    data, name = read_source(options.suggest, filled(xacro_args(options)))
+    data, name = read_source(options.suggest, filled(xacro_args(options)), options.trust)
     tree = builtin_tree((*configured_vocabulary(options.suggest), *options.vocabulary))
     sections = suggest(collect(read_document(data, name), tree))
     text = vocabulary_text(sections, options.suggest)

@@ -28,6 +28,7 @@ def run(options: argparse.Namespace) -> int:
         robot,
         urdf=options.urdf,
         xacro_args=xacro_args(options),
+        trust=options.trust,
         vocabulary=[*configured_vocabulary(path), *options.vocabulary],
         **policy(options),
     )

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
+from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.fleets.fleet import Member, member
 from multibot_rewrite.fleets.fleet_file import RobotSpec, Sources
+from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
@@ -56,13 +57,14 @@ def at_robot(
 
 
 def read_jobs(
-    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str]
+    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str], trust: bool = False
 ) -> dict[Sources, Jobs]:
-    """Read every description and SRDF once; raises as ``read_job``."""
+    """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
+    anything."""
     found: dict[Sources, Jobs] = {}
     for it in robots:
         if it.sources not in found:
-            more = it.arguments, vocabulary, "", it.words
+            more = it.arguments, vocabulary, "", it.words, trust
             description = read_job(it.description, naming, None, *more)
             srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
             found[it.sources] = Jobs(description, srdf)
@@ -95,6 +97,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
         data = _final(text, robot, naming)
         declared = text.template.inventory.declared
         names = companion_names(declared, naming, robot.tag, jobs.description.plain)
+        found = (*text.findings, *(semantic.findings if semantic else ()))
         yield RewrittenRobot(
             robot,
             data,
@@ -103,7 +106,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             names._replace(robot=robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag),
-            (*text.findings, *(semantic.findings if semantic else ())),
+            # What robots share the fleet says, of the robots that it has.
+            tuple(it for it in found if it.code not in SHARED_CODES),
         )
 
 

@@ -275,13 +275,15 @@ class LoadedFleet:
 
 
 @checked
-def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
+def load_fleet(path: str | os.PathLike[str], *, trust: bool = False) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
+
+    ``trust`` lets xacro files do anything; without it they only compute (SECURITY.md).
 
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
     robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
-    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
+    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path)), trust=trust))
     _refuse(fleet.findings)
     return fleet
 

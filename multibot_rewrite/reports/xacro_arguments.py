@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.access import BOUNDED, Reach
 from multibot_rewrite.sources.expand import expand, expand_traced
 from multibot_rewrite.sources.own_names import MARKS, ROBOT
-from multibot_rewrite.sources.trace import Trace
+from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 
@@ -84,18 +85,18 @@ def find_arguments(
     given: Mapping[str, str],
     tree: Tree,
     clock: Callable[[], float] = time.monotonic,
+    reach: Reach = BOUNDED,
 ) -> XacroArguments:
     """The arguments of a xacro file; ``given`` are values for some. Raises InputError where the file
     does not expand with these."""
     end = clock() + SECONDS
-    trace = Trace({}, path)
-    expand_traced(path, given, trace)
-    declared = {**_declared(trace.sources), **given}
+    read = expand_traced(path, read_file(path), given, None, reach).sources
+    declared = {**_declared(read), **given}
     found = []
     for name, default in list(declared.items())[:MOST]:
         if clock() > end:
             break
-        found.append(_argument(path, given, name, default, tree))
+        found.append(_argument(path, given, name, default, tree, reach))
     return XacroArguments(path, tuple(found), tuple(declared)[len(found) :])
 
 
@@ -109,9 +110,11 @@ def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
     return found
 
 
-def _argument(path: str, given: Mapping[str, str], name: str, default: str, tree: Tree) -> Argument:
+def _argument(
+    path: str, given: Mapping[str, str], name: str, default: str, tree: Tree, reach: Reach
+) -> Argument:
     try:
-        data = expand(path, {**given, name: _MARK})
+        data = expand(path, {**given, name: _MARK}, reach=reach)
         inventory = collect(read_document(data, path), tree)
     except InputError as error:
         return Argument(name, default, (), 0, _reason(error))

@@ -69,13 +69,15 @@ def read_job(
     vocabulary: Iterable[str] = (),
     file: str = "",
     words: Sequence[str] = (),
+    trust: bool = False,
 ) -> Job:
     """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
 
     ``words`` are those of the robot that the job is for: the first one is filled into the arguments,
-    and what they name after any of the words is the robot's own.
+    and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
+    anything.
     """
-    read = reader(source, naming, urdf, tuple(vocabulary), file)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust)
     return job_for(read, xacro_args or {}, words)
 
 
@@ -87,10 +89,11 @@ def read_jobs(
     xacro_args: Arguments | None,
     vocabulary: Iterable[str],
     file: str,
+    trust: bool = False,
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = reader(source, naming, urdf, tuple(vocabulary), file)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
     jobs = {robot: job_for(read, given, [robot]) for robot in named}
@@ -115,15 +118,20 @@ Reader = Callable[[Arguments], Job]
 
 
 def reader(
-    source: Source, naming: Naming, urdf: Source | None, vocabulary: tuple[str, ...], file: str
+    source: Source,
+    naming: Naming,
+    urdf: Source | None,
+    vocabulary: tuple[str, ...],
+    file: str,
+    trust: bool = False,
 ) -> Reader:
     """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
 
     @cache
     def read(pairs: frozenset[tuple[str, str]]) -> Job:
         args = dict(pairs)
-        data, name = read_source(source, args_for(source, urdf, args))
-        beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args))
+        data, name = read_source(source, args_for(source, urdf, args), trust)
+        beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
         return Job(data, file or name, naming, vocabulary, beside)
 
     return lambda args: read(frozenset(args.items()))
@@ -155,9 +163,11 @@ def _marked_jobs(read: Reader, given: Arguments, words: Sequence[str]) -> Iterat
     with suppress(InputError):
         yield read(marked(given, words))
         return
+    plain = filled(given, words[0])
     for name, text in marked(given, words).items():
         with suppress(InputError):
-            yield read({**filled(given, words[0]), name: text})
+            if text != plain[name]:
+                yield read({**plain, name: text})
 
 
 def _marked_texts(plain: Job, found: Iterable[Job]) -> NameTexts:

@@ -20,17 +20,21 @@ def _is_xacro(source: Source) -> bool:
     return not isinstance(source, bytes) and os.fspath(source).endswith(".xacro")
 
 
-def read_source(source: Source, xacro_args: Mapping[str, str]) -> tuple[bytes, str]:
-    """The bytes of a source and the name for messages."""
+def read_source(
+    source: Source, xacro_args: Mapping[str, str], trust: bool = False
+) -> tuple[bytes, str]:
+    """The bytes of a source and the name for messages; ``trust`` lets a xacro file do anything."""
     if isinstance(source, bytes):
         return source, "<bytes>"
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
         return _encoded(source), "<text>"
     path = os.fspath(source)
     if path.endswith(".xacro"):
+        from multibot_rewrite.sources.access import BOUNDED, TRUSTED
         from multibot_rewrite.sources.expand import expand
 
-        return expand(path, xacro_args), f"{path} (expanded)"
+        reach = TRUSTED if trust else BOUNDED
+        return expand(path, xacro_args, reach=reach), f"{path} (expanded)"
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is not named ….xacro")
     return read_file(path), path

@@ -24,7 +24,7 @@ FLOORS = (
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "version"),
     ("findings", "rosnames", "naming", "config", "arguments"),
     ("rewriters",),
-    ("steps",),
+    ("readback", "steps"),
     ("checks", "sources", "remap"),
     ("pipeline", "reports", "graph", "lint", "companions"),
     ("library",),

@@ -10,6 +10,7 @@ from multibot_rewrite.cli.declared.shared import (
     GENERAL,
     NAMING,
     ROBOTS,
+    TRUST,
     URDF,
     VOCABULARY,
 )
@@ -59,6 +60,7 @@ POSTFIX = Command(
                 ROBOTS,
                 URDF,
                 VOCABULARY,
+                TRUST,
             ),
         ),
         OptionGroup(
@@ -136,6 +138,7 @@ LINT = Command(
                 several("--roots", "A,B", "folders to look for package://NAME and $(find NAME) in"),
                 URDF,
                 VOCABULARY,
+                TRUST,
             ),
         ),
         OptionGroup(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, VOCABULARY
+from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
 from multibot_rewrite.cli.options import (
     Command,
     Example,
@@ -34,6 +34,7 @@ ARGUMENTS = Command(
             (
                 argument("words", "FILE.xacro", "a xacro; NAME:=VALUE are arguments of it", "*"),
                 VOCABULARY,
+                TRUST,
             ),
         ),
         output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),
@@ -58,6 +59,7 @@ COVERAGE = Command(
             (
                 argument("words", "PATH", "files and folders; NAME:=VALUE is for xacro", "+"),
                 VOCABULARY,
+                TRUST,
                 value(
                     "--explained",
                     metavar="FILE",
@@ -143,6 +145,7 @@ VOCABULARY_LOOKUP = Command(
                     type=values.path,
                 ),
                 VOCABULARY,
+                TRUST,
             ),
         ),
         output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),

@@ -64,6 +64,10 @@ VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
 URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
+TRUST = switch(
+    "--trust",
+    about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",
+)
 FINDINGS = OptionGroup(
     "findings",
     (

@@ -69,7 +69,7 @@ def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
 def _origin(subject: Subject, start: int) -> Origin | None:
     if not subject.origins:
         return None
-    return subject.origins[bisect_left(subject.document.starts, start)]
+    return subject.origins.of(bisect_left(subject.document.starts, start))
 
 
 @rule(
