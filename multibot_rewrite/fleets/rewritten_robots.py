@@ -96,7 +96,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _final(text, robot, naming)
         declared = text.template.inventory.declared
-        names = companion_names(declared, naming, robot.tag, jobs.description.plain)
+        names = companion_names(declared, naming, robot.tag, jobs.description.own.plain)
         found = (*text.findings, *(semantic.findings if semantic else ()))
         yield RewrittenRobot(
             robot,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import NamedTuple
@@ -13,9 +13,12 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.own_names import (
+    OF_ALL,
     ROBOT,
     Arguments,
     NameTexts,
+    OwnSource,
+    as_twin,
     filled,
     has_mark,
     marked,
@@ -29,20 +32,18 @@ from multibot_rewrite.sources.read import Source, args_for, read_source
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.steps.document import read_document
 
-NO_TEXTS: NameTexts = {}
-
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF. ``plain`` are the names that the xacro's own arguments make,
-    by what they are without these. It holds no parsed document, so it can be pickled."""
+    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own. It holds no
+    parsed document, so it can be pickled."""
 
     data: bytes
     file: str
     naming: Naming
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
-    plain: NameTexts = NO_TEXTS
+    own: OwnSource = OF_ALL
 
     @property
     def tree(self) -> Tree:
@@ -142,41 +143,38 @@ def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
     job = read(filled(given, *words[:1]))
     if not name_robot(given, words):
         return job
-    found = list(_marked_jobs(read, given, words))
-    own = {key: None for it in found for part in it.inventories for key in own_names(part, words)}
-    job = job._replace(naming=job.naming._replace(own=own))
+    other = _marked(read, given, words)
+    own = {key: None for part in other.inventories for key in own_names(part, words)}
+    twin = as_twin(other.data) if has_mark(other.data) else b""
+    job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(twin=twin))
     try:
         plain = read({it: text for it, text in given.items() if not name_robot({it: text}, words)})
     except InputError:
         # An argument without a default: nothing is known of names without it.
         return job
-    texts = _marked_texts(plain, found)
-    job = job._replace(plain=own_texts(texts, words))
-    beside_plain = job.urdf and len(set(words)) == 1 and not any(has_mark(it.data) for it in found)
+    texts = _marked_texts(plain, other)
+    job = job._replace(own=OwnSource(own_texts(texts, words), twin))
+    beside_plain = job.urdf and len(set(words)) == 1 and not twin
     affixes = own_affixes(texts) if beside_plain else None
     return _of_plain(job, plain, affixes) if affixes else job
 
 
-def _marked_jobs(read: Reader, given: Arguments, words: Sequence[str]) -> Iterator[Job]:
-    """The sources with marks for the robot's words in all arguments, or in one after the other where
-    some file takes only words that it knows for one of them."""
+def _marked(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
+    """The sources with marks for the robot's words in every argument that takes them."""
     with suppress(InputError):
-        yield read(marked(given, words))
-        return
-    plain = filled(given, words[0])
+        return read(marked(given, words))
+    # Some file takes only words that it knows for one of them.
+    args = filled(given, words[0])
     for name, text in marked(given, words).items():
         with suppress(InputError):
-            if text != plain[name]:
-                yield read({**plain, name: text})
+            read({**args, name: text})
+            args[name] = text
+    return read(args)
 
 
-def _marked_texts(plain: Job, found: Iterable[Job]) -> NameTexts:
-    texts: dict[tuple[str, str], str] = {}
-    before = plain.inventories
-    for job in found:
-        for one, other in zip(before, job.inventories, strict=True):
-            texts |= marked_texts(one, other)
-    return texts
+def _marked_texts(plain: Job, other: Job) -> NameTexts:
+    pairs = zip(plain.inventories, other.inventories, strict=True)
+    return {key: text for pair in pairs for key, text in marked_texts(*pair).items()}
 
 
 def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import DECLARED_KINDS, Affix, OwnNames
@@ -16,11 +17,27 @@ from multibot_rewrite.steps.collect import Inventory
 ROBOT = "{robot}"
 # Stand for the words of a robot. Letters alone are taken by every file that takes a name.
 MARKS = ("qzrobotzq", "qznamespacezq", "qztagzq")
+TWIN = MARKS[0]
 _TWICE = re.compile(r"(qz\w+?zq)[/_]*\1")
 _PLACEHOLDER = re.compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
 Arguments = Mapping[str, str]
 # Kind and text of a name -> another text of it.
 NameTexts = Mapping[tuple[str, str], str]
+NO_TEXTS: NameTexts = {}
+
+
+class OwnSource(NamedTuple):
+    """What is known of a description that is one robot's own, by the arguments of its xacro.
+
+    ``plain`` are the names that the arguments make, by what they are without these; ``twin`` are the
+    bytes for a robot that is called ``TWIN``.
+    """
+
+    plain: NameTexts = NO_TEXTS
+    twin: bytes = b""
+
+
+OF_ALL = OwnSource()
 
 
 def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
@@ -135,3 +152,10 @@ def _inserted(plain: str, marked: str) -> Affix | None:
         if mark and plain[:at] + middle + plain[at:] == marked:
             return Affix(at, before, after)
     return None
+
+
+def as_twin(data: bytes) -> bytes:
+    """The text for a robot whose words are all ``TWIN``."""
+    for mark in MARKS:
+        data = data.replace(mark.encode(), TWIN.encode())
+    return data
