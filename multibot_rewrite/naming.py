@@ -22,6 +22,7 @@ SEPARATORS = {
     "joint": "_",
     "frame": "/",
     "sensor": "_",
+    "light": "_",
     "transmission": "_",
     "actuator": "_",
     "hardware": "_",
@@ -48,7 +49,7 @@ TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
-DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor")
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light")
 # Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
 NOT_PLAIN = frozenset("{}$ ")
 
