@@ -189,14 +189,18 @@ MODEL_OF_OTHER_NAME = declare(
     fix="Give the robot that name with `model:`, in a layout that renames the description's for each "
     "robot.",
     bad="""\
+layout: both
+affix: prefix
 robots:
   - {name: robot1, description: docking.urdf}
 """,
     good="""\
+layout: both
+affix: prefix
 robots:
-  - {name: robot1, description: docking.urdf, model: create3_robot1}
+  - {name: robot1, description: docking.urdf, model: robot1_create3}
 """,
-    line=2,
+    line=4,
     formats=("fleet",),
     beside={
         "docking.urdf": """\
