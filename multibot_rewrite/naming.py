@@ -196,9 +196,13 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
         return None
     if kind == "namespace":
         return _namespace_affix(separator, text)
-    if kind in FRAME_KINDS and text.strip("/") in naming.shared_frames:
+    if _is_shared_frame(naming, kind, text):
         return None
     return _name_affix(naming.affix, separator, text)
+
+
+def _is_shared_frame(naming: Naming, kind: str, text: str) -> bool:
+    return kind in FRAME_KINDS and text.strip("/") in naming.shared_frames
 
 
 def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False) -> str:
@@ -243,7 +247,7 @@ def removal(
 ) -> tuple[int, int] | None:
     """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
     separator = naming.separators.get(kind)
-    if separator is None or robot not in text:
+    if separator is None or robot not in text or _is_shared_frame(naming, kind, text):
         return None
     lead = 1 if text.startswith("/") else 0
     places = [(lead, robot + separator), (lead, robot)]

@@ -9,6 +9,7 @@ from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import to_findings
+from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
@@ -61,13 +62,13 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     inventory, plan, values, *_ = prepared
     renames = plan.renames
     document = inventory.document
-    taken = checks.taken_names(inventory, renames, robots)
-    whole = chain(
-        checks.meeting(inventory, renames, overlap(prepared.naming, robots)),
-        checks.already_rewritten(inventory, renames, robots, again),
+    at_values = chain(
+        checks.taken_names(inventory, renames, robots),
+        already_rewritten(inventory, robots, again),
     )
+    whole = checks.meeting(inventory, renames, overlap(prepared.naming, robots))
     at_start = to_findings(document, whole, ERROR, of_file=True)
-    _stop_on_errors([*to_findings(document, taken, ERROR), *at_start])
+    _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for number, robot in enumerate(robots):
         output = fill(prepared.pieces, robot)
         if number == 0:
