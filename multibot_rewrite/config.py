@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Iterator
 
+from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 
@@ -50,8 +51,7 @@ def folders_above(near: str) -> Iterator[str]:
 def read(path: str) -> bytes:
     """The bytes of a configuration file; raises UsageError with the reason."""
     try:
-        with open(path, "rb") as file:
-            return file.read()
+        return read_bytes(path)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", "") or error
         raise UsageError(f"{path}: cannot be read: {reason}") from None

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.arguments import checked
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
-from multibot_rewrite.sources.job import Job, read_job
+from multibot_rewrite.sources.job import Job, read_job, read_jobs
 from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.document import read_document
@@ -76,6 +77,12 @@ class Rewrite(NamedTuple):
         return self.data.decode()
 
     @property
+    def not_proved(self) -> tuple[str, ...]:
+        """Why the robots may meet, with counts, as ``1 topic shared by all robots``; empty where the
+        rewrite is proved. Raises nothing."""
+        return not_proved(self.findings)
+
+    @property
     def changes(self) -> list[Change]:
         """Every renamed or inserted value, in source order; raises as ``template`` does."""
         return list_changes(self.template, self.robot)
@@ -98,8 +105,9 @@ def rewrite(
     vocabulary: Iterable[str] = (),
     again: bool = False,
     file: str = "",
+    trust: bool = False,
 ) -> Rewrite:
-    """Rewrite a robot description for ``robot`` and prove the result.
+    """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
     ``source`` is a path (str or PathLike), XML text (a str that starts with ``<``) or bytes; a path
     ending in ``.xacro`` is expanded. The options are those of ``rewrite_all``. In a launch file:
@@ -110,7 +118,8 @@ def rewrite(
     (the content does not allow it; ``.findings``), VocabularyError, ProofError.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
+    check_robot_name(robot)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
     return next(rewrite_job(job, [robot], again))
 
 
@@ -131,6 +140,7 @@ def rewrite_all(
     vocabulary: Iterable[str] = (),
     again: bool = False,
     file: str = "",
+    trust: bool = False,
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -138,13 +148,17 @@ def rewrite_all(
     ``affix`` is postfix or prefix; ``topics`` is postfix, prefix or namespace (default: what the
     layout implies); ``separators`` maps kinds to separators; ``groups`` is keep or rename: what
     becomes of an SRDF's groups and end effectors; ``urdf`` is the description an SRDF belongs to;
-    ``xacro_args`` are the arguments of a xacro; ``vocabulary`` are vocabulary files beside the
-    built-in one; ``again`` allows a second rewrite; ``file`` is the name used in messages. Raises
-    as ``rewrite`` does, before the first result.
+    ``xacro_args`` are the arguments of a xacro, ``{robot}`` in them is the robot's name: what they
+    name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
+    are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
+    name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
+    read what is near them (SECURITY.md). Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
-    return rewrite_job(job, tuple(robots), again)
+    names = tuple(robots)
+    _check_robots(names)
+    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file, trust)
+    return rewrite_jobs(jobs, again)
 
 
 def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterator[Rewrite]:
@@ -154,6 +168,24 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
     findings = tuple(prepared.template.findings)
     texts = pipeline.render(prepared.template, robots, again)
     return (Rewrite(r, t, findings, prepared) for r, t in zip(robots, texts, strict=True))
+
+
+def rewrite_jobs(jobs: Mapping[str, Job], again: bool = False) -> Iterator[Rewrite]:
+    """Rewrite the job of each robot, in their order; raises as ``rewrite_all``."""
+    groups: dict[int, list[str]] = {}
+    if not jobs:
+        return iter(())
+    for robot, job in jobs.items():
+        groups.setdefault(id(job), []).append(robot)
+    if len(groups) == 1:
+        return rewrite_job(next(iter(jobs.values())), tuple(jobs), again)
+    made = {
+        it.robot: it
+        for robots in groups.values()
+        for it in rewrite_job(jobs[robots[0]], robots, again)
+    }
+    pipeline.check_apart({robot: it.template for robot, it in made.items()})
+    return iter([made[robot] for robot in jobs])
 
 
 @checked
@@ -173,6 +205,7 @@ def explain(
     xacro_args: Mapping[str, str] | None = None,
     vocabulary: Iterable[str] = (),
     file: str = "",
+    trust: bool = False,
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``.
 
@@ -181,13 +214,13 @@ def explain(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
     urdf_declarations = job.urdf_declarations
     inventory = collect(read_document(job.data, job.file), job.tree, urdf_declarations)
     pipeline.check_urdf(inventory, urdf_declarations)
-    return explain_line(inventory, naming, job.tree, robot, line)
+    return explain_line(inventory, job.naming, job.tree, robot, line)
 
 
 @checked
@@ -203,17 +236,24 @@ def strip(
     shared_topics: Iterable[str] = SHARED_TOPICS,
     groups: str = "keep",
     urdf: Source | None = None,
+    xacro: Source | None = None,
+    xacro_args: Mapping[str, str] | None = None,
     vocabulary: Iterable[str] = (),
     file: str = "",
+    trust: bool = False,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
     The options are those that the text was rewritten with; ``urdf`` is the rewritten description
-    that a rewritten SRDF belongs to. Raises as ``rewrite`` does.
+    that a rewritten SRDF belongs to. Where arguments named the robot, ``xacro`` is the file and
+    ``xacro_args`` are the arguments: what they named stays, so the result is that xacro's
+    expansion. Raises as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, None, vocabulary, file)
+    if xacro is not None:
+        naming = read_job(xacro, naming, None, xacro_args, vocabulary, "", [robot], trust).naming
+    job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust)
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.urdf_declarations)
 
 

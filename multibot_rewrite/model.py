@@ -16,7 +16,9 @@ class Site(NamedTuple):
 
     ``role`` is ``"declares"``, ``"uses"`` or ``"keep"`` (never renamed; ``note`` says why).
     ``kinds`` are tried in order until one resolves. ``form`` says where inside the value the names
-    are (see ``rewriters.forms``). ``default`` is the literal the consumer falls back to.
+    are (see ``rewriters.forms``). ``default`` is the literal the consumer falls back to. ``empty`` is
+    what it makes of an element that is there and empty: ``default``, ``model`` (the model's name) or
+    ``itself``.
     ``namespaced`` is true where a ROS namespace reaches the value. ``whole_value_kind`` is the
     kind where the whole value is the name of a link or joint and of nothing else. ``when`` is
     ``sibling=text`` where only that sibling's text makes the value a name.
@@ -34,6 +36,7 @@ class Site(NamedTuple):
     whole_value_kind: str = ""
     when: str = ""
     file: str = ""
+    empty: str = "itself"
 
 
 class Claim(NamedTuple):

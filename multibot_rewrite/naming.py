@@ -85,8 +85,16 @@ class Affix(NamedTuple):
         return f"{text[: self.at]}{self.before}{robot}{self.after}{text[self.at :]}"
 
 
+# Kind and text of a name -> where the robot's name goes; None: it is there already.
+OwnNames = Mapping[tuple[str, str], Affix | None]
+NO_OWN_NAMES: OwnNames = {}
+
+
 class Naming(NamedTuple):
-    """The whole naming policy of one job; ``separators`` holds only the kinds that are renamed."""
+    """The whole naming policy of one job; ``separators`` holds only the kinds that are renamed.
+
+    ``own`` are names that the description spells for the robot itself, by an argument of its xacro.
+    """
 
     layout: Layout
     affix: str
@@ -94,6 +102,7 @@ class Naming(NamedTuple):
     separators: Mapping[str, str]
     shared_frames: frozenset[str]
     shared_topics: frozenset[str]
+    own: OwnNames = NO_OWN_NAMES
 
 
 class Policy(TypedDict, total=False):
@@ -186,14 +195,14 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
 
     ``namespaced`` is true where a ROS namespace reaches the value.
     """
+    if (kind, text) in naming.own:
+        return naming.own[kind, text]
     separator = naming.separators.get(kind)
-    if separator is None:
+    in_namespace = namespaced and naming.topics == NAMESPACE
+    if separator is None or (kind == "stem" and in_namespace):
         return None
     if kind in TOPIC_KINDS:
-        below = kind == "subtopic" or (namespaced and naming.topics == NAMESPACE)
-        return _topic_affix(naming, separator, text, below)
-    if kind == "stem" and namespaced and naming.topics == NAMESPACE:
-        return None
+        return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
     if kind == "namespace":
         return _namespace_affix(separator, text)
     if _is_shared_frame(naming, kind, text):
@@ -247,7 +256,8 @@ def removal(
 ) -> tuple[int, int] | None:
     """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
     separator = naming.separators.get(kind)
-    if separator is None or robot not in text or _is_shared_frame(naming, kind, text):
+    kept = (kind, text) in naming.own or _is_shared_frame(naming, kind, text)
+    if separator is None or robot not in text or kept:
         return None
     lead = 1 if text.startswith("/") else 0
     places = [(lead, robot + separator), (lead, robot)]

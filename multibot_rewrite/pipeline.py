@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
+from multibot_rewrite.checks.meeting import shared_by_all
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import to_findings
 from multibot_rewrite.checks.twice import already_rewritten
-from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -41,7 +42,18 @@ def prepare(
     values = slot_values(inventory.document.root)
     findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
     pieces = cut(source, plan.edits)
+    findings += _shared(inventory, pieces, naming, tree)
     return Template(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
+
+
+def _shared(
+    inventory: Inventory, pieces: list[bytes], naming: Naming, tree: Tree
+) -> Iterator[Finding]:
+    """What all robots would share; an SRDF starts nothing."""
+    if inventory.format != SRDF:
+        document = inventory.document
+        found = shared_by_all(document, pieces, naming, tree.vocabulary)
+        yield from to_findings(document, found, WARNING)
 
 
 def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
@@ -64,7 +76,7 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     document = inventory.document
     at_values = chain(
         checks.taken_names(inventory, renames, robots),
-        already_rewritten(inventory, robots, again),
+        already_rewritten(inventory, robots, again, renames.naming.own),
     )
     whole = checks.meeting(inventory, renames, overlap(prepared.naming, robots))
     at_start = to_findings(document, whole, ERROR, of_file=True)
@@ -76,6 +88,14 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
             declared = respelled_names(urdf_declarations, renames, robot)
             verify(inventory, plan, values, output, robot, naming, tree, declared)
         yield output
+
+
+def check_apart(made: Mapping[str, Template]) -> None:
+    """Raise RewriteRefused for names that robots with descriptions of their own both have."""
+    first = next(iter(made.values())).inventory.document
+    parts = ((robot, it.inventory, it.plan.renames) for robot, it in made.items())
+    both = checks.meeting_descriptions(parts)
+    _stop_on_errors([*to_findings(first, both, ERROR, of_file=True)])
 
 
 def strip(

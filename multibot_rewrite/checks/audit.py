@@ -19,6 +19,7 @@ from multibot_rewrite.checks.references import (
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.steps.collect import Inventory
@@ -118,7 +119,7 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         section = host.node.section
         if section is None or section.select != "hardware":
             continue
-        name = host.element.findtext("hardware/plugin", "").strip()
+        name = text_at(host.element, "hardware/plugin")
         if not name or host.element.find("hardware/param") is None:
             continue
         near = nearest(name, tree.vocabulary.names("hardware"))

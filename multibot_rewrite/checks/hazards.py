@@ -24,7 +24,7 @@ from multibot_rewrite.steps.renames import RenameMap
 
 def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Finding]:
     """All of them; they do not depend on the robots' names."""
-    of_naming = (prefix_only, leading_slashes, moved_tf, bare_lookups, process_wide)
+    of_naming = (prefix_only, leading_slashes, moved_tf, process_wide)
     of_names = (hardwired, outside_frames, reordered)
     found = [hazard(inventory, renames.naming) for hazard in of_naming]
     found += [hazard(inventory, renames) for hazard in of_names]

@@ -12,6 +12,7 @@ from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site
+from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot
@@ -95,10 +96,13 @@ def _unclaimed(
     document = inventory.document
     for element, start in zip(document.elements, document.starts, strict=True):
         slots = [(str(key), str(value)) for key, value in element.items()]
-        slots.append(("", (element.text or "").strip()))
+        slots.append(("", text := text_of(element)))
         slots = [slot for slot in slots if (start, slot[0]) not in claimed]
-        # Text behind a child or comment is never what a site claims.
-        slots += [("", (child.tail or "").strip()) for child in element]
+        # Text behind a child, or more of it behind a comment, is never what a site claims.
+        tails = [(child.tail or "").strip() for child in element]
+        if text and not (element.text or "").strip():
+            tails.remove(text)
+        slots += [("", tail) for tail in tails]
         for attribute, value in slots:
             if value in suspects:
                 yield element, start, attribute, value

@@ -23,7 +23,8 @@ strip_other_robot = declare(
     "SRDF, does not have that robot's name.",
     why="The file was made for another robot or with other options. Removing the name from some "
     "names only would leave a description that is neither the source nor the robot's.",
-    fix="Use the robot and the options with which the file was made.",
+    fix="Use the robot and the options with which the file was made; for names that an argument of a "
+    "xacro made, name that file with `--xacro`, and give the argument.",
     bad='<robot name="r_robot1">\n  <link name="base_link/robot2"/>\n</robot>\n',
     good='<robot name="r_robot1">\n  <link name="base_link/robot1"/>\n</robot>\n',
     line=2,
@@ -129,12 +130,29 @@ def meeting(
             yield Problem(inventory.document.root, message, None, hint, (), "MB421")
 
 
+def meeting_descriptions(
+    made: Iterable[tuple[str, Inventory, RenameMap]],
+) -> Iterator[Problem]:
+    """Names that two robots both have, each in a description of its own."""
+    first: dict[tuple[str, str], str] = {}
+    for robot, inventory, renames in made:
+        names = {(name[0], renames.spelled(robot, *name)) for name in _changing(renames)}
+        for kind, name in sorted(names | set(renames.naming.own)):
+            other = first.setdefault((kind, name), robot)
+            if other != robot:
+                message = f"{other} and {robot} would both have a {kind} {name!r}"
+                hint = "rename a robot, or give its xacro another argument"
+                yield Problem(inventory.document.root, message, None, hint, (), "MB421")
+
+
 def not_rewritten(inventory: Inventory, renames: RenameMap, robot: str) -> list[Finding]:
     """Links and joints without the affix that ``--strip`` is to take off."""
     for kind, name, claim, changes in _declarations(inventory, renames):
         if changes and removal(renames.naming, robot, kind, name) is None:
             message = f"{kind} {name!r} does not have the name of {robot}"
             hint = "give --strip the robot and the options that the file was made with"
+            if robot in name:
+                hint += ", and --xacro if an argument of it made the name"
             return [_other_robot(inventory, claim.start, message, hint)]
     return []
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim
-from multibot_rewrite.naming import FRAME_KINDS, TOPIC_KINDS
+from multibot_rewrite.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, OwnNames
 from multibot_rewrite.plural import plural
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.inserted import markers
@@ -39,29 +39,31 @@ class UsedName(NamedTuple):
 
 
 def already_rewritten(
-    inventory: Inventory, robots: Iterable[str], again: bool
+    inventory: Inventory, robots: Iterable[str], again: bool, own: OwnNames = NO_OWN_NAMES
 ) -> Iterator[Problem]:
     """Robots whose name is in names of the document, or in a marker of inserted elements.
 
-    ``again`` rewrites it once more, but not where it has inserted elements of the same robot.
+    ``again`` rewrites it once more, but not where it has inserted elements of the same robot. Names
+    of ``own`` are the robot's by an argument of its xacro: they stay as they are.
     """
     marked = {mark.robot for mark in markers(inventory.document)}
     text = "\n".join({name.text for names in inventory.names for name in names})
     for robot in robots:
         # Most robots are in no name at all. With ``again`` names alone do not matter.
         looked = robot in text and (not again or robot in marked)
-        found = carrying(_names(inventory), robot) if looked else []
+        found = carrying(_names(inventory, own), robot) if looked else []
         if found or robot in marked:
             yield _problem(inventory, robot, found, robot in marked)
 
 
-def _names(inventory: Inventory) -> list[UsedName]:
+def _names(inventory: Inventory, own: OwnNames) -> list[UsedName]:
     """Every name that some rewrite changes, once. A model may well be called like its robot."""
+    kept = {text for _, text in own}
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():
             kind = name.kind or name.kinds[0]
-            if kind != "model" and (kind, name.text) not in found:
+            if kind != "model" and name.text not in kept and (kind, name.text) not in found:
                 found[kind, name.text] = UsedName(kind, name.text, claim)
     return list(found.values())
 

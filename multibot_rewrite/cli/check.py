@@ -6,6 +6,7 @@ import argparse
 from collections.abc import Sequence
 from math import inf
 
+from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.output import note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
@@ -30,7 +31,7 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
     _check_use(options)
-    plan = _plan(options.plan)
+    plan = _plan(options.plan, options.trust)
     try:
         return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
     except RosUnusable as error:
@@ -49,18 +50,18 @@ def _check_use(options: argparse.Namespace) -> None:
         check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
 
 
-def _plan(path: str) -> Expectation:
+def _plan(path: str, trust: bool) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
     from multibot_rewrite.fleets.fleet_file import is_fleet, read_fleet
 
-    data = read_file(path)
+    data = read_file(path, MAX_FLEET_BYTES)
     if not is_fleet(data):
         return from_yaml(data, path)
     from multibot_rewrite.fleets.fleet import expected
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path))))
+    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path), trust=trust)))
 
 
 def conclude(
@@ -99,7 +100,7 @@ def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdi
 
 def _graph(options: argparse.Namespace) -> Snapshot:
     if options.snapshot:
-        return from_json(read_file(options.snapshot), options.snapshot)
+        return from_json(read_file(options.snapshot, MAX_FLEET_BYTES), options.snapshot)
     # Not only until the planned nodes are there: a twin or a leak may come after them.
     return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.cli.output import deliver, say, watched
@@ -32,6 +32,7 @@ from multibot_rewrite.reports.survey import (
 )
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.own_names import filled
 from multibot_rewrite.sources.read import read_file, read_source
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -65,8 +66,12 @@ def run(options: argparse.Namespace) -> int:
         )
     tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
     unreadable: list[Unreadable] = []
-    arguments = xacro_args(options)
-    found = _surveys(watched(paths, len(paths), "reading"), tree, arguments, unreadable)
+    arguments = filled(xacro_args(options))
+
+    def read(path: str) -> tuple[bytes, str]:
+        return read_source(path, arguments if path.endswith(".xacro") else {}, options.trust)
+
+    found = _surveys(watched(paths, len(paths), "reading"), tree, read, unreadable)
     total = add(found)
     report = CoverageReport(total, unreadable, explain(total, reasons))
     if options.form == JSON:
@@ -87,12 +92,15 @@ def _reasons(path: str | None) -> list[Reason]:
 
 
 def _surveys(
-    paths: Iterable[str], tree: Tree, arguments: dict[str, str], unreadable: list[Unreadable]
+    paths: Iterable[str],
+    tree: Tree,
+    read: Callable[[str], tuple[bytes, str]],
+    unreadable: list[Unreadable],
 ) -> Iterator[Survey]:
     """One survey a file; what cannot be read is put into ``unreadable``."""
     for path in paths:
         try:
-            data, name = read_source(path, arguments if path.endswith(".xacro") else {})
+            data, name = read(path)
             yield survey(collect(read_document(data, name), tree), tree)
         except InputError as error:
             unreadable.append(Unreadable(path, str(error)))
@@ -186,13 +194,15 @@ def _parts(report: CoverageReport, top: int | None) -> Iterator[str | Grid]:
     yield from _loaded_parts(total, "plugin", "plugins", top)
     yield from _loaded_parts(total, "hardware", "hardware classes", top)
     claims = sorted(total.claims.items(), key=lambda pair: (-pair[1], pair[0]))
-    yield f"\n{plural(sum(total.claims.values()), 'value')} claimed"
+    yield ""
+    yield f"{plural(sum(total.claims.values()), 'value')} claimed"
     if claims:
         yield "  " + ", ".join(f"{kind} {count}" for kind, count in claims)
     yield from _mention_parts("unclaimed and exactly a link or joint", ranked(exact.left), top)
     yield from _mention_parts("unclaimed with a link or joint inside", _inside(report), top)
     if exact.explained:
-        yield f"\n{plural(_times(exact.explained), 'exact mention')} explained"
+        yield ""
+        yield f"{plural(_times(exact.explained), 'exact mention')} explained"
         rows = [
             (str(t.times), str(t.files), m.path, reason.text) for m, t, reason in exact.explained
         ]
@@ -206,7 +216,8 @@ def _loaded_parts(total: Survey, type_: str, words: str, top: int | None) -> Ite
     count, known = share(total, type_)
     names = [it.known for it in total.loaded if it.type == type_]
     percent = _percentage(count, known)
-    yield f"\n{known} of {count} {words} known ({percent} %), {sum(names)} of {len(names)} names"
+    yield ""
+    yield f"{known} of {count} {words} known ({percent} %), {sum(names)} of {len(names)} names"
     unknown = _unknown(total, type_)
     rows = [(str(t.times), str(t.files), it.name, t.place) for it, t in unknown]
     if rows:
@@ -217,7 +228,8 @@ def _loaded_parts(total: Survey, type_: str, words: str, top: int | None) -> Ite
 def _mention_parts(
     what: str, mentions: Sequence[tuple[MentionPlace, Tally]], top: int | None
 ) -> Iterator[str | Grid]:
-    yield f"\n{_times(mentions)} {what}"
+    yield ""
+    yield f"{_times(mentions)} {what}"
     rows = [(str(t.times), str(t.files), m.path, clip(t.value), t.place) for m, t in mentions]
     if rows:
         yield Grid(("count", "files", "path", "value", "first seen"), rows[:top])

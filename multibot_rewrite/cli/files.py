@@ -1,13 +1,22 @@
-"""Writing results: all of them or none, each appearing whole."""
+"""Writing results: all of them or none, each appearing whole.
+
+All are written beside their targets, then all are seen onto the disk, then all are renamed: whenever
+the machine stops, each file is whole, the old one or the new one. The disk writes them while more
+are made, and has to finish only once.
+"""
 
 from __future__ import annotations
 
 import os
 import stat
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from typing import ParamSpec, TypeVar
 
 from multibot_rewrite.model import UsageError
+
+P = ParamSpec("P")
+R = TypeVar("R")
 
 
 def write_all(items: Iterable[tuple[str, bytes]]) -> None:
@@ -18,11 +27,18 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
     """
     staged: dict[str, str] = {}
     made: list[str] = []
+    known: set[str] = set()
     try:
         for path, data in items:
-            with explained(path):
-                make_folders(os.path.dirname(path), made)
-                _stage(path, data, staged)
+            folder = os.path.dirname(path)
+            if folder not in known:
+                _tried(path, make_folders, folder, made)
+                known.add(folder)
+            _tried(path, _stage, path, data, staged)
+        for target, temporary in staged.items():
+            _tried(target, see_on_disk, temporary)
+        known |= {os.path.dirname(path) for path in made}
+        known |= {os.path.dirname(path) for path in staged}
         _commit(staged)
         made.clear()
     finally:
@@ -33,6 +49,10 @@ def write_all(items: Iterable[tuple[str, bytes]]) -> None:
         for folder in reversed(made):
             with suppress(OSError):
                 os.rmdir(folder)
+    for folder in known:
+        # Not every file system can do that for a folder; its files are whole all the same.
+        with suppress(OSError):
+            see_on_disk(folder or ".")
 
 
 def make_folders(folder: str, made: list[str]) -> None:
@@ -51,27 +71,32 @@ def _commit(staged: dict[str, str]) -> None:
     done: list[tuple[str, str]] = []
     try:
         for target, temporary in list(staged.items()):
-            with explained(target):
-                backup = f"{temporary}.old" if os.path.lexists(target) else ""
-                if backup:
-                    os.link(target, backup)
-                # Noted before it is done: an interrupt in between leaves nothing.
-                done.append((target, backup))
-                os.replace(temporary, target)
+            _tried(target, _take_place, target, temporary, done)
             del staged[target]
     except BaseException:
         for target, backup in reversed(done):
             with suppress(FileNotFoundError):
                 os.replace(backup, target) if backup else os.unlink(target)
         raise
-    for _, backup in done:
-        if backup:
-            os.unlink(backup)
+    finally:
+        # Also one that was renamed onto its own file, which does nothing.
+        for backup in [it for _, it in done if it]:
+            with suppress(OSError):
+                os.unlink(backup)
+
+
+def _take_place(target: str, temporary: str, done: list[tuple[str, str]]) -> None:
+    backup = f"{temporary}.old" if os.path.lexists(target) else ""
+    # Noted before it is done: an interrupt in between leaves nothing.
+    done.append((target, backup))
+    if backup:
+        os.link(target, backup)
+    os.replace(temporary, target)
 
 
 def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
-    """Put the data safely beside its target and note that in ``staged`` (target -> temporary file);
-    a device or pipe is written at once."""
+    """Put the data beside its target and note that in ``staged``, by target; a device or pipe is
+    written at once."""
     target, mode = _target(path)
     if mode and not stat.S_ISREG(mode):
         with open(path, "wb") as file:
@@ -80,8 +105,9 @@ def _stage(path: str, data: bytes, staged: dict[str, str]) -> None:
     if target in staged:
         raise UsageError(f"{path}: two results would go to this one file, give each its own")
     name = f".urdf-postfix.{os.getpid()}.{len(staged)}.tmp"
+    temporary = os.path.join(os.path.dirname(target), name)
     # Noted before it exists: an interrupt in between leaves nothing.
-    staged[target] = temporary = os.path.join(os.path.dirname(target), name)
+    staged[target] = temporary
     write_new(temporary, data, stat.S_IMODE(mode))
 
 
@@ -100,7 +126,8 @@ def _target(path: str) -> tuple[str, int]:
 
 
 def write_new(path: str, data: bytes, mode: int) -> None:
-    """Write a file that is not there yet, and see it onto the disk; ``mode`` 0 is the usual one."""
+    """Write a file that is not there yet; ``mode`` 0 is the usual one. The disk starts on it, and
+    ``see_on_disk`` waits until it is there."""
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
     try:
         if mode:
@@ -108,9 +135,27 @@ def write_new(path: str, data: bytes, mode: int) -> None:
         view = memoryview(data)
         while view:
             view = view[os.write(handle, view) :]
+        # The advice says that nobody will read it soon, and Linux begins to write it out.
+        os.posix_fadvise(handle, 0, 0, os.POSIX_FADV_DONTNEED)
+    finally:
+        os.close(handle)
+
+
+def see_on_disk(path: str) -> None:
+    """Wait until a file, or which files a folder holds, is on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
         os.fsync(handle)
     finally:
         os.close(handle)
+
+
+def _tried(path: str, action: Callable[P, R], *given: P.args, **named: P.kwargs) -> R:
+    """``action``; what the system refuses is a UsageError about ``path``, in one line."""
+    try:
+        return action(*given, **named)
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be written: {_reason(error, path)}") from None
 
 
 @contextmanager

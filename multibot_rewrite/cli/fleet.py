@@ -51,7 +51,7 @@ def _from_file(options: argparse.Namespace) -> Fleet:
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    return with_start_pose_nodes(plan_fleet(read_fleet(options.input)))
+    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), trust=options.trust))
 
 
 def _from_words(options: argparse.Namespace) -> Fleet:
@@ -67,6 +67,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         nodes=options.nodes,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
+        trust=options.trust,
     )
 
 

@@ -14,10 +14,9 @@ import re
 import shutil
 import stat
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 
-from multibot_rewrite.cli.files import explained, make_folders, write_all, write_new
+from multibot_rewrite.cli.files import explained, make_folders, see_on_disk, write_all, write_new
 from multibot_rewrite.model import UsageError
 
 STAGE = ".multibot-build"
@@ -25,7 +24,6 @@ STAGE = ".multibot-build"
 _LEFT = re.compile(r"\.urdf-postfix\.\d+\.\d+\.tmp(\.old)?")
 # <linux/fcntl.h>, <linux/fs.h>
 _HERE, _EXCHANGE = -100, 2
-WRITERS = 8
 
 
 class _CannotSwapError(Exception):
@@ -178,16 +176,14 @@ def _walk(folder: str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]
 
 
 def _write_all(folder: str, stage: str, write: Mapping[str, bytes]) -> None:
-    def one(item: tuple[str, bytes]) -> None:
-        path, data = item
-        with explained(os.path.join(folder, path)):
-            write_new(os.path.join(stage, path), data, _mode(os.path.join(folder, path)))
-
-    for path in write:
+    """All files, and then all of them onto the disk: it has to finish only once."""
+    for path, data in write.items():
         with explained(os.path.join(folder, path)):
             os.makedirs(os.path.dirname(os.path.join(stage, path)), exist_ok=True)
-    with ThreadPoolExecutor(WRITERS) as pool:
-        list(pool.map(one, write.items()))
+            write_new(os.path.join(stage, path), data, _mode(os.path.join(folder, path)))
+    for path in write:
+        with explained(os.path.join(folder, path)):
+            see_on_disk(os.path.join(stage, path))
 
 
 def _mode(path: str) -> int:

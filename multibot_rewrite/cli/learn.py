@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 
+from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli.live import INCONCLUSIVE, LOOK_SECONDS, NO_ROS, environ
 from multibot_rewrite.cli.output import deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
@@ -51,7 +52,7 @@ def _graph(options: argparse.Namespace) -> Snapshot:
         raise UsageError("--timeout and --domain are for the live graph, leave out --snapshot")
     if options.output:
         check_target(options.output, [options.snapshot])
-    return from_json(read_file(options.snapshot), options.snapshot)
+    return from_json(read_file(options.snapshot, MAX_FLEET_BYTES), options.snapshot)
 
 
 def _notes(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from multibot_rewrite.cli.usage import plain_words, policy
+from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.sources.own_names import filled
 
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
-_PLAIN = ("urdf", "baseline", "fail_on")
+_PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 
 def check_use(options: argparse.Namespace) -> None:
@@ -34,9 +35,5 @@ def given(options: argparse.Namespace) -> dict[str, object]:
         name: tuple(value) for name in _LISTS if (value := getattr(options, name))
     }
     said |= {name: value for name in _PLAIN if (value := getattr(options, name))}
-    pairs = [word.partition(":=") for word in options.words if ":=" in word]
-    return {
-        **policy(options),
-        **said,
-        "arguments": tuple((name, value) for name, _, value in pairs),
-    }
+    arguments = filled(xacro_args(options), *options.robots[:1])
+    return {**policy(options), **said, "arguments": tuple(arguments.items())}

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from itertools import chain
 
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.cli.diffs import diff
 from multibot_rewrite.cli.output import (
     STANDARD,
@@ -31,6 +32,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
+from multibot_rewrite.sources.own_names import name_robot
 from multibot_rewrite.sources.read import Source, read_source
 
 # What the summary calls a kind whose own word says little; the others are their own word.
@@ -58,8 +60,8 @@ def run(options: argparse.Namespace) -> int:
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     (robot,) = names
     # Read once: it may be a pipe, and --diff shows it again.
-    before, _ = read_source(source, xacro_args(options))
-    _deliver(options, [(robot, _strip(options, before, robot))], [], before, 1)
+    before, _ = read_source(source, {} if options.xacro else xacro_args(options), options.trust)
+    _deliver(options, [(robot, before, _strip(options, before, robot))], [], 1)
     note(options, f"{robot} taken out, proved by rewriting again")
     return DONE
 
@@ -74,60 +76,81 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         vocabulary=options.vocabulary,
         again=options.again,
         file=input_name(options),
+        trust=options.trust,
     )
     first = next(rewrites)
+    # Robots with descriptions of their own are all made before the first is here.
+    others = list(rewrites) if first.prepared.job.naming.own else []
     about = About([input_name(options)], by_themselves(names))
-    if report_beside(options, chosen(options, first.findings), about):
+    found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
+    if report_beside(options, chosen(options, found), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
         return STOPPED
-    results = ((it.robot, it.data) for it in chain([first], rewrites))
-    changes = [(options.changes, changes_json(first, names))] if options.changes else []
-    _deliver(options, results, changes, first.template.inventory.document.source, len(names))
-    note(options, summary(first, names))
+    results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
+    own = {it.robot: it for it in others}
+    every = [own.get(robot, first._replace(robot=robot)) for robot in names]
+    changes = [(options.changes, changes_json(every))] if options.changes else []
+    _deliver(options, results, changes, len(names))
+    note(options, summary(first, names, _own_arguments(options, names)))
     return DONE
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
     name, vocabulary = input_name(options), options.vocabulary
     extra = policy(options)
-    return strip(source, robot, urdf=options.urdf, vocabulary=vocabulary, file=name, **extra)
+    return strip(
+        source,
+        robot,
+        urdf=options.urdf,
+        xacro=options.xacro,
+        xacro_args=xacro_args(options) if options.xacro else None,
+        vocabulary=vocabulary,
+        file=name,
+        trust=options.trust,
+        **extra,
+    )
 
 
 def _deliver(
     options: argparse.Namespace,
-    results: Iterable[tuple[str, bytes]],
+    results: Iterable[tuple[str, bytes, bytes]],
     more: list[tuple[str, bytes]],
-    before: bytes,
     total: int,
 ) -> None:
-    """Print or write the results as they are made, and ``more`` files with them."""
+    """Print or write the results (robot, before, after) as they are made, and ``more`` files."""
     target = options.input if options.in_place else options.output
     if target:
-        files = ((target_path(target, robot), data) for robot, data in results)
+        files = ((target_path(target, robot), data) for robot, _, data in results)
         write_files(options, watched(chain(more, files), total, "writing"))
         return
     write_files(options, more)
     colour = prints_colour(options)
-    for robot, data in results:
+    for robot, before, data in results:
         name = input_name(options)
         text = diff(before, data, name, f"{name} for {robot}", colour) if options.diff else data
         print_bytes(text)
 
 
-def changes_json(first: Rewrite, robots: list[str]) -> bytes:
+def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
     """Every change for every robot, as ``--changes`` writes it."""
     import json
 
-    rewrites = [first._replace(robot=robot) for robot in robots]
     table = {
-        "file": first.template.inventory.document.file,
+        "file": rewrites[0].prepared.job.file,
         "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
     }
     return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
 
 
-def summary(first: Rewrite, robots: list[str]) -> str:
-    """One line: how many names of each kind were renamed."""
+def _own_arguments(options: argparse.Namespace, names: list[str]) -> str:
+    """The xacro arguments that hold a robot's name."""
+    given = xacro_args(options).items()
+    return ", ".join(it for it, text in given if name_robot({it: text}, names[:1]))
+
+
+def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
+    """One line: how many names of each kind were renamed, and how many the xacro's own arguments
+    have named."""
     inventory, plan = first.template.inventory, first.template.plan
     names = {
         (kind, claim.value)
@@ -136,6 +159,10 @@ def summary(first: Rewrite, robots: list[str]) -> str:
     }
     counts = Counter(kind for kind, _ in names)
     known = [plural(counts[it], WORDS.get(it, it)) for it in SEPARATORS if counts[it]]
+    own = first.prepared.job.naming.own
+    known += [f"{plural(len(own), 'name')} by {own_arguments}"] if own else []
     inserted = f", {len(plan.insertions)} inserted" if plan.insertions else ""
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
-    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; proved"
+    why = not_proved(first.findings)
+    end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -22,7 +22,7 @@ def check_use(options: argparse.Namespace, names: list[str]) -> None:
     if not names:
         raise UsageError("no robot name given; for example: urdf-postfix rover.urdf robot1")
     _check_together(options)
-    inputs = (options.input, options.urdf or "")
+    inputs = (options.input, options.urdf or "", options.xacro or "")
     if xacro_args(options) and not any(path.endswith(".xacro") for path in inputs):
         raise UsageError(f"NAME:=VALUE is for xacro, {input_name(options)} is not named *.xacro")
     if len(names) > 1 and (options.strip or options.in_place):
@@ -43,6 +43,8 @@ def _check_together(options: argparse.Namespace) -> None:
         raise UsageError("--output and --in-place exclude each other")
     if options.diff and (options.output is not None or options.in_place):
         raise UsageError("--diff prints to standard output: leave out --output and --in-place")
+    if options.xacro and not options.strip:
+        raise UsageError("--xacro goes with --strip; to rewrite a xacro, name it as the INPUT")
     if options.strip and options.changes is not None:
         raise UsageError("--changes lists what a rewrite changes, it cannot go with --strip")
     if options.in_place and (options.input == "-" or options.input.endswith(".xacro")):

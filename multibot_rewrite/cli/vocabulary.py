@@ -17,6 +17,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import block_of, look_up, near_names
 from multibot_rewrite.rewriters.vocabulary import TYPES, Vocabulary, VocabularySection
 from multibot_rewrite.rewriters.vocabulary.describe import facts
+from multibot_rewrite.sources.own_names import filled
 from multibot_rewrite.sources.read import read_source
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -69,7 +70,8 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
 def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """Everything known, a block of lines a section."""
     for number, section in enumerate(sections):
-        yield f"{chr(10) * (number > 0)}{section.name}  {section.file}:{section.line}"
+        yield from [""] * (number > 0)
+        yield f"{section.name}  {section.file}:{section.line}"
         yield from (f"  {what}: {text}" for what, text in facts(section).items())
         rows = [_row(site, section) for site in section.sites]
         if rows:
@@ -131,7 +133,7 @@ def _suggest(options: argparse.Namespace) -> int:
     check_xacro(options, [options.suggest])
     if options.output:
         check_target(options.output, [options.suggest, *options.vocabulary])
-    data, name = read_source(options.suggest, xacro_args(options))
+    data, name = read_source(options.suggest, filled(xacro_args(options)), options.trust)
     tree = builtin_tree((*configured_vocabulary(options.suggest), *options.vocabulary))
     sections = suggest(collect(read_document(data, name), tree))
     text = vocabulary_text(sections, options.suggest)

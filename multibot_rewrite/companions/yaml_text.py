@@ -11,16 +11,15 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.bounded import MAX_BYTES, compose_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.model import InputError
 
-MAX_BYTES = 16 * 1024 * 1024
 # Reads back as the same text in any place, and never as a number, date, boolean or null.
 _PLAIN = re.compile(r"[A-Za-z_/~][A-Za-z0-9_./~-]*")
 _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y", "n"])
 _ANCHOR = re.compile(r"(?:^|[\s\[{,:-])[&*][^\s,\[\]{}]")
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class YamlText(NamedTuple):
@@ -55,10 +54,10 @@ def read_yaml(data: bytes, file: str) -> YamlText:
     bom = text[:1] if text.startswith("\ufeff") else ""
     text = text[len(bom) :]
     try:
-        root = yaml.compose(text, Loader=_LOADER)
+        root = compose_yaml(text)
     except yaml.MarkedYAMLError as error:
         raise InputError(_broken(error, file, text)) from None
-    except (yaml.YAMLError, RecursionError) as error:
+    except yaml.YAMLError as error:
         raise InputError(f"{file}: not YAML: {' '.join(str(error).split())}; correct it") from None
     return YamlText(file, text, root, bom)
 
@@ -82,7 +81,7 @@ def anchors(document: YamlText) -> Iterator[tuple[int, str]]:
     """Line and text of anchors and aliases, which rcl's parser rejects (rcl_yaml_param_parser)."""
     if not _ANCHOR.search(document.text):
         return
-    for token in yaml.scan(document.text, Loader=_LOADER):
+    for token in yaml.scan(document.text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
         if isinstance(token, yaml.AnchorToken | yaml.AliasToken):
             mark = "&" if isinstance(token, yaml.AnchorToken) else "*"
             yield token.start_mark.line + 1, f"{mark}{token.value}"

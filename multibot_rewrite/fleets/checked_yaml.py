@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.yaml_text import line_of, pairs, read_yaml, refuse_anchors
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.sources.read import read_file
 
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 Path = tuple[Any, ...]
 # JSON Schema's types in plain words.
 TYPES = {
@@ -44,13 +44,11 @@ def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml
         raise InputError(f"{path}:1: the file must hold keys with values; {hint}")
     try:
         lines = dict(_lines(document.root, path, ()))
-        data = yaml.load(document.text, Loader=_LOADER)
+        data = load_yaml(document.text)
     except yaml.MarkedYAMLError as error:
         line = error.problem_mark.line + 1 if error.problem_mark else 1
         problem = " ".join(str(error.problem).split())
         raise InputError(f"{path}:{line}: {problem}; write plain keys and values") from None
-    except RecursionError:
-        raise InputError(f"{path}: lists and maps are nested too deeply; flatten them") from None
     _validate(data, schema, path, lines)
     return CheckedYaml(data, lines)
 

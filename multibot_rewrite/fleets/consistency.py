@@ -156,7 +156,7 @@ def _nodes(
     fleet: Fleet, robots: Mapping[str, RewrittenRobot]
 ) -> Iterator[tuple[RewrittenRobot, str, str]]:
     # Nodes whose topics collide are reported already.
-    reported = {it.node for it in fleet.table.problems}
+    reported = {name for it in fleet.table.problems for name in (it.node, *it.names)}
     for node in fleet.table.nodes:
         full = f"{node.namespace.rstrip('/')}/{node.name}"
         if node.robot and full not in reported:

@@ -5,35 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.fleets.meeting import with_meetings
+from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.graph.expectation import Expectation, expect, named_frames, vacuous
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
-from multibot_rewrite.library import Rewrite, rewrite_all
+from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
 from multibot_rewrite.remap.node_library import stack_of, with_included
-from multibot_rewrite.remap.plugin_nodes import plugin_nodes, plugin_places
-from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
+from multibot_rewrite.remap.plugin_nodes import plugin_nodes
+from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table, joined
 from multibot_rewrite.sources.read import Source
-from multibot_rewrite.steps.collect import Inventory, collect
-from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.steps.collect import Inventory
 
-Plugins = dict[str, list[tuple[NodeFacts, NodeTable]]]
 NOTHING: Mapping[str, str] = {}
 # The stack of a robot whose description is published by something else.
 NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
-
-
-class Member(NamedTuple):
-    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
-    holds; ``places`` are the places of its plugins in the source (``file:line``).
-    """
-
-    robot: str
-    tag: str
-    inventory: Inventory
-    places: tuple[str, ...]
 
 
 class Fleet(NamedTuple):
@@ -60,16 +49,20 @@ def make_fleet(
     nodes: str | None = None,
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
+    trust: bool = False,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file with more nodes and stacks. Raises as ``rewrite_all``, and
-    UsageError for an unknown stack.
+    ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
+    as ``rewrite_all``, and UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes)
-    found = rewrite_all(source, robots, vocabulary=vocabulary, xacro_args=xacro_args, **policy)
+    found = rewrite_all(
+        source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
+    )
     members = [member(it, it.data, it.robot) for it in found]
-    return assemble(members, facts, make_naming(**policy))
+    fleet = assemble(members, facts, make_naming(**policy))
+    return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
 def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
@@ -90,19 +83,10 @@ def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts
     return tuple(found)
 
 
-def member(source: Rewrite, data: bytes, tag: str) -> Member:
-    """The robot of a rewrite; ``data`` is its final description."""
-    inventory, tree = source.template.inventory, source.template.tree
-    # Lines of the source: inserted text moves those of the result.
-    places = tuple(plugin_places(inventory))
-    written = collect(read_document(data, inventory.document.file), tree)
-    return Member(source.robot, tag, written, places)
-
-
 def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
     """The fleet of robots that run the same nodes."""
     inventories = {it.robot: it.inventory for it in members}
-    plugins = {it.robot: list(plugin_nodes(it.inventory, it.robot)) for it in members}
+    plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
@@ -113,17 +97,20 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
         naming,
         edges,
         facts,
-        _sources(members, plugins),
+        _sources(members),
         {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
 
-def _sources(members: Sequence[Member], plugins: Plugins) -> dict[str, str]:
-    return {
-        f"{node.namespace.rstrip('/')}/{node.name}": place
-        for it in members
-        for (_, node), place in zip(plugins[it.robot], it.places, strict=True)
-    }
+def _sources(members: Sequence[Member]) -> dict[str, str]:
+    """The places of the plugins in the source: inserted text moves the lines of the result."""
+    found = {}
+    for it in members:
+        plugins = list(it.source.root.iter("plugin"))
+        for node in it.reading.nodes:
+            line = plugins[node.number].sourceline
+            found[node.full_name] = f"{it.source.file}:{line}"
+    return found
 
 
 def merge(fleets: Sequence[Fleet]) -> Fleet:

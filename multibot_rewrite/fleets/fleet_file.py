@@ -16,12 +16,15 @@ from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
+from multibot_rewrite.sources.own_names import filled, name_robot
 
 SCHEMA = "fleet.schema.json"
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
+# Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
+Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
 Places = Mapping[Path, tuple[str, int]]
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 # What follows ``robots:``, empty lines and comments aside.
@@ -60,6 +63,17 @@ class RobotSpec(NamedTuple):
     companions: Mapping[str, tuple[str, ...]]
     file: str
     line: int
+
+    @property
+    def words(self) -> tuple[str, str, str]:
+        """What stands for it in names; the first one is ``{robot}`` in its arguments."""
+        return self.name, self.namespace, self.tag
+
+    @property
+    def sources(self) -> Sources:
+        """All that decides its texts besides its names."""
+        own = self.name if name_robot(self.arguments, self.words) else ""
+        return self.description, self.srdf, tuple(self.arguments.items()), own
 
 
 class FleetFile(NamedTuple):
@@ -261,7 +275,12 @@ def _arguments(
             raise InputError(f"{place}: {own['name']!r} has arguments but no xacro file; {hint}")
         return {}
     arguments = {**data.get("arguments", {}), **own.get("arguments", {})}
-    return {key: _argument(value) for key, value in arguments.items()}
+    texts = {key: _argument(value) for key, value in arguments.items()}
+    try:
+        filled(texts, own["name"])
+    except UsageError as error:
+        raise InputError(f"{place}: {own['name']!r}: {error}") from None
+    return texts
 
 
 def _pose(own: Mapping[str, Any], place: str) -> Pose | None:

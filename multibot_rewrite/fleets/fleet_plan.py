@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
-from multibot_rewrite.fleets.fleet_file import FleetFile
+from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.rewritten_robots import (
     Jobs,
     RewrittenRobot,
-    Sources,
     read_jobs,
     rewrite_robots,
 )
@@ -28,15 +28,17 @@ class FleetPlan(NamedTuple):
     jobs: Mapping[Sources, Jobs]
 
 
-def plan_fleet(file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None) -> FleetPlan:
+def plan_fleet(
+    file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
+) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
-    ``jobs`` are the descriptions if they have been read already. Raises as ``rewrite_all``, and
-    UsageError for an unknown stack.
+    ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
+    anything. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
     with gc_paused():
         naming = make_naming(**file.policy)
-        read = jobs or read_jobs(file.robots, naming, file.vocabulary)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust)
         robots = rewrite_robots(file.robots, read)
         return FleetPlan(file, tuple(robots), _fleet(file, robots, naming), read)
 
@@ -49,4 +51,6 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
         assemble([it.member for it in group], facts_of(names, file.nodes or None), naming)
         for names, group in stacks.items()
     ]
-    return merge(fleets)
+    fleet = merge(fleets)
+    members = [it.member for it in robots]
+    return fleet._replace(table=with_meetings(fleet.table, members, naming))

@@ -8,6 +8,7 @@ from collections.abc import Iterable, Mapping
 from hashlib import sha256
 from typing import NamedTuple
 
+from multibot_rewrite.bounded import load_json
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import InputError
 
@@ -47,7 +48,7 @@ def manifest(files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: s
 def read_manifest(data: bytes, file: str) -> Mapping[str, str]:
     """The hashes of what a build wrote, by path; InputError for a file that is not a manifest."""
     try:
-        found = json.loads(data)
+        found = load_json(data)
         if found["format"] != FORMAT:
             raise ValueError(found["format"])
         outputs = {str(path): str(hash_) for path, hash_ in found["outputs"].items()}

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
+from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.companions.names.rename_map import CompanionNames
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.fleets.fleet import Member, member
-from multibot_rewrite.fleets.fleet_file import RobotSpec
+from multibot_rewrite.fleets.fleet_file import RobotSpec, Sources
+from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
@@ -20,8 +21,6 @@ from multibot_rewrite.steps.template import Template
 
 # Kinds that are ROS names and get the namespace; the others get the tag.
 GRAPH_KINDS = frozenset({"namespace", "node", "topic", "subtopic", "service", "stem"})
-# All that decides a robot's texts besides its names: description, SRDF, xacro arguments.
-Sources = tuple[str, str, tuple[tuple[str, str], ...]]
 
 
 class Jobs(NamedTuple):
@@ -58,21 +57,18 @@ def at_robot(
 
 
 def read_jobs(
-    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str]
+    robots: Sequence[RobotSpec], naming: Naming, vocabulary: Sequence[str], trust: bool = False
 ) -> dict[Sources, Jobs]:
-    """Read every description and SRDF once; raises as ``read_job``."""
+    """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
+    anything."""
     found: dict[Sources, Jobs] = {}
     for it in robots:
-        if _sources(it) not in found:
-            more = it.arguments, vocabulary
+        if it.sources not in found:
+            more = it.arguments, vocabulary, "", it.words, trust
             description = read_job(it.description, naming, None, *more)
             srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
-            found[_sources(it)] = Jobs(description, srdf)
+            found[it.sources] = Jobs(description, srdf)
     return found
-
-
-def _sources(robot: RobotSpec) -> Sources:
-    return robot.description, robot.srdf, tuple(robot.arguments.items())
 
 
 def rewrite_robots(
@@ -84,7 +80,7 @@ def rewrite_robots(
     """
     groups: dict[Sources, list[RobotSpec]] = {}
     for robot in robots:
-        groups.setdefault(_sources(robot), []).append(robot)
+        groups.setdefault(robot.sources, []).append(robot)
     made = (it for key, group in groups.items() for it in _rewritten(group, jobs[key]))
     found = {it.spec.name: it for it in made}
     return [found[robot.name] for robot in robots]
@@ -100,6 +96,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _final(text, robot, naming)
         declared = text.template.inventory.declared
+        found = (*text.findings, *(semantic.findings if semantic else ()))
         yield RewrittenRobot(
             robot,
             data,
@@ -108,7 +105,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             CompanionNames(declared, naming, robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag),
-            (*text.findings, *(semantic.findings if semantic else ())),
+            # What robots share the fleet says, of the robots that it has.
+            tuple(it for it in found if it.code not in SHARED_CODES),
         )
 
 

@@ -32,11 +32,11 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robot in plan.robots:
         spec = robot.spec
         files = tuple(spec.companions.items())
-        key = spec.description, spec.srdf, tuple(spec.arguments.items()), spec.stacks, files
+        key = spec.sources, spec.stacks, files
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None)
-        declared, naming = robots[0].names.declared, plan.fleet.naming
+        declared, naming, _ = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro)
         context = with_srdf(context, robots[0].semantics)
         yield RobotGroup(tuple(robots), facts, context)

@@ -21,7 +21,7 @@ from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.fleets import spawn, start_poses, teleop
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet import Fleet
-from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, read_fleet
+from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, Sources, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
@@ -31,7 +31,7 @@ from multibot_rewrite.fleets.rcl_parameters import (
     exact_nodes,
     node_parameters,
 )
-from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot, Sources
+from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
@@ -275,13 +275,15 @@ class LoadedFleet:
 
 
 @checked
-def load_fleet(path: str | os.PathLike[str]) -> LoadedFleet:
+def load_fleet(path: str | os.PathLike[str], *, trust: bool = False) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
+
+    ``trust`` lets xacro files do anything; without it they only compute (SECURITY.md).
 
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
     robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
-    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path))))
+    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path)), trust=trust))
     _refuse(fleet.findings)
     return fleet
 

@@ -18,6 +18,7 @@ from multibot_rewrite.fleets.fleet_file import Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.naming import NAMESPACE
+from multibot_rewrite.rewriters.text import text_at
 
 GZ, CLASSIC = ("ros_gz_sim", "create"), ("gazebo_ros", "spawn_entity.py")
 FLAGS = {"x": "-x", "y": "-y", "z": "-z", "roll": "-R", "pitch": "-P", "yaw": "-Y"}
@@ -113,7 +114,8 @@ def _namespaces(robot: RewrittenRobot) -> tuple[list[str], list[str]]:
 
 def _namespace(plugin: etree._Element) -> str:
     # Without <ros> gazebo_ros reads the plugin element itself (node.cpp).
-    return (plugin.findtext("ros/namespace") or plugin.findtext("namespace") or "").strip()
+    ros = plugin.find("ros")
+    return text_at(plugin if ros is None else ros, "namespace")
 
 
 PARTLY_NAMESPACED = declare(

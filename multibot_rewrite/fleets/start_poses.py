@@ -20,6 +20,7 @@ from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
 from multibot_rewrite.remap.records import TOPIC
 from multibot_rewrite.remap.targets import placed, target_of
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
 
 NODE = "start_pose"
@@ -238,7 +239,7 @@ def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:
         name = host.node.section.names[0] if host.node.section else ""
         topics = bridge_data()["plugins"].get(name, ())
         if any(row[2] == TF_TYPE for row in topics):
-            given = (host.element.findtext(tag, "").strip() for tag in ODOMETRY)
+            given = (text_at(host.element, tag) for tag in ODOMETRY)
             yield next(filter(None, given), f"{model}/odom")
             return
 

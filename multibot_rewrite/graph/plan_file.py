@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
@@ -89,25 +90,18 @@ def _quoted(value: str) -> str:
     return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
 
 
-def _yaml_class(name: str) -> Any:
-    """A class of PyYAML, in C where it has one, which is ten times as fast."""
-    import yaml
-
-    return getattr(yaml, f"C{name}", None) or getattr(yaml, name)
-
-
 def from_yaml(data: bytes, file: str) -> Expectation:
     """Read what ``to_yaml`` wrote; raises InputError with file, place and what to write there."""
     import yaml
 
     try:
-        value = yaml.load(data, Loader=_yaml_class("SafeLoader"))
+        value = load_yaml(data.decode("utf-8-sig"))
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
         reason = getattr(error, "problem", None) or " ".join(str(error).split())
         raise InputError(f"{place}: not valid YAML: {reason}; {_REMEDY}") from None
-    except (UnicodeDecodeError, RecursionError) as error:
+    except UnicodeDecodeError as error:
         raise InputError(f"{file}: not valid YAML: {error}; {_REMEDY}") from None
     top = _mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
     nodes, topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[1:4])

@@ -12,6 +12,7 @@ from functools import cache, partial
 from types import NoneType
 from typing import Any, NamedTuple, cast, get_args, get_origin, get_type_hints
 
+from multibot_rewrite.bounded import load_json
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
@@ -171,12 +172,12 @@ def _plain_value(value: object) -> object:
 def from_json(data: bytes, file: str) -> Snapshot:
     """Read what ``to_json`` wrote; raises InputError with file, key, what is wrong, what to do."""
     try:
-        value = json.loads(data)
+        value = load_json(data)
     except json.JSONDecodeError as error:
         place = f"{file}:{error.lineno}:{error.colno}"
         hint = "use the file that multibot snapshot -o wrote"
         raise InputError(f"{place}: not valid JSON: {error.msg}; {hint}") from None
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         raise InputError(f"{file}: cannot be read as JSON: {error}") from None
     if not isinstance(value, dict):
         raise InputError(f"{file}: not a snapshot, but {_shown(value)}")

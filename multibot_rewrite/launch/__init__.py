@@ -33,6 +33,8 @@ Substitution = Any
 Make = Callable[[LoadedRobot], Iterable[Action]]
 # The launch configurations that hold the fleet and the robot of a group.
 FLEET, ROBOT = "multibot_fleet", "multibot_robot"
+# The launch configuration that lets xacro files do anything: "true".
+TRUST = "multibot_trust"
 # What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
 _FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
 FILE = "file"
@@ -66,12 +68,14 @@ def missing() -> str:
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     """The fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
 
-    ``fleet`` may hold substitutions. Warnings go to launch's log. Raises as ``load_fleet``.
+    ``fleet`` may hold substitutions. The launch configuration ``multibot_trust:=true`` is
+    ``load_fleet``'s ``trust``. Warnings go to launch's log. Raises as ``load_fleet``.
     """
     path = _scoped(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
     known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
     if path not in known:
-        known[path] = load_fleet(path)
+        trusted = str(context.launch_configurations.get(TRUST, "")).lower() in ("true", "1")
+        known[path] = load_fleet(path, trust=trusted)
         _warn(context, known[path].findings)
     return known[path]
 

@@ -58,7 +58,7 @@ def numbered(subject: Subject) -> Numbers:
 
 
 def _place(subject: Subject, number: int, attribute: str | None) -> Place:
-    origin = subject.origins[number] if subject.origins else None
+    origin = subject.origins.of(number) if subject.origins else None
     if origin is None:
         document = subject.document
         start = document.starts[number]

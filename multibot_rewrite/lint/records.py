@@ -14,7 +14,7 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document
 
 if TYPE_CHECKING:
-    from multibot_rewrite.sources.trace import Origin
+    from multibot_rewrite.sources.trace import Origins
 
 
 class Subject(NamedTuple):
@@ -36,7 +36,7 @@ class Subject(NamedTuple):
     settings: Settings
     memo: dict[object, Any]
     beside: Robot | None = None
-    origins: tuple[Origin | None, ...] = ()
+    origins: Origins | None = None
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
     faults: tuple[Fault, ...] = ()

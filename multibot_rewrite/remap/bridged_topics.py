@@ -9,7 +9,9 @@ from typing import Any, NamedTuple, cast
 
 from lxml import etree
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
 
 DIRECTIONS = {"in": "GZ_TO_ROS", "out": "ROS_TO_GZ"}
@@ -38,10 +40,8 @@ class UnbridgedTopic(NamedTuple):
 @lru_cache(maxsize=1)
 def bridge_data() -> Mapping[str, Any]:
     """The data of ``bridge.yaml``."""
-    import yaml
-
     text = files("multibot_rewrite.remap").joinpath("bridge.yaml").read_text()
-    data: Mapping[str, Any] = yaml.safe_load(text)
+    data: Mapping[str, Any] = load_yaml(text)
     return data
 
 
@@ -84,7 +84,7 @@ def _sensor(
     topics = bridge_data()["sensors"].get(kind, ())
     if not topics or sensor.find("plugin[@filename]") is not None:
         return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
-    base = sensor.findtext("topic", "").strip()
+    base = text_at(sensor, "topic")
     if not base:
         yield UnbridgedTopic(robot, _line(sensor), f"sensor {sensor.get('name')}")
         return
@@ -97,7 +97,7 @@ def _sensor(
 def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[BridgedTopic]:
     if "camera" in sensor.get("type", ""):
         beside = f"{base.rpartition('/')[0]}/camera_info".lstrip("/")
-        name = sensor.findtext("camera/camera_info_topic", "").strip() or beside
+        name = text_at(sensor, "camera/camera_info_topic") or beside
         if sensor.get("type") == "rgbd_camera":  # its code uses no other name
             name = f"{base}/camera_info"
         types = ("sensor_msgs/msg/CameraInfo", "gz.msgs.CameraInfo")
@@ -108,7 +108,7 @@ def _plugin(
     plugin: etree._Element, topics: Iterable[Sequence[str]], robot: str, model: str, naming: Naming
 ) -> Iterator[BridgedTopic | UnbridgedTopic]:
     for element, default, ros_type, gz_type, way in topics:
-        given = plugin.findtext(element, "").strip()
+        given = text_at(plugin, element)
         name = given or default.format(model=model)
         if not name:
             what = f"<{element}> of {plugin.get('filename')}"

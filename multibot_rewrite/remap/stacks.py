@@ -9,6 +9,7 @@ import sys
 from functools import lru_cache
 from importlib.resources import files
 
+from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
@@ -34,8 +35,7 @@ def user_stack(path: str) -> NodeLibrary:
     with file and line for errors in the file.
     """
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            text = file.read()
+        text = read_text(path)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

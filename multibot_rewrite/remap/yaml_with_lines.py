@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple, NoReturn, TypeAlias
 
+from multibot_rewrite.bounded import compose_yaml
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.nearest import did_you_mean_one_of
 
@@ -28,34 +29,25 @@ def read_yaml_with_lines(text: str, file: str) -> YamlItem:
     """The one document of a YAML text; raises UsageError naming ``file`` and the line."""
     import yaml  # slow to import; only stacks need it
 
-    # The C parser is ten times quicker; PyYAML is built without it on some platforms.
-    loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
-        node = yaml.compose(text, Loader=loader)
-        return YamlItem(f"{file}:1", None) if node is None else _item(node, file, frozenset())
+        node = compose_yaml(text)
+        return YamlItem(f"{file}:1", None) if node is None else _item(node, file)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         # If a document ends too early, the error is after its last line.
         place = f"{file}:{min(mark.line, text.count(_LINE)) + 1}" if mark else file
         reason = getattr(error, "problem", None) or str(error).partition("\n")[0]
         raise UsageError(f"{place}: not valid YAML: {reason}") from None
-    except RecursionError:
-        raise UsageError(f"{file}: the YAML is nested too deeply") from None
 
 
-def _item(node: yaml.Node, file: str, above: frozenset[int]) -> YamlItem:
+def _item(node: yaml.Node, file: str) -> YamlItem:
     import yaml
 
     where = f"{file}:{node.start_mark.line + 1}"
-    if id(node) in above:
-        raise UsageError(
-            f"{where}: the alias is inside the value that it repeats; write the value out"
-        )
-    above |= {id(node)}
     if isinstance(node, yaml.MappingNode):
-        return YamlItem(where, _mapping(node, file, above))
+        return YamlItem(where, _mapping(node, file))
     if isinstance(node, yaml.SequenceNode):
-        return YamlItem(where, tuple(_item(child, file, above) for child in node.value))
+        return YamlItem(where, tuple(_item(child, file) for child in node.value))
     if node.tag == _NULL:
         return YamlItem(where, None)
     return YamlItem(where, _truth(node.value) if node.tag == _BOOLEAN else str(node.value))
@@ -65,7 +57,7 @@ def _truth(word: str) -> bool:
     return word.lower() in ("true", "yes", "on")
 
 
-def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[str, YamlItem]:
+def _mapping(node: yaml.MappingNode, file: str) -> dict[str, YamlItem]:
     found: dict[str, YamlItem] = {}
     for key, value in node.value:
         where = f"{file}:{key.start_mark.line + 1}"
@@ -74,7 +66,7 @@ def _mapping(node: yaml.MappingNode, file: str, above: frozenset[int]) -> dict[s
         if key.value in found:
             raise UsageError(f"{where}: the key {key.value!r} is repeated; remove one of them")
         # A block value starts a line below its key; a reader looks for the key.
-        found[key.value] = _item(value, file, above)._replace(where=where)
+        found[key.value] = _item(value, file)._replace(where=where)
     return found
 
 

@@ -11,6 +11,7 @@ from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
+from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import value_slot
@@ -89,6 +90,7 @@ def _stays(naming: Naming, kind: str, name: str, namespaced: bool) -> str:
     bare = name.strip("/")
     reasons = (
         (not kind, "not declared, so it is not renamed"),
+        ((kind, name) in naming.own, "the xacro's arguments have put the robot's name into it"),
         (kind not in naming.separators, f"layout {naming.layout.name} does not rename {kind}s"),
         (kind in FRAME_KINDS and bare in naming.shared_frames, "a shared frame (--shared-frames)"),
         (kind in TOPIC_KINDS and bare in naming.shared_topics, "a shared topic (--shared-topics)"),
@@ -105,7 +107,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
     claimed = {(claim.start, claim.attribute) for claim in inventory.claims}
     for element, start in zip(document.root.iter("*"), document.starts, strict=True):
         slots = [(str(key), str(value)) for key, value in element.items()]
-        slots.append(("", (element.text or "").strip()))
+        slots.append(("", text_of(element)))
         for attribute, value in slots:
             place = _place(inventory, start, attribute, value)
             if value and place[0] == line and (start, attribute) not in claimed:
@@ -122,16 +124,26 @@ def _unclaimed(inventory: Inventory, value: str) -> str:
 
 
 def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterator[Explanation]:
-    """Plugins on the line that get elements of their own."""
-    for host in inventory.hosts:
-        place = locate(inventory.document.source, host.start)
+    """Plugins on the line that get elements of their own, and empty elements on it that get a text."""
+    source = inventory.document.source
+    starts = dict(zip(inventory.document.elements, inventory.document.starts, strict=True))
+    for host in inventory.hosts if plan.insertions else ():
+        name = host.node.section.name if host.node.section else ""
+        place = locate(source, host.start)
         inside = {host.element, *host.element.iterchildren("ros")}
         mine = [item for item in plan.insertions if item.parent in inside]
-        if place[0] == line and mine:
-            added = tuple(item.xml.replace(ROBOT_SLOT, robot) for item in mine)
-            name = host.node.section.name if host.node.section else ""
+        added = tuple(item.xml.replace(ROBOT_SLOT, robot) for item in mine if not item.step)
+        if place[0] == line and added:
             reason = "added, or all robots would share the default"
             yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
+        for item in mine:
+            there = item.filled
+            place = (0, 0) if there is None else locate(source, starts[there])
+            if there is not None and place[0] == line:
+                text = item.xml.replace(ROBOT_SLOT, robot)
+                reason = f"filled: empty it is read as {item.old!r}, which all robots would share"
+                path = tag_path(there, "")
+                yield Explanation(*place, path, name, None, reason, name, (text,))
 
 
 def _place(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:

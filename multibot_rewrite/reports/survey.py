@@ -14,6 +14,7 @@ from multibot_rewrite.model import Claim, InputError
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.reports.paths import plugin_name, tag_path
 from multibot_rewrite.rewriters.spelling import ResolvedName
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.collect import Host, Inventory
 from multibot_rewrite.steps.document import Document, slot_values
@@ -139,7 +140,7 @@ def loaded_by(host: Host) -> Loaded | None:
     type_ = section.select or section.type
     if type_ == "plugin":
         return Loaded(type_, plugin_name(host.element), not is_unknown(section))
-    class_ = host.element.findtext("hardware/plugin", "").strip() if type_ == "hardware" else ""
+    class_ = text_at(host.element, "hardware/plugin") if type_ == "hardware" else ""
     return Loaded(type_, class_, not section.select) if class_ else None
 
 

@@ -15,6 +15,7 @@ from lxml import etree
 
 from multibot_rewrite.model import Claim
 from multibot_rewrite.rewriters.forms import Declared, is_included
+from multibot_rewrite.rewriters.text import text_at
 
 Respell = Callable[[str, str], str]
 Links = dict[str, etree._Element]
@@ -84,7 +85,7 @@ def _lumped(root: etree._Element) -> Lumped:
         block.get("reference")
         for block in root.iterchildren("gazebo")
         for tag in ("preserveFixedJoint", "disableFixedJointLumping")
-        if (block.findtext(tag) or "").strip().lower() in ("true", "yes", "1")
+        if text_at(block, tag).lower() in ("true", "yes", "1")
     }
     lumped = defaultdict(list)
     for joint in root.iterchildren("joint"):

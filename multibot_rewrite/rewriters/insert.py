@@ -11,10 +11,11 @@ from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, spelled
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
 from multibot_rewrite.rewriters.switches import is_true
+from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection, split_path, split_step
 from multibot_rewrite.rosnames import expand, split_remap
 
-_ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
+ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;"})
 # Read from the plugin itself where it has no <ros>; a <ros> would hide them (gazebo_ros node.cpp).
 ROS_CHILDREN = ("namespace", "remapping", "argument", "parameter", "qos")
 
@@ -23,7 +24,8 @@ class Insertion(NamedTuple):
     """An element to insert into ``parent``, inside a new ``wrap`` element unless that is empty.
 
     ``xml`` and ``new`` hold ``ROBOT_SLOT`` where the robot's name goes; ``old`` is what the consumer
-    would use without it.
+    would use without it. ``step`` finds the element in ``parent`` where it is there and empty: then
+    nothing but its text is put into it.
     """
 
     parent: etree._Element
@@ -32,6 +34,12 @@ class Insertion(NamedTuple):
     kind: str
     old: str
     new: str
+    step: str = ""
+
+    @property
+    def filled(self) -> etree._Element | None:
+        """The element that is there and empty."""
+        return self.parent.find(query(self.step)) if self.step else None
 
 
 def insertions(
@@ -40,19 +48,20 @@ def insertions(
     """Everything ``host``, served by ``rewriter``, needs beyond what it says itself."""
     if not section.inserts:
         return []
-    hidden = "ros/" if _ros_home(host) is host else ""
-    found = list(_defaults(host, section, declared, naming, hidden))
+    home = _ros_home(host, section)
+    found = list(_defaults(host, section, declared, naming, "ros/" if home is host else ""))
     if any(site.path == "ros/remapping" for site in section.sites):
-        found += _remaps(host, section, naming)
+        found += _remaps(host, section, naming, home)
     return found
 
 
-def _ros_home(host: etree._Element) -> etree._Element | None:
+def _ros_home(host: etree._Element, section: VocabularySection) -> etree._Element | None:
     """Where ROS settings of a plugin go; None where a ``<ros>`` must be made first."""
     ros = host.find("ros")
     if ros is not None:
         return ros
-    return host if any(host.find(tag) is not None for tag in ROS_CHILDREN) else None
+    bare = any(site.path == "remapping" for site in section.sites)
+    return host if bare and any(host.find(tag) is not None for tag in ROS_CHILDREN) else None
 
 
 def _defaults(
@@ -67,12 +76,15 @@ def _defaults(
         if not default:
             continue
         path = site.path.removeprefix(hidden)
-        if _present(host, path):
+        there = _there(host, path)
+        if there is not None and (site.empty != "default" or "@" in path or text_of(there)):
             continue
         spelling = spell_default(site, default, declared, naming)
-        if spelling:
-            new = respelled(default, spelling, ROBOT_SLOT)
-            yield _insertion(host, path, spelling[0].kind, default, new)
+        if not spelling:
+            continue
+        new = respelled(default, spelling, ROBOT_SLOT)
+        made = _insertion(host, path, spelling[0].kind, default, new)
+        yield made if there is None else _filling(made, there, path)
 
 
 def _default(host: etree._Element, default: str, naming: Naming) -> str:
@@ -84,23 +96,24 @@ def _default(host: etree._Element, default: str, naming: Naming) -> str:
     if not derived:
         return default
     # Only a postfix is in the segment that is replaced.
-    topic = host.findtext(sibling, "").strip() if naming.topics == POSTFIX else ""
+    topic = text_at(host, sibling) if naming.topics == POSTFIX else ""
     return topic[: topic.rfind("/") + 1] + last if topic else ""
 
 
 def _holds(host: etree._Element, condition: str) -> bool:
     child, _, wanted = condition.partition("=")
-    text = host.findtext(child, "")
-    return is_true(text) if wanted == "true" else text.strip() == wanted
+    text = text_at(host, child)
+    return is_true(text) if wanted == "true" else text == wanted
 
 
-def _present(host: etree._Element, path: str) -> bool:
+def _there(host: etree._Element, path: str) -> etree._Element | None:
+    """The first element at ``path`` that has its attribute."""
     steps, attribute = split_path(path)
-    found = host.find("/".join(_query(step) for step in steps))
-    return found is not None and (not attribute or found.get(attribute) is not None)
+    found = host.find("/".join(query(step) for step in steps))
+    return found if found is None or not attribute or attribute in found.attrib else None
 
 
-def _query(step: str) -> str:
+def query(step: str) -> str:
     """The step as lxml's find takes it."""
     tag, attribute, value = split_step(step)
     return f"{tag}[@{attribute}='{value}']" if attribute else tag
@@ -110,28 +123,35 @@ def _insertion(host: etree._Element, path: str, kind: str, old: str, new: str) -
     steps, attribute = split_path(path)
     parent, wrap = host, ""
     for step in steps[:-1]:
-        child = parent.find(_query(step))
+        child = parent.find(query(step))
         if child is None:
             wrap = split_step(step)[0]
         else:
             parent = child
     tag, key, value = split_step(steps[-1])
     given = f' {key}="{value}"' if key else ""
-    text = new.translate(_ESCAPES)
+    text = new.translate(ESCAPES)
     xml = f'<{tag}{given} {attribute}="{text}"/>' if attribute else f"<{tag}{given}>{text}</{tag}>"
     return Insertion(parent, wrap, xml, kind, old, new)
 
 
+def _filling(made: Insertion, there: etree._Element, path: str) -> Insertion:
+    """The same for an element that is ``there`` and empty: its text alone."""
+    parent = there.getparent()
+    assert parent is not None, "a path has a step"
+    step = split_path(path)[0][-1]
+    tag = split_step(step)[0]
+    xml = f"<{tag}>{made.new.translate(ESCAPES)}</{tag}>"
+    return made._replace(parent=parent, wrap="", xml=xml, step=step)
+
+
 def _remaps(
-    host: etree._Element, section: VocabularySection, naming: Naming
+    host: etree._Element, section: VocabularySection, naming: Naming, home: etree._Element | None
 ) -> Iterator[Insertion]:
     """A rule for each topic that only a remap can move, unless the file has one."""
-    home = _ros_home(host)
-    texts = (
-        [] if home is None else [e.text or "" for e in home.iterchildren("remapping", "argument")]
-    )
-    rules = [split_remap(text.strip()) for text in texts]
-    namespace = "" if home is None else (home.findtext("namespace") or "").strip()
+    texts = [] if home is None else map(text_of, home.iterchildren("remapping", "argument"))
+    rules = [split_remap(text) for text in texts]
+    namespace = "" if home is None else text_at(home, "namespace")
     node = host.get("name", "")
     taken = {expand(rule.source, namespace, node) for rule in rules if rule is not None}
     for topic in section.topics:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.rewriters.text import text_at
+
 if TYPE_CHECKING:
     from lxml.etree import _Element
 
@@ -36,7 +38,7 @@ def switches(plugin: _Element, section: VocabularySection) -> tuple[Switch, ...]
 
 
 def _switch(plugin: _Element, parameter: str, topic: str, usual: str = "off") -> Switch:
-    text = plugin.findtext(parameter, "")
+    text = text_at(plugin, parameter)
     return Switch(parameter, topic, is_true(text) or (usual == "on" and not is_false(text)))
 
 

@@ -3,14 +3,18 @@
 A ``Node`` answers, for one element, which of its attributes and text are sites and which node
 serves each child tag. Which plugin or hardware class an element is decides its node; those nodes
 are made when a document first asks for them.
+
+Threads share a tree without a lock: what is made late follows from the vocabulary alone, is made
+whole, and only then put where others find it. Threads that make one thing at once make it alike.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.model import Site, VocabularyError
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.vocabulary import (
     Vocabulary,
     VocabularySection,
@@ -38,6 +42,19 @@ def qualified(name: str) -> str:
     return f"{{{NAMESPACES[prefix]}}}{local}" if colon and prefix in NAMESPACES else name
 
 
+# What a node knows once it is made.
+_CONTENT = (
+    "section",
+    "children",
+    "active",
+    "attributes",
+    "text",
+    "keeps",
+    "select",
+    "asked",
+    "values",
+)
+
 # The section for unknown plugins with a <ros> block, which gazebo_ros::Node reads.
 ANY_WITH_ROS = "any_with_ros"
 
@@ -50,44 +67,13 @@ class TreeNode:
     is that of an element's section, whose node is made when something first asks for it.
     """
 
-    __slots__ = (
-        "_make",
-        "active",
-        "asked",
-        "attributes",
-        "children",
-        "element_name",
-        "keeps",
-        "section",
-        "select",
-        "text",
-        "values",
-    )
+    __slots__ = ("_make", "element_name", *_CONTENT)
 
     def __init__(
         self, section: VocabularySection | None = None, sites: tuple[Site, ...] = ()
     ) -> None:
+        self._make: Callable[[str], TreeNode] | None = None
         self.element_name = ""
-        self._make: Callable[[TreeNode], None] | None = None
-        self._know(section, sites)
-
-    @classmethod
-    def later(cls, element_name: str, make: Callable[[TreeNode], None]) -> TreeNode:
-        """A node that ``make`` completes when one of its other attributes is first asked for."""
-        node = cls.__new__(cls)
-        node.element_name, node._make = element_name, make
-        return node
-
-    def __getattr__(self, name: str) -> Any:
-        # Called for slots without a value only: a node made later that is not made yet.
-        make = self._make
-        if make is None:
-            raise AttributeError(name)
-        self._know(None, ())
-        make(self)
-        return getattr(self, name)
-
-    def _know(self, section: VocabularySection | None, sites: tuple[Site, ...]) -> None:
         self.section = section
         self.children: dict[str, TreeNode] = {}
         self.active: dict[str, TreeNode] = {}
@@ -100,9 +86,22 @@ class TreeNode:
         for site in sites:
             self._add(site)
 
-    def fill(self, section: VocabularySection) -> None:
-        """Make it the node of a section."""
-        self._know(section, section.sites)
+    @classmethod
+    def later(cls, element_name: str, make: Callable[[str], TreeNode]) -> TreeNode:
+        """A node that becomes what ``make`` gives for its name when something asks for more."""
+        node = cls.__new__(cls)
+        node.element_name, node._make = element_name, make
+        return node
+
+    def __getattr__(self, name: str) -> Any:
+        # Called for slots without a value only: a node made later that is not made yet.
+        if self._make is None:
+            raise AttributeError(name)
+        whole = self._make(self.element_name)
+        # A thread that comes in between finds a whole value, or none and makes the same again.
+        for slot in _CONTENT:
+            setattr(self, slot, getattr(whole, slot))
+        return getattr(whole, name)
 
     def _add(self, site: Site) -> None:
         steps, attribute = split_path(site.path)
@@ -182,22 +181,24 @@ class Tree:
             (section, *_) = self.vocabulary.find("element", name)
             raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
 
-    def _make(self, node: TreeNode) -> None:
-        (section,) = self.vocabulary.find("element", node.element_name)
-        node.fill(section)
+    def _make(self, element_name: str) -> TreeNode:
+        (section,) = self.vocabulary.find("element", element_name)
+        node = TreeNode(section, section.sites)
         if section.select:
             if section.select not in SELECTORS:
                 raise _wrong(section, f"select: is one of {', '.join(SELECTORS)}")
             node.select = self._selector(node, section.select)
-        for name in self._below[node.element_name]:
+        for name in self._below[element_name]:
             child = self._nodes[name]
             if node.children.setdefault(_tag(name), child) is not child:
-                place = f"{node.element_name}/{_tag(name)} has a section or sites already"
+                place = f"{element_name}/{_tag(name)} has a section or sites already"
                 raise _wrong(self.vocabulary.find("element", name)[0], place)
             node.active[_tag(name)] = child
         self._know(node)
+        return node
 
     def _know(self, node: TreeNode) -> None:
+        """Its tags are known before anybody finds the node: else a thread would pass them by."""
         waiting = [node]
         while waiting:
             for tag, child in waiting.pop().active.items():
@@ -220,13 +221,14 @@ class Tree:
     def _node(self, base: TreeNode, section: VocabularySection) -> TreeNode:
         assert base.section is not None
         key = (base.section.names[0], section.file, section.line)
-        if key not in self._chosen:
+        found = self._chosen.get(key)
+        if found is None:
             node = TreeNode(section, base.section.sites + section.sites)
             node.children = base.children | node.children
             node.active = base.active | node.active
-            self._chosen[key] = node
             self._know(node)
-        return self._chosen[key]
+            found = self._chosen.setdefault(key, node)
+        return found
 
 
 def _tag(name: str) -> str:
@@ -263,8 +265,8 @@ def library_key(library: str) -> str:
 
 def hardware_keys(element: _Element) -> list[str]:
     """The class a ``<ros2_control>`` loads."""
-    class_ = element.findtext("hardware/plugin")
-    return [class_.strip()] if class_ else []
+    class_ = text_at(element, "hardware/plugin")
+    return [class_] if class_ else []
 
 
 def sensor_keys(element: _Element) -> list[str]:
@@ -279,7 +281,7 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _flavour(found: list[VocabularySection], element: _Element) -> VocabularySection:
+def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
     Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace) and ros2 (snake_case,

@@ -1,34 +1,32 @@
-"""Expand xacro through its own API. The only import of xacro."""
+"""Expand xacro in a process of its own, which reaches no further than it may."""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
-from types import FrameType
-from typing import Any
-from xml.dom import DOMException
-from xml.parsers.expat import ExpatError, errors
+import sys
+from collections.abc import Mapping
+from typing import NamedTuple
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources.trace import ORIGIN, Origin, Trace, alike, tracing
-from multibot_rewrite.steps.document import MAX_BYTES, tag_end
+from multibot_rewrite.sources.access import BOUNDED, Access, Find, Reach
+from multibot_rewrite.sources.conversation import Failure, Result, Sources, converse
+from multibot_rewrite.sources.trace import Origins, Trace, alike
+from multibot_rewrite.steps.document import start_offsets, tag_end
 
-# What it lets through in its own code: unreadable files, bytes that are no text, attributes that are
-# missing (RuntimeError) and names that are no text (TypeError). What expressions raise, it words.
-_UNWORDED = (OSError, ValueError, RuntimeError, TypeError)
-# The folder of a package for $(find PACKAGE), empty where it is not known.
-Find = Callable[[str], str]
+__all__ = ["Expansion", "Find", "Reach", "expand", "expand_traced"]
 # Of a longer message no repetition is looked for.
 LONG = 1000
-# What xacro's functions call the element that they work on.
-_NODES = ("node", "elt", "tag")
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
 _HINTS = (
+    ("xacro may", "give --trust if you trust the file, or urdf-lint the folder: --roots"),
+    ("variables alone", "give --trust if you trust the file"),
+    ("refused: ", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("not permitted", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("open files", "a xacro file may compute, no more; give --trust if you trust it"),
     ("Undefined substitution argument", "give it as {}:=VALUE"),
-    ("No module named 'ament_index_python'", "$(find PACKAGE) needs a sourced ROS 2"),
     ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),
     ("No such file", "check the path"),
     ("Is a directory", "check the path"),
@@ -52,70 +50,65 @@ _HINTS = (
 )
 
 
-def expand(path: str, arguments: Mapping[str, str], find: Find | None = None) -> bytes:
+class Expansion(NamedTuple):
+    """A text, the origin of each of its elements, and the files that were read, by their names."""
+
+    data: bytes
+    origins: Origins
+    sources: Mapping[str, bytes]
+
+
+def expand(
+    path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
+) -> bytes:
     """The URDF text of a xacro file, UTF-8; raises InputError with xacro's reason.
 
-    ``find`` is asked for packages before a sourced ROS is.
+    ``find`` is asked for packages before a sourced ROS is; ``reach`` says what the file may use.
     """
-    return _expanded(path, arguments, None, find)[0]
+    _check_file(path)
+    sources = Sources(Access(path, reach, find), {})
+    result = converse(arguments, sources, traced=False)
+    return _text(path, result, Trace(result, sources, path))
 
 
 def expand_traced(
-    path: str, arguments: Mapping[str, str], trace: Trace, find: Find | None = None
-) -> tuple[bytes, tuple[Origin | None, ...]]:
-    """The same, and the origin of each element in document order; ``trace`` gets the sources."""
-    data, document = _expanded(path, arguments, trace, find)
-    return data, trace.origins(document)
+    path: str,
+    data: bytes,
+    arguments: Mapping[str, str],
+    find: Find | None = None,
+    reach: Reach = BOUNDED,
+) -> Expansion:
+    """The same for a file that holds ``data``, with the origins of the elements."""
+    sources = Sources(Access(path, reach, find), {path: data})
+    result = converse(arguments, sources, traced=True)
+    trace = Trace(result, sources, path)
+    text = _text(path, result, trace)
+    if len(result.origins) != 3 * len(start_offsets(text)):
+        raise InputError(f"{path}: xacro failed: the places that its process told are wrong")
+    return Expansion(text, Origins(trace), trace.sources)
 
 
-def _expanded(
-    path: str, arguments: Mapping[str, str], trace: Trace | None, find: Find | None
-) -> tuple[bytes, Any]:
-    _check_file(path)
-    import xacro
-    from xacro import substitution_args
-
-    # What a file can be at fault for; anything else is no fault of the file and must be seen whole.
-    said = (xacro.XacroException, substitution_args.SubstitutionException, ExpatError, DOMException)
-    try:
-        with tracing(xacro, trace) if trace else nullcontext(), _finding(substitution_args, find):
-            document = xacro.process_file(path, mappings=dict(arguments))
-        text: str = document.toprettyxml(indent="  ")
-    except (*said, *_UNWORDED) as error:
-        inner = alike((xacro.filestack or [path])[-1], path)
-        inner = path if inner == os.path.normpath(path) else inner
-        raise InputError(_message(path, inner, error, trace or Trace())) from error
-    _check_root(path, document.documentElement)
-    return text.encode(), document
+def _text(path: str, result: Result, trace: Trace) -> bytes:
+    _print(result.notes)
+    if result.failure:
+        raise InputError(_message(path, result.failure, trace))
+    _check_root(path, *result.root)
+    return result.text
 
 
-def _check_root(path: str, root: Any) -> None:
+def _print(notes: str) -> None:
+    """What xacro warns about, without what a terminal would obey."""
+    lines = ("".join(it if it.isprintable() else "?" for it in line) for line in notes.splitlines())
+    sys.stderr.writelines(f"{line}\n" for line in lines)
+
+
+def _check_root(path: str, prefix: str, tag: str) -> None:
     """xacro expands what is inside the root, and drops the declaration of its own prefix."""
-    if root.prefix == "xacro":
+    if prefix == "xacro":
         raise InputError(
-            f"{path}: the root element is <{root.tagName}>, which xacro does not expand; "
+            f"{path}: the root element is <{tag}>, which xacro does not expand; "
             "put everything inside a <robot> element"
         )
-
-
-@contextmanager
-def _finding(module: Any, find: Find | None) -> Iterator[None]:
-    """While it lasts, xacro's $(find ...) asks ``find`` first."""
-    ask = module._eval_find
-
-    def found(package: str) -> str:
-        try:
-            return str((find and find(package)) or ask(package))
-        except (LookupError, OSError, ImportError):
-            if find is None:
-                raise
-            raise LookupError(f"package {package!r} is not found") from None
-
-    module._eval_find = module._eval_dict["find"] = found
-    try:
-        yield
-    finally:
-        module._eval_find = module._eval_dict["find"] = ask
 
 
 def _check_file(path: str) -> None:
@@ -129,75 +122,53 @@ def _check_file(path: str) -> None:
         raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
 
 
-def _message(path: str, inner: str, error: Exception, trace: Trace) -> str:
-    """``inner`` is the file that failed: ``path`` or one it includes."""
-    reason = " ".join(_reason(error).split())
+def _message(path: str, failure: Failure, trace: Trace) -> str:
+    inner = alike(failure.file, path)
+    inner = path if inner == os.path.normpath(path) else inner
+    reason = " ".join(_reason(failure.reason).split())
     if not os.path.isabs(path):
         reason = reason.replace(os.path.join(os.getcwd(), ""), "")
     hint = next((hint for word, hint in _HINTS if word in reason), "run xacro on it to see more")
     argument = reason.partition(" argument ")[2].partition(" ")[0]
-    where = f"{inner}:{error.lineno}:{error.offset + 1}" if isinstance(error, ExpatError) else ""
-    where = where or _place(error, trace) or inner
+    where = f"{inner}:{failure.position[0]}:{failure.position[1]}" if failure.position else ""
+    where = where or _place(failure, trace) or inner
+    # The file that failed is this one, or one that it includes.
     included = "" if inner == path else f" (included from {path})"
-    said = f"xacro failed{included}{_macros(trace, reason)}: {reason}"
+    said = f"xacro failed{included}{_macros(trace, failure, reason)}: {reason}"
     return f"{where}: {said}; {hint.replace('{}', argument)}"
 
 
-def _macros(trace: Trace, reason: str) -> str:
+def _macros(trace: Trace, failure: Failure, reason: str) -> str:
     """The macro that failed, and the line of its call."""
-    if not trace.failed or "unknown macro" in reason:
+    calls = trace.calls(failure.call)
+    if not calls or "unknown macro" in reason:
         return ""
-    call = trace.failed[0]
-    line, _ = locate(trace.sources[call.file], call.start)
-    return f" in the macro {call.macro!r} that line {line} of {os.path.basename(call.file)} calls"
+    line, _ = locate(trace.sources[calls[0].file], calls[0].start)
+    file = os.path.basename(calls[0].file)
+    return f" in the macro {calls[0].macro!r} that line {line} of {file} calls"
 
 
-def _place(error: BaseException, trace: Trace) -> str:
+def _place(failure: Failure, trace: Trace) -> str:
     """``file:line:column`` of the element that was worked on, or of its attribute; "" if unknown."""
-    for frame in reversed(list(_frames(error))):
-        node = next((frame.f_locals[it] for it in _NODES if it in frame.f_locals), None)
-        element: Any = node if hasattr(node, "tagName") else getattr(node, "parentNode", None)
-        origin = element.getUserData(ORIGIN) if hasattr(element, "getUserData") else None
-        if isinstance(origin, Origin):
-            line, column = _locate(trace.sources[origin.file], origin, element, frame)
-            return f"{origin.file}:{line}:{column}"
-    return ""
+    place = trace.place(*failure.place[:2]) if failure.place else None
+    if place is None or failure.place is None:
+        return ""
+    file, start = place
+    source = trace.sources[file]
+    line, column = locate(source, _attribute(source, start, failure.place[2].encode()))
+    return f"{file}:{line}:{column}"
 
 
-def _frames(error: BaseException) -> Iterator[FrameType]:
-    """The frames an error passed, the outermost first, and those of what caused it behind them."""
-    step = error.__traceback__
-    while step is not None:
-        yield step.tb_frame
-        step = step.tb_next
-    cause = error.__cause__ or error.__context__
-    if cause is not None:
-        yield from _frames(cause)
+def _attribute(source: bytes, start: int, name: bytes) -> int:
+    """The offset of an attribute of the tag at ``start``; that of the tag where it has none."""
+    pattern = re.compile(rb"\s(" + re.escape(name) + rb"\s*=)")
+    found = pattern.search(source, start, tag_end(source, start)) if name else None
+    return found.start(1) if found else start
 
 
-def _locate(source: bytes, origin: Origin, element: Any, frame: FrameType) -> tuple[int, int]:
-    """The attribute whose value was evaluated, or the element."""
-    name, value = frame.f_locals.get("name"), frame.f_locals.get("value")
-    start = origin.start
-    if isinstance(name, str) and isinstance(value, str) and element.getAttribute(name) == value:
-        pattern = re.compile(rb"\s(" + re.escape(name.encode()) + rb"\s*=)")
-        found = pattern.search(source, start, tag_end(source, start))
-        start = found.start(1) if found else start
-    return locate(source, start)
-
-
-def _reason(error: Exception) -> str:
-    if isinstance(error, ExpatError):
-        return f"not well-formed XML: {errors.messages.get(error.code, error)}"
-    if isinstance(error, UnicodeDecodeError):
-        return "the text is not UTF-8"
-    text = str(error).partition(" [Errno")[0]
-    text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", text)
+def _reason(said: str) -> str:
+    text = re.sub(r"^\[Errno \d+\] |<class '[\w.]+'>: ", "", said.partition(" [Errno")[0])
     # xacro may say it twice: in its own words and in those of the cause.
-    inner = getattr(error, "exc", None)
-    cause = str(inner or "")
-    if isinstance(inner, Exception) and not cause:
-        text = f"{type(inner).__name__} {text}"
     if len(text) < LONG:
         text = re.sub(r"(.{9,}) \1(?= |$)", r"\1", text, flags=re.DOTALL)
-    return text or type(error).__name__
+    return text or said

@@ -1,21 +1,21 @@
 """Where in the xacro files each element of an expansion was written, and through which macro calls.
 
-xacro expands a DOM tree: its elements carry their origin as user data, which minidom hands on to
-every copy, and a macro's body is copied while its call is the innermost one.
+A child tells numbers (``child/marks.py``); what they stand for is looked up in the files as they were
+read here, so a number that is wrong leads nowhere else.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
-from typing import Any, NamedTuple
-from xml.dom import UserDataHandler
+from collections.abc import Sequence
+from typing import NamedTuple
 
+from multibot_rewrite.sources.conversation import Result, Sources
 from multibot_rewrite.steps.document import start_offsets
 
-ORIGIN = "multibot_origin"
-_CALL = "xacro:call"
+NOWHERE = -1
+# No macro is called from so deep: Python's recursion ends before.
+DEEPEST = 500
 
 
 class Call(NamedTuple):
@@ -35,38 +35,53 @@ class Origin(NamedTuple):
 
 
 class Trace:
-    """What one expansion knows of its origins.
+    """The files of one expansion, and what a child's numbers mean in them.
 
-    ``sources`` are the files that were read, or whose text was at hand, ``calls`` the macro calls
-    under way, ``failed`` those that were when an error passed. ``given`` is the path that was asked
-    for: others are spelled as it is.
+    ``sources`` are the files that were read, named as ``given`` is where that is possible.
     """
 
-    def __init__(self, sources: Mapping[str, bytes] = {}, given: str = os.sep) -> None:
-        self.sources = dict(sources)
-        self.given = given
-        self.calls: list[Call] = []
-        self.failed: tuple[Call, ...] = ()
+    def __init__(self, result: Result, sources: Sources, given: str) -> None:
+        self.result = result
+        texts = sources.texts
+        self.names = [it if it == given else alike(it, given) for it, _ in result.files]
+        self.starts = [_starts(texts.get(name, b""), count) for name, count in result.files]
+        read = zip(self.names, result.files, strict=True)
+        self.sources = {name: texts[asked] for name, (asked, _) in read if asked in texts}
 
-    def handle(self, operation: int, key: str, data: Origin, source: Any, copy: Any) -> None:
-        """Called by minidom for every copy of an element."""
-        if operation == UserDataHandler.NODE_CLONED and copy is not None:
-            copy.setUserData(key, data._replace(calls=tuple(reversed(self.calls))), self)
+    def place(self, file: int, element: int) -> tuple[str, int] | None:
+        """The name of a file, and the offset of the tag of an element in it; None if unknown."""
+        known = 0 <= file < len(self.names) and 0 <= element < len(self.starts[file])
+        return (self.names[file], self.starts[file][element]) if known else None
 
-    def mark(self, document: Any, file: str) -> None:
-        """Give the elements of a file that was just parsed their origins."""
-        if file not in self.sources:
-            with open(file, "rb") as opened:
-                self.sources[file] = opened.read()
-        starts = start_offsets(self.sources[file])
-        elements = document.getElementsByTagName("*")
-        if len(elements) == len(starts):
-            for element, start in zip(elements, starts, strict=True):
-                element.setUserData(ORIGIN, Origin(file, start, ()), self)
+    def calls(self, number: int) -> tuple[Call, ...]:
+        """A macro call and those around it, the innermost first."""
+        found: list[Call] = []
+        numbers, macros = self.result.calls, self.result.macros
+        while 0 <= number < len(numbers) // 4 and len(found) < DEEPEST:
+            around, macro, file, element = numbers[4 * number : 4 * number + 4]
+            place = self.place(file, element)
+            if place and 0 <= macro < len(macros):
+                found.append(Call(macros[macro], *place))
+            number = around if around < number else NOWHERE
+        return tuple(found)
 
-    def origins(self, document: Any) -> tuple[Origin | None, ...]:
-        """The origins of an expanded document's elements, in document order."""
-        return tuple(element.getUserData(ORIGIN) for element in document.getElementsByTagName("*"))
+
+class Origins(NamedTuple):
+    """The origin of each element of an expanded document, in its order: looked up when asked for."""
+
+    trace: Trace
+
+    def of(self, number: int) -> Origin | None:
+        """The origin of an element; None where xacro itself made it."""
+        file, element, call = self.trace.result.origins[3 * number : 3 * number + 3]
+        place = self.trace.place(file, element)
+        return Origin(*place, self.trace.calls(call)) if place else None
+
+
+def _starts(source: bytes, count: int) -> Sequence[int]:
+    """The offsets of the tags of a file; none where they are not as many as its elements."""
+    found = start_offsets(source)
+    return found if len(found) == count else ()
 
 
 def alike(path: str, given: str) -> str:
@@ -80,45 +95,3 @@ def alike(path: str, given: str) -> str:
 
 def _climbs(path: str) -> int:
     return path.split(os.sep).count(os.pardir)
-
-
-@contextmanager
-def tracing(xacro: Any, trace: Trace) -> Iterator[None]:
-    """While it lasts, what ``xacro`` reads and calls is noted in ``trace``."""
-    parse, handle = xacro.parse, xacro.handle_macro_call
-    xacro.parse, xacro.handle_macro_call = _reader(parse, trace), _caller(handle, trace)
-    try:
-        yield
-    finally:
-        xacro.parse, xacro.handle_macro_call = parse, handle
-
-
-def _reader(parse: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
-    def read(given: Any, filename: str | None = None) -> Any:
-        if given is not None or filename is None:
-            return parse(given, filename)
-        at_hand = trace.sources.get(filename)
-        document = parse(None if at_hand is None else at_hand.decode(), filename)
-        trace.mark(document, filename if at_hand is not None else alike(filename, trace.given))
-        return document
-
-    return read
-
-
-def _caller(handle: Callable[..., Any], trace: Trace) -> Callable[..., Any]:
-    def called(node: Any, macros: Any, symbols: Any) -> Any:
-        origin = node.getUserData(ORIGIN)
-        # A dynamic call comes back under the name of its macro.
-        if origin is None or node.tagName == _CALL or not node.tagName.startswith("xacro:"):
-            return handle(node, macros, symbols)
-        depth = len(trace.calls)
-        trace.calls.append(Call(node.tagName[6:], origin.file, origin.start))
-        try:
-            return handle(node, macros, symbols)
-        except BaseException:
-            trace.failed = trace.failed or tuple(reversed(trace.calls))
-            raise
-        finally:
-            del trace.calls[depth:]
-
-    return called

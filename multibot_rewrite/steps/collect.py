@@ -12,6 +12,7 @@ from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
+from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
 from multibot_rewrite.steps.document import Document, read_document
 
@@ -96,9 +97,12 @@ def _claim(claims: list[Claim], node: TreeNode, element: etree._Element, start: 
         value = element.get(attribute)
         if value is not None:
             claims.append(Claim(site, element, start, attribute, value))
-    text = node.text
-    if text is not None and (element.text or takes_empty(text)) and _applies(text, element):
-        claims.append(Claim(text, element, start, "", (element.text or "").strip()))
+    own = node.text
+    if own is None:
+        return
+    text = text_of(element)
+    if (text or takes_empty(own)) and _applies(own, element):
+        claims.append(Claim(own, element, start, "", text))
 
 
 def _applies(site: Site, element: etree._Element) -> bool:
@@ -106,7 +110,7 @@ def _applies(site: Site, element: etree._Element) -> bool:
         return True
     sibling, _, text = site.when.partition("=")
     parent = element.getparent()
-    return parent is not None and parent.findtext(sibling, "").strip() == text
+    return parent is not None and text_at(parent, sibling) == text
 
 
 def _declared(claims: list[Claim], urdf_declarations: Declared) -> dict[str, dict[str, Claim]]:

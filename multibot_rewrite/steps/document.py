@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Edit, InputError
 
-MAX_BYTES = 16 * 1024 * 1024
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
 # stays on: without it lxml makes libxml2 load external DTDs.) Blanks between elements are most of a
 # tree, and mean nothing.
@@ -28,6 +28,7 @@ _PARSER = etree.XMLParser(
 _OPENING = lazy_compile(rb"<[A-Za-z_:\x80-\xff]")
 _SILENT = lazy_compile(rb"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>", re.DOTALL)
 _TAG = lazy_compile(rb"<[^\s/>]+(?:[^>\"']|\"[^\"]*\"|'[^']*')*>")
+_COMMENTS = lazy_compile(rb"\s*(?:<!--.*?-->\s*)*", re.DOTALL)
 _ATTRIBUTE = lazy_compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
@@ -178,40 +179,51 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:
-    """Where the text right after a start tag is, white space around it aside; None if it does
-    not read back as ``value``."""
+    """Where the text after a start tag is, white space around it and comments before it aside; None
+    if it does not read back as ``value``, or if a comment cuts it: its readers differ then."""
     raw = value.encode()
     begin = source.find(b">", start) + 1
     end = begin + len(raw)
-    if source.startswith(raw, begin) and source[end : end + 1] == b"<":
+    if source.startswith(raw, begin) and source.startswith(b"</", end):
         return begin, end
-    begin = tag_end(source, start)
-    text = source[begin : source.find(b"<", begin)]
-    begin += len(text) - len(text.lstrip())
-    text = text.strip()
-    return (begin, begin + len(text)) if _reads_as(b"<a>%s</a>", text, value) else None
+    begin = _behind_comments(source, tag_end(source, start))
+    text = source[begin : source.find(b"<", begin)].rstrip()
+    end = begin + len(text)
+    rest = _behind_comments(source, end)
+    whole = source.startswith(b"<", rest) and not source.startswith(b"<!", rest)
+    return (begin, end) if whole and _reads_as(b"<a>%s</a>", text, value) else None
 
 
-def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes] | None:
-    """The end of an empty element, and what to write around a text in it; None if it is not empty.
+def _behind_comments(source: bytes, at: int) -> int:
+    found = _COMMENTS.match(source, at)
+    return found.end() if found else at
+
+
+def fillable(source: bytes, start: int) -> tuple[int, int, bytes, bytes]:
+    """Where the text of an element without text goes, and what to write around it.
 
     A filled ``<a/>`` ends in ``</a>``, a filled ``<a></a>`` in ``</a >``: so both can be emptied again.
+    Before anything else, white space or a comment, the text is just put.
     """
     end = tag_end(source, start)
-    name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")
     if source[end - 2 : end] == b"/>":
+        name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>")
         return end - 2, end, b">", b"</%s>" % name
-    close = b"</%s>" % name
-    return (end, end + len(close), b"", b"</%s >" % name) if source.startswith(close, end) else None
+    if not source.startswith(b"</", end):
+        return end, end, b"", b""
+    close = source.index(b">", end)
+    return end, close, b"", source[end:close] + b" "
 
 
 def emptied(source: bytes, slot: tuple[int, int]) -> Edit:
     """The edit that takes the text of a filled element out again."""
-    end = source.index(b">", slot[1]) + 1
-    close = source[slot[1] : end]
-    if close.endswith(b" >"):
-        return Edit(slot[0], end, close[:-2] + b">", None)
-    return Edit(slot[0] - 1, end, b"/>", None)
+    begin, end = slot
+    if not source.startswith(b"</", end):
+        return Edit(begin, end, b"", None)
+    close = source.index(b">", end)
+    if source[close - 1 : close].isspace():
+        return Edit(begin, close, source[end : close - 1], None)
+    return Edit(begin - 1, close + 1, b"/>", None)
 
 
 def _reads_as(frame: bytes, raw: bytes, value: str) -> bool:

@@ -5,22 +5,26 @@ They come first in their parent element, after a marker comment:
     <!-- multibot robot1 +2 (added, or all robots would share odom, cmd_vel) -->
 
 The number counts the inserted elements that follow; ``expanded`` after it means that the parent was
-``<a/>`` before. The text holds no ": ": launch files pass a description on as a YAML string. The
+``<a/>`` before, ``filled namespace`` that the parent's first ``<namespace>`` was there and empty. The
+text holds no ": ": launch files pass a description on as a YAML string. The
 marker is a comment because TinyXML-2, which urdfdom and sdformat read with, refuses processing
 instructions inside the root element.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from itertools import groupby
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.model import Edit, InputError
-from multibot_rewrite.rewriters.insert import Insertion
+from multibot_rewrite.rewriters.insert import ESCAPES, Insertion, query
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
-from multibot_rewrite.steps.document import Document, tag_end
+from multibot_rewrite.rewriters.text import text_of
+from multibot_rewrite.rewriters.vocabulary import is_step
+from multibot_rewrite.steps.document import Document, emptied, fillable, tag_end, text_slot
 
 MARKER = b"<!-- multibot "
 WHY = "added, or all robots would share"
@@ -33,6 +37,7 @@ class Marker(NamedTuple):
     robot: str
     elements: int
     expanded: bool
+    filled: tuple[str, ...]
 
 
 def insertion_edits(document: Document, items: list[Insertion]) -> list[Edit]:
@@ -43,6 +48,11 @@ def insertion_edits(document: Document, items: list[Insertion]) -> list[Edit]:
     edits = []
     for parent, group in groupby(sorted(items, key=lambda i: starts[i.parent]), lambda i: i.parent):
         edits += _parent_edits(document.source, parent, starts[parent], list(group))
+    for item in items:
+        if item.filled is not None:
+            start, end, opening, close = fillable(document.source, starts[item.filled])
+            text = item.new.translate(ESCAPES)
+            edits += slot_edits(start, end, f"{opening.decode()}{text}{close.decode()}")
     return edits
 
 
@@ -52,9 +62,12 @@ def _parent_edits(
     end = tag_end(source, start)
     expanded = source[end - 2 : end] == b"/>"
     lead = _lead(source, start, end)
-    elements = _elements(items, lead)
-    word = " expanded" if expanded else ""
-    marker = f"<!-- multibot {ROBOT_SLOT} +{len(elements)}{word} ({WHY} {_shared(items)}) -->"
+    elements = _elements([item for item in items if not item.step], lead)
+    filled = [item.step for item in items if item.step]
+    words = ["expanded"] if expanded else ["filled", *filled] if filled else []
+    head = " ".join(["multibot", ROBOT_SLOT, f"+{len(elements)}", *words])
+    why = WHY if elements else WHY.removeprefix("added, ")
+    marker = f"<!-- {head} ({why} {_shared(items)}) -->"
     text = "".join(lead + part for part in (marker, *elements))
     if expanded:
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
@@ -107,10 +120,12 @@ def markers(document: Document) -> list[Marker]:
 
 
 def _read_marker(document: Document, comment: etree._Element, words: list[str]) -> Marker:
-    plain = len(words) in (3, 4) and words[2][1:].isdigit()
-    if not plain or (len(words) == 4 and words[3] != "expanded"):
+    _, robot, number, *rest = words
+    filled = rest[1:] if rest[:1] == ["filled"] else []
+    known = rest in ([], ["expanded"]) or (filled and all(map(is_step, filled)))
+    if not number[1:].isdigit() or not known:
         raise InputError(f"{document.file}:{comment.sourceline}:1: this marker was edited by hand")
-    return Marker(comment, words[1], int(words[2][1:]), len(words) == 4)
+    return Marker(comment, robot, int(number[1:]), rest == ["expanded"], tuple(filled))
 
 
 def removals(document: Document, robot: str) -> list[Edit]:
@@ -119,22 +134,48 @@ def removals(document: Document, robot: str) -> list[Edit]:
     if not mine:
         return []
     starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
-    return [_removal(document, marker, starts) for marker in mine]
+    return [edit for marker in mine for edit in _removal(document, marker, starts)]
 
 
-def _removal(document: Document, marker: Marker, starts: dict[etree._Element, int]) -> Edit:
+def _removal(
+    document: Document, marker: Marker, starts: dict[etree._Element, int]
+) -> Iterator[Edit]:
     source = document.source
     parent = marker.comment.getparent()
     inserted = list(marker.comment.itersiblings("*"))[: marker.elements]
-    if parent is None or len(inserted) != marker.elements or not inserted:
-        place = f"{document.file}:{marker.comment.sourceline}:1"
-        raise InputError(f"{place}: the elements this marker counts were edited by hand")
-    before = next(iter(marker.comment.itersiblings("*", preceding=True)), None)
-    begin = tag_end(source, starts[parent]) if before is None else _end(source, starts[before])
-    end = _end(source, starts[inserted[-1]])
-    if not marker.expanded:
-        return Edit(begin, end, b"", None)
-    return Edit(begin - 1, source.index(b">", source.index(b"</", end)) + 1, b"/>", None)
+    if parent is None or len(inserted) != marker.elements:
+        raise _edited(document, marker)
+    at = source.index(b"<!--%s-->" % (marker.comment.text or "").encode(), starts[parent])
+    # Everything back to the tag before it is white space that was written with it.
+    begin = source.rindex(b">", 0, at) + 1
+    end = _end(source, starts[inserted[-1]]) if inserted else source.index(b"-->", at) + 3
+    if marker.expanded:
+        yield Edit(begin - 1, source.index(b">", source.index(b"</", end)) + 1, b"/>", None)
+    else:
+        yield Edit(begin, end, b"", None)
+    for step in marker.filled:
+        yield _emptying(document, marker, parent.find(query(step)), starts)
+
+
+def _emptying(
+    document: Document,
+    marker: Marker,
+    filled: etree._Element | None,
+    starts: dict[etree._Element, int],
+) -> Edit:
+    """The whole element, up to the end of the text that was put into it, as it was before."""
+    start = starts[filled] if filled is not None else 0
+    text = text_of(filled) if filled is not None else ""
+    slot = text_slot(document.source, start, text) if text else None
+    if slot is None:
+        raise _edited(document, marker)
+    begin, end, before, _ = emptied(document.source, slot)
+    return Edit(start, end, document.source[start:begin] + before, None)
+
+
+def _edited(document: Document, marker: Marker) -> InputError:
+    place = f"{document.file}:{marker.comment.sourceline}:1"
+    return InputError(f"{place}: the elements this marker counts were edited by hand")
 
 
 def _end(source: bytes, start: int) -> int:

@@ -5,7 +5,6 @@ A plan is for any robot: its edits have a slot for the robot's name.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -111,11 +110,13 @@ def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[F
         if not spelling:
             continue
         _, _, start, attribute, value = claim
-        if not value:
-            edits += _filled(inventory, claim, spelling[0].affix, findings)
+        if not value and not claim.element.text:
+            edits.append(_filled(inventory, claim, spelling[0].affix))
             continue
         affixes = [name.affix for name in spelling]
-        places = value_places(source, start, attribute, value, [it.at for it in affixes])
+        # White space alone would be a part of the prefix: nothing takes it off (component_parser.cpp).
+        at = [it.at for it in affixes]
+        places = value_places(source, start, attribute, value, at) if value else None
         if places is None:
             findings.append(_not_editable(inventory, claim))
             continue
@@ -124,16 +125,10 @@ def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[F
     return edits, findings
 
 
-def _filled(
-    inventory: Inventory, claim: Claim, there: Affix, findings: list[Finding]
-) -> Iterator[Edit]:
+def _filled(inventory: Inventory, claim: Claim, there: Affix) -> Edit:
     """``<param/>`` made to hold the robot's prefix."""
-    place = fillable(inventory.document.source, claim.start)
-    if place is None:
-        findings.append(_not_editable(inventory, claim))
-    else:
-        start, end, opening, close = place
-        yield Edit(start, end, opening + there.before.encode(), there.after.encode() + close)
+    start, end, opening, close = fillable(inventory.document.source, claim.start)
+    return Edit(start, end, opening + there.before.encode(), there.after.encode() + close)
 
 
 def _not_editable(inventory: Inventory, claim: Claim) -> Finding:

@@ -24,6 +24,7 @@ from multibot_rewrite.graph.snapshot import from_json
 from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_odometry
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.readback.reading import read
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
@@ -153,7 +154,8 @@ def rewritten(layout: str) -> tuple[Inventory, Naming]:
 def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
     nodes = [node for stack in stacks for node in stack_of(built_in(), stack)]
-    plugins = [facts for facts, _ in plugin_nodes(inventory, "robot1")]
+    reading = read(inventory.document.source, "rover.urdf", builtin_tree().vocabulary)
+    plugins = [facts for facts, _ in plugin_nodes(reading, "robot1")]
     found = edges_of("robot1", inventory, nodes, plugins, naming)
     return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}
 

@@ -165,8 +165,8 @@ BROKEN = [
     (entry(count=0), "'count' of finding 1 is 0"),
     (entry(count=1.5), "'count' of finding 1 is 1.5"),
     (entry(message=None), "'message' of finding 1 is None"),
-    ("[" * 100000, "recursion"),
-    ('{"a": ' + "1" * 5000 + "}", "digits"),
+    ("[" * 100000, "nested deeper"),
+    ('{"a": ' + "1" * 5000 + "}", "5,000 characters"),
     (b"\xff\xfe\xfa", "decode"),
     (b"{\xff", "decode"),
 ]

@@ -21,10 +21,10 @@ from multibot_rewrite.findings import finding
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("gc_pause", "lazy", "model", "nearest", "plural", "version"),
+    ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
     ("findings", "rosnames", "naming", "config", "arguments"),
     ("rewriters",),
-    ("steps",),
+    ("readback", "steps"),
     ("checks", "sources", "remap"),
     ("pipeline", "reports", "graph", "lint", "companions"),
     ("library",),

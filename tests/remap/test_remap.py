@@ -15,6 +15,7 @@ from paths import FIXTURES
 from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.readback.reading import Reading, read
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -33,8 +34,6 @@ from multibot_rewrite.remap.records import (
 from multibot_rewrite.remap.table import build_table
 from multibot_rewrite.remap.table_formats import FORMS, as_data
 from multibot_rewrite.rewriters.builtin import builtin_tree
-from multibot_rewrite.steps.collect import collect
-from multibot_rewrite.steps.document import read_document
 
 ROBOTS = ("robot1", "robot2")
 LAYOUTS = ("L1", "L2", "L3", "L4")
@@ -273,13 +272,16 @@ def test_one_robot_alone_is_held_against_another() -> None:
 ODOM, TF = "publish_odom", "publish_odom_tf or publish_wheel_tf"
 
 
+def reading(data: bytes) -> Reading:
+    return read(data, "rover", builtin_tree().vocabulary)
+
+
 def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
     source = (FIXTURES / "robots" / "rover.urdf").read_bytes()
     for layout in LAYOUTS:
         plugins = {}
         for one in rewrite_all(source, ROBOTS, layout=layout):
-            inventory = collect(read_document(one.data, "rover"), builtin_tree())
-            plugins[one.robot] = list(plugin_nodes(inventory, one.robot))
+            plugins[one.robot] = list(plugin_nodes(reading(one.data), one.robot))
         found = build_table(ROBOTS, (), make_naming(layout), plugins)
         assert [p for p in found.problems if p.level == ERROR] == [], layout
         drive = [n for n in found.names if n.robot == "robot1" and n.endpoint.name == "cmd_vel"]
@@ -353,8 +355,8 @@ def test_a_plugin_without_what_its_parameters_switch_off(
         .replace("<publish_odom>true</publish_odom>", "")
     )
     text = text.replace("<publish_odom_tf>true</publish_odom_tf>", parameters)
-    found = collect(read_document(text.encode(), "rover"), builtin_tree())
-    drive = next(facts for facts, table in plugin_nodes(found, "r") if table.name == "diff_drive")
+    found = plugin_nodes(reading(text.encode()), "r")
+    drive = next(facts for facts, table in found if table.name == "diff_drive")
     conditions = {it.name: it.when for it in drive.endpoints if it.when}
     assert conditions == off
     assert bool(drive.sends) == sends

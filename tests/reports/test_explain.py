@@ -87,6 +87,18 @@ def test_inserted_elements_are_listed_at_their_plugin() -> None:
     assert not [i for i in explain(ROBOT, 7, layout="L2") if "/tf:=" in "".join(i.inserted)]
 
 
+def test_an_empty_element_that_is_filled_says_what_empty_means() -> None:
+    text = ROBOT.replace("</plugin>", "\n<ros>\n<namespace/></ros></plugin>", 1)
+    line = next(at for at, row in enumerate(text.split("\n"), 1) if "<namespace/>" in row)
+    (item,) = explain(text, line, layout="L1")
+    assert (item.path.rpartition("]/")[2], item.column) == ("ros/namespace", 1)
+    assert item.inserted == ("<namespace>/robot1</namespace>",)
+    assert "read as '/'" in item.reason
+    assert not [
+        it for at in range(line) for it in explain(text, at, layout="L1") if "filled" in it.reason
+    ]
+
+
 def test_a_refused_description_is_explained_all_the_same() -> None:
     twice = ROBOT.replace('<link name="base"/>', '<link name="base"/><link name="base"/>')
     assert {item.new for item in explain(twice, 2)} == {"base/robot1"}

@@ -49,3 +49,76 @@ def test_a_marker_that_was_edited_is_refused(old: str, new: str) -> None:
     made = rewrite(ROVER.format(""), "r1").data.replace(f" {old}".encode(), f" {new}".encode())
     with pytest.raises(InputError, match="edited by hand"):
         strip(made, "r1")
+
+
+EMPTY = """<robot name="a"><link name="l"/><gazebo>
+<plugin filename="libgazebo_ros_imu_sensor.so" name="imu"><ros>{}</ros></plugin></gazebo></robot>"""
+# As gazebo_ros node.cpp reads them: no text in force, so "/" is all of the namespace.
+EMPTY_NAMESPACES = [
+    "<namespace/>",
+    "<namespace />",
+    "<namespace></namespace>",
+    "<namespace></namespace >",
+    "<namespace></namespace\n>",
+    "<namespace a='>'></namespace>",
+    "<namespace> </namespace>",
+    "<namespace>\r\n  </namespace>",
+    "<namespace><!-- none --></namespace>",
+    "<namespace> <!-- a --> <!-- b --> </namespace>",
+    "<namespace><x>y</x></namespace>",
+]
+
+
+@pytest.mark.parametrize("element", EMPTY_NAMESPACES)
+@pytest.mark.parametrize("layout", ["L1", "L2", "L3"])
+def test_an_empty_namespace_is_filled_and_emptied_again(element: str, layout: str) -> None:
+    source = EMPTY.format(element)
+    made = rewrite(source, "r1", layout=layout).data
+    (namespace,) = etree.fromstring(made).iter("namespace")
+    assert (namespace.text or "").strip() == "/r1"
+    assert b"+0 filled namespace (or all robots would share the root namespace)" in made
+    assert strip(made, "r1", layout=layout) == source.encode()
+
+
+@pytest.mark.parametrize("element", EMPTY_NAMESPACES)
+def test_without_namespaces_an_empty_one_stays(element: str) -> None:
+    made = rewrite(EMPTY.format(element), "r1").text
+    assert element in made
+    assert "filled" not in made
+
+
+def test_only_the_first_of_two_namespaces_counts() -> None:
+    for element, filled in (("<namespace>/a</namespace><namespace/>", 0), ("<namespace/>" * 2, 1)):
+        made = rewrite(EMPTY.format(element), "r1", layout="L1").text
+        assert made.count("filled") == filled
+        assert made.count("<namespace/>") == 1
+
+
+def test_several_robots_get_their_own_text() -> None:
+    texts = [rewrite(EMPTY.format("<namespace/>"), it, layout="L1").text for it in ("r1", "r2")]
+    assert texts[0].replace("r1", "r2") == texts[1] != texts[0]
+
+
+def test_a_robot_is_stripped_from_under_another() -> None:
+    source = EMPTY.format("<namespace/>")
+    first = rewrite(source, "r1", layout="L1").data
+    both = rewrite(first, "r2", layout="L1", again=True).data
+    assert b"<namespace>/r2/r1</namespace>" in both
+    assert strip(strip(both, "r2", layout="L1"), "r1", layout="L1") == source.encode()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("filled namespace", "filled"),
+        ("filled namespace", "filled topic"),
+        ("filled namespace", "filled ..'"),
+        ("filled namespace", "full namespace"),
+        (">/r1<", "><"),
+        ("<namespace>/r1</namespace>", ""),
+    ],
+)
+def test_a_filled_element_that_was_edited_is_refused(old: str, new: str) -> None:
+    made = rewrite(EMPTY.format("<namespace/>"), "r1", layout="L1").text.replace(old, new)
+    with pytest.raises(InputError, match="edited by hand"):
+        strip(made, "r1", layout="L1")

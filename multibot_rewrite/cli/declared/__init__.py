@@ -8,7 +8,13 @@ from types import MappingProxyType
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
 from multibot_rewrite.cli.declared.fleet import BUILD, PLAN, REHEARSE, REMAP
 from multibot_rewrite.cli.declared.graph import CHECK, LEARN, SNAPSHOT
-from multibot_rewrite.cli.declared.knowledge import COVERAGE, EXPLAIN, HELP, VOCABULARY_LOOKUP
+from multibot_rewrite.cli.declared.knowledge import (
+    ARGUMENTS,
+    COVERAGE,
+    EXPLAIN,
+    HELP,
+    VOCABULARY_LOOKUP,
+)
 from multibot_rewrite.cli.options import Command
 
 PROGRAMS = (POSTFIX, LINT)
@@ -16,6 +22,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
     {
         it.name: it
         for it in (
+            ARGUMENTS,
             BUILD,
             CHECK,
             COVERAGE,

@@ -10,6 +10,7 @@ from multibot_rewrite.cli.declared.shared import (
     GENERAL,
     NAMING,
     ROBOTS,
+    TRUST,
     URDF,
     VOCABULARY,
 )
@@ -34,6 +35,10 @@ POSTFIX = Command(
         Example("urdf-postfix rover.urdf robot1", "to standard output"),
         Example("urdf-postfix rover.urdf robot1 -o robot1.urdf"),
         Example("urdf-postfix rover.urdf.xacro robot1 robot2 -o 'out/{robot}.urdf' use_sim:=true"),
+        Example(
+            "urdf-postfix arm.urdf.xacro left right -o 'out/{robot}.urdf' tf_prefix:='{robot}_'",
+            "an argument of its own",
+        ),
         Example("urdf-postfix rover.urdf robot1 --layout frames-per-robot --affix prefix"),
         Example("urdf-postfix rover.urdf left --affix prefix --separator _", "left_base_link"),
         Example("urdf-postfix rover.srdf robot1 --urdf rover.urdf", "an SRDF with its URDF"),
@@ -46,10 +51,16 @@ POSTFIX = Command(
             "input",
             (
                 argument("input", "INPUT", "URDF, SDF model, SRDF, xacro of one, or -", "?"),
-                argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
+                argument(
+                    "words",
+                    "ROBOT",
+                    "names of robots; NAME:=VALUE is for xacro, with {robot} for the robot's name",
+                    "*",
+                ),
                 ROBOTS,
                 URDF,
                 VOCABULARY,
+                TRUST,
             ),
         ),
         OptionGroup(
@@ -70,6 +81,13 @@ POSTFIX = Command(
             "other jobs",
             (
                 switch("--strip", about="undo a rewrite; give the options it was made with"),
+                value(
+                    "--xacro",
+                    metavar="FILE",
+                    about="with --strip: the xacro whose arguments (NAME:=VALUE) put the robot's name"
+                    " into names; these stay",
+                    type=values.path,
+                ),
                 switch("--again", about="rewrite although it was rewritten for this robot"),
                 value(
                     "--why",
@@ -120,6 +138,7 @@ LINT = Command(
                 several("--roots", "A,B", "folders to look for package://NAME and $(find NAME) in"),
                 URDF,
                 VOCABULARY,
+                TRUST,
             ),
         ),
         OptionGroup(

@@ -13,6 +13,7 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     RESULT_OUTPUT,
     ROBOTS,
+    TRUST,
     VOCABULARY,
 )
 from multibot_rewrite.cli.options import (
@@ -46,6 +47,7 @@ _DESCRIPTION = OptionGroup(
         ),
         value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
         VOCABULARY,
+        TRUST,
     ),
 )
 _FLEET_FILE = "A fleet file (*.yaml) has its own robots, stacks and layout."
@@ -64,7 +66,7 @@ BUILD = Command(
         Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
     ),
     (
-        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"),)),
+        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), TRUST)),
         output_group(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),

@@ -11,6 +11,7 @@ from multibot_rewrite.cli.declared.shared import (
     LIVE_CODES,
     PICTURES,
     RESULT_OUTPUT,
+    TRUST,
 )
 from multibot_rewrite.cli.options import (
     Command,
@@ -47,6 +48,7 @@ CHECK = Command(
                     about="what multibot snapshot wrote, instead of the live graph",
                     type=values.path,
                 ),
+                TRUST,
             ),
         ),
         output_group(

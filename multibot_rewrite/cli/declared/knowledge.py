@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, VOCABULARY
+from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
 from multibot_rewrite.cli.options import (
     Command,
     Example,
@@ -19,6 +19,30 @@ from multibot_rewrite.cli.options import (
 SECTION_TYPES = ("element", "plugin", "hardware", "sensor", "block")
 REPORT_FORMS = ("table", "json")
 
+ARGUMENTS = Command(
+    "arguments",
+    "arguments",
+    "%(prog)s FILE.xacro [NAME:=VALUE...] [options]",
+    "Show which argument of a xacro goes into which names, as a prefix or namespace of a robot does.",
+    (
+        Example("multibot arguments arm.urdf.xacro"),
+        Example("multibot arguments ur.urdf.xacro name:=ur ur_type:=ur5e", "some have no default"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument("words", "FILE.xacro", "a xacro; NAME:=VALUE are arguments of it", "*"),
+                VOCABULARY,
+                TRUST,
+            ),
+        ),
+        output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),
+        GENERAL,
+    ),
+    "0 done; 2 wrong use or unreadable input",
+    more="The file is expanded once for each argument, with another word as its value.",
+)
 COVERAGE = Command(
     "coverage",
     "coverage",
@@ -35,6 +59,7 @@ COVERAGE = Command(
             (
                 argument("words", "PATH", "files and folders; NAME:=VALUE is for xacro", "+"),
                 VOCABULARY,
+                TRUST,
                 value(
                     "--explained",
                     metavar="FILE",
@@ -120,6 +145,7 @@ VOCABULARY_LOOKUP = Command(
                     type=values.path,
                 ),
                 VOCABULARY,
+                TRUST,
             ),
         ),
         output_group(RESULT_OUTPUT, form(REPORT_FORMS, "how it is written")),

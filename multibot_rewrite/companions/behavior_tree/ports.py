@@ -7,6 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.steps.document import Document
 
 if TYPE_CHECKING:
@@ -40,14 +41,12 @@ class _Trees(NamedTuple):
 @cache
 def port_data() -> Mapping[str, Any]:
     """The data of ``behavior_tree.yaml``."""
-    import yaml
-
     text = (
         files("multibot_rewrite.companions.behavior_tree")
         .joinpath("behavior_tree.yaml")
         .read_text()
     )
-    return dict(yaml.load(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader)))
+    return dict(load_yaml(text))
 
 
 def ports_of(document: Document) -> Iterator[Port]:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.names.rename_map import KINDS, CompanionNames, is_declared
 from multibot_rewrite.companions.yaml_text import is_text, pairs
 
@@ -16,7 +17,6 @@ KEEP = "keep"
 # The kind of name that a value is, or keys with the shape below each.
 Shape = Any
 Shapes = Mapping[str, Shape]
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MERGE = "<<"
 
 
@@ -65,7 +65,7 @@ def kinds() -> tuple[FileKind, ...]:
         .joinpath("moveit.yaml")
         .read_text(encoding="utf-8")
     )
-    data = yaml.load(text, Loader=_LOADER)
+    data = load_yaml(text)
     return tuple(
         FileKind(name, tuple(it["marks"]), tuple(it["files"]), {**data["common"], **it["names"]})
         for name, it in data["kinds"].items()

@@ -11,6 +11,7 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
+from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
@@ -114,8 +115,7 @@ def load_known_nodes(path: str = "") -> KnownNodes:
     if not path:
         return built_in_nodes()
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            text = file.read()
+        text = read_text(path)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.yaml_blocks import Block, blocks, is_block
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs, refuse_anchors
 from multibot_rewrite.model import InputError
@@ -18,7 +19,6 @@ GROUP = "rviz_common/Group"
 DOCK, SHARED, PROCESS, ABSOLUTE = "dock", "shared", "process", "absolute"
 # Classes of ROS 1, which pluginlib of ROS 2 does not find.
 ROS1 = "rviz/"
-_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
 class ValuePlace(NamedTuple):
@@ -59,7 +59,7 @@ class RvizConfig(NamedTuple):
 def rviz_data() -> Mapping[str, Any]:
     """The data of ``rviz.yaml``."""
     text = files("multibot_rewrite.companions.rviz").joinpath("rviz.yaml").read_text()
-    data: Mapping[str, Any] = yaml.load(text, Loader=_LOADER)
+    data: Mapping[str, Any] = load_yaml(text)
     return data
 
 

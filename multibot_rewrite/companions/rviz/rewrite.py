@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.bounded import compose_yaml
 from multibot_rewrite.companions.rviz.colours import Colour, palette, read_colour
 from multibot_rewrite.companions.rviz.display_groups import (
     inserted,
@@ -107,7 +108,7 @@ def _colour(robot: RvizRobot, at: int, count: int) -> Colour | None:
 
 def _prove(text: str, file: str) -> None:
     try:
-        yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+        compose_yaml(text)
     except yaml.YAMLError as error:
         raise ProofError(f"{file}: the rewritten config is not valid YAML: {error}") from None
 

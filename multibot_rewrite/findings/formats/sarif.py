@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 from urllib.parse import quote
 
+from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.findings.finding import INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.formats.shared import (
@@ -17,12 +18,12 @@ from multibot_rewrite.findings.formats.shared import (
     fingerprints,
     inside,
     json_text,
-    one_line,
     said_of,
 )
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.model import Edit
+from multibot_rewrite.printable import one_line
 from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]
@@ -146,7 +147,6 @@ def _replacement(source: bytes, edit: Edit) -> Json:
 
 def _source(path: str) -> bytes:
     try:
-        with open(path, "rb") as file:
-            return file.read()
+        return read_bytes(path)
     except OSError:
         return b""

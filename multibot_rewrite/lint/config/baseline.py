@@ -12,6 +12,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.bounded import load_json
 from multibot_rewrite.config import read
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import UsageError
@@ -40,9 +41,9 @@ class Baseline(NamedTuple):
 def read_baseline(path: str) -> Baseline:
     """The baseline in a file; raises UsageError for any other file."""
     try:
-        content = json.loads(read(path))
+        content = load_json(read(path))
         return Baseline(_counts(content))
-    except (ValueError, RecursionError) as error:
+    except ValueError as error:
         reason = " ".join(str(error).split())
         hint = f"write one with --write-baseline {path}"
         raise UsageError(f"{path}: not a baseline of urdf-lint: {reason}; {hint}") from None

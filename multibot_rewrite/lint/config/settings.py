@@ -37,7 +37,8 @@ class Settings(NamedTuple):
     ``package://NAME`` is looked up. ``urdf`` is the description that SRDF files belong to, where it
     is not the one with the same robot name; ``urdfs`` are the names and paths of robots that are
     linted together with them. ``included`` are xacro files that are linted through those which
-    include them. ``seconds`` is the time limit for one file.
+    include them. ``seconds`` is the time limit for one file. ``trust`` lets xacro
+    files do anything.
     """
 
     select: tuple[str, ...] = ALL
@@ -54,6 +55,7 @@ class Settings(NamedTuple):
     urdfs: tuple[tuple[str, str], ...] = ()
     included: frozenset[str] = frozenset()
     seconds: float = TIME_LIMIT
+    trust: bool = False
 
 
 def matches(path: str, pattern: str) -> bool:

@@ -41,7 +41,7 @@ def is_fixed(subject: Subject, start: int, attribute: str, *, constants: bool = 
     """
     if not subject.origins:
         return True
-    origin = subject.origins[bisect_left(subject.document.starts, start)]
+    origin = subject.origins.of(bisect_left(subject.document.starts, start))
     if origin is None:
         return False
     raw = _raw(subject.sources[origin.file], origin.start, attribute)

@@ -17,6 +17,7 @@ from multibot_rewrite.lint.files.packages import package_folder
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.sources.access import Reach
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document
@@ -136,15 +137,20 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
 
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
     find = partial(package_folder, file=path, roots=settings.roots)
-    name = f"{path} (expanded)"
+    name, reach = f"{path} (expanded)", reach_of(settings)
     # xacro prints its warnings when a person runs it.
     with redirect_stderr(StringIO()):
         try:
-            return expand(path, {}, find), name
+            return expand(path, {}, find, reach), name
         except InputError:
             if not sets:
                 raise
-            return expand(path, sets[0], find), name
+            return expand(path, sets[0], find, reach), name
+
+
+def reach_of(settings: Settings) -> Reach:
+    """How far the xacro files of a lint may reach: no longer than it looks at a file."""
+    return Reach(settings.roots, settings.trust, settings.seconds)
 
 
 def _names(srdf: Inventory) -> set[str]:

@@ -16,7 +16,7 @@ from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.robot import read_robot
 from multibot_rewrite.lint.files.packages import package_folder
-from multibot_rewrite.lint.files.pairing import SRDF_MARK, find_pair
+from multibot_rewrite.lint.files.pairing import SRDF_MARK, find_pair, reach_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.schema.faults import read_faults
 from multibot_rewrite.model import InputError
@@ -72,15 +72,13 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
     from multibot_rewrite.sources.expand import expand_traced  # a URDF needs none of it
-    from multibot_rewrite.sources.trace import Trace
 
-    trace = Trace({path: data}, path)
     find = partial(package_folder, file=path, roots=settings.roots)
     # Warnings of xacro are not findings, and would be printed between them.
     with redirect_stderr(StringIO()):
-        expanded, origins = expand_traced(path, dict(given.arguments), trace, find)
-    subject = _subject(read_document(expanded, path + EXPANDED), settings)
-    return _shaped(subject)._replace(origins=origins, sources=trace.sources, arguments=str(given))
+        found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
+    subject = _shaped(_subject(read_document(found.data, path + EXPANDED), settings))
+    return subject._replace(origins=found.origins, sources=found.sources, arguments=str(given))
 
 
 def _shaped(subject: Subject) -> Subject:

@@ -26,6 +26,9 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
                        with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
                        these texts
     when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
+    empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
+                       if it was not there (usual for a namespace: the root); ``model``, the model's
+                       name; ``itself``, the empty text (usual for the rest)
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
@@ -75,6 +78,7 @@ import re
 from collections.abc import Container, Iterable, Mapping, Sequence
 from functools import lru_cache
 
+from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.rewriters.vocabulary.grammar import (
@@ -83,6 +87,7 @@ from multibot_rewrite.rewriters.vocabulary.grammar import (
     TYPES,
     VocabularySection,
     assemble,
+    is_step,
     merge,
     read_header,
     read_section,
@@ -103,6 +108,7 @@ __all__ = [
     "VocabularySection",
     "advice",
     "check_vocabulary",
+    "is_step",
     "load_vocabulary",
     "split_path",
     "split_step",
@@ -118,7 +124,7 @@ class Vocabulary:
     def __init__(self, texts: Mapping[str, str], extended: bool = False) -> None:
         self.extended = extended
         self._raw: dict[tuple[str, str], list[Raw]] = {}
-        self._found: dict[tuple[str, str], list[VocabularySection]] = {}
+        self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
         for file, text in texts.items():
             self._index(file, text)
 
@@ -135,17 +141,22 @@ class Vocabulary:
                 self._raw.setdefault((type_, name), []).append((file, line, chunk))
             line += chunk.count("\n")
 
-    def find(self, type_: str, name: str) -> list[VocabularySection]:
+    def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
         """The rewriters of that type under that name: more than one where ROS 1 and 2 differ.
 
         Sections of one flavour are one; a later one without ``ros:`` adds to every flavour.
         """
-        key = (type_, name)
-        if key not in self._found:
-            self._found[key] = []
-            for raw in self._raw.get(key, ()):
-                self._add(self._found[key], self._read(*raw))
-        return self._found[key]
+        return self._find((type_, name), ())
+
+    def _find(self, key: tuple[str, str], within: tuple[str, ...]) -> tuple[VocabularySection, ...]:
+        """``within`` are the blocks that are being read."""
+        if key in self._found or key not in self._raw:
+            return self._found.get(key, ())
+        made: list[VocabularySection] = []
+        for raw in self._raw[key]:
+            self._add(made, self._read(*raw, within))
+        # Whole when others see it; two threads that make it at once both get the first one's.
+        return self._found.setdefault(key, tuple(made))
 
     def _add(self, found: list[VocabularySection], new: VocabularySection) -> None:
         same = [at for at, old in enumerate(found) if new.ros in ("", old.ros)]
@@ -182,22 +193,22 @@ class Vocabulary:
         found = [section for key in keys for section in self.find(*key)]
         return list({(section.file, section.line): section for section in found}.values())
 
-    def _read(self, file: str, line: int, chunk: str) -> VocabularySection:
+    def _read(self, file: str, line: int, chunk: str, within: tuple[str, ...]) -> VocabularySection:
         rows = chunk.split("\n")
         settings, own = read_section(file, line, rows)
         sites: dict[str, Site] = {}
         for name in settings.get("with", "").split():
-            sites |= {site.path: site for site in self._block(f"{file}:{line}", name).sites}
+            sites |= {site.path: site for site in self._block(f"{file}:{line}", name, within)}
         header = read_header(f"{file}:{line}", rows[0])
         return assemble(file, line, header, settings, list((sites | own).values()))
 
-    def _block(self, place: str, name: str) -> VocabularySection:
-        found = self.find("block", name)
+    def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[Site, ...]:
+        if name in within:
+            raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
+        found = self._find(("block", name), (*within, name))
         if not found:
-            known = ("block", name) in self._raw
-            wrong = f"[block {name}] includes itself" if known else f"there is no [block {name}]"
-            raise VocabularyError(f"{place}: with: {name}: {wrong}")
-        return found[0]
+            raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
+        return found[0].sites
 
 
 @lru_cache(maxsize=8)
@@ -232,8 +243,7 @@ def _more(extra: tuple[str, ...], packages: bool, builtin: Sequence[str]) -> dic
 
 def _text(name: str, path: str) -> str:
     try:
-        with open(path, encoding="utf-8-sig") as file:
-            return file.read()
+        return read_text(path)
     except OSError as error:
         raise VocabularyError(f"{name}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:

@@ -19,7 +19,8 @@ Everything the rewriters know, generated from `multibot_rewrite/rewriters/vocabu
 `python -m multibot_rewrite.rewriters.vocabulary > docs/plugins.md`.
 
 `declares` and `uses` name kinds, tried in order until one resolves; `keep` values are never renamed.
-A default is inserted where the element is absent and the default would be the same for every robot.
+A default is inserted where the element is absent, or put into an empty one that means the same, if it
+would be the same for every robot.
 Topics under *only a remap moves* get a remap rule unless the file has one.
 """
 

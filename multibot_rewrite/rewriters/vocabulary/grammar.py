@@ -38,7 +38,8 @@ VALUES = {
 }
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
-OPTIONS = ("form", "default", "when")
+OPTIONS = ("form", "default", "when", "empty")
+EMPTY = ("default", "model", "itself")
 FORMS = (
     "whole",
     "list",
@@ -55,6 +56,7 @@ FORMS = (
 )
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
+_ONE_STEP = lazy_compile(_STEP)
 _SWITCH = lazy_compile(rf"{_NAME}=[^\s=]+(?:=on)?")
 _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 
@@ -261,21 +263,34 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     form, default = options.get("form", "whole"), options.get("default", "")
     plain = kinds[0] if form == "whole" and kinds in (("link",), ("joint",)) else ""
     when = options.get("when", "")
+    empty = options.get("empty", "default" if kinds[0] == "namespace" else "itself")
     note = note.strip()
-    return Site(path, role, kinds, form, default, False, section, note, line, plain, when, file)
+    return Site(
+        path, role, kinds, form, default, False, section, note, line, plain, when, file, empty
+    )
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
     kinds = list(kinds)
     if not kinds:
         raise VocabularyError(f"{place}: {path} has no kind, use one of {', '.join(KINDS)}")
-    checks = ((kinds, KINDS, "kind"), (options, OPTIONS, "option"))
-    for words, allowed, what in (*checks, ([options.get("form", "whole")], FORMS, "form")):
+    checks = (
+        (kinds, KINDS, "kind"),
+        (options, OPTIONS, "option"),
+        ([options.get("form", "whole")], FORMS, "form"),
+        ([options.get("empty", "itself")], EMPTY, "empty="),
+    )
+    for words, allowed, what in checks:
         for word in words:
             if word not in allowed:
                 raise VocabularyError(
                     f"{place}: unknown {what} {word!r}, use one of {', '.join(allowed)}"
                 )
+
+
+def is_step(text: str) -> bool:
+    """Is this one step of a path, as a vocabulary file may have it?"""
+    return _ONE_STEP.fullmatch(text) is not None
 
 
 def split_path(path: str) -> tuple[list[str], str]:

@@ -2,6 +2,7 @@
 
 from multibot_rewrite.lint.rules.multirobot import (
     frames,
+    meeting,
     named_robots,
     namespaces,
     prefixes,
@@ -9,4 +10,4 @@ from multibot_rewrite.lint.rules.multirobot import (
     topics,
 )
 
-THEMES = (topics, namespaces, frames, resources, prefixes, named_robots)
+THEMES = (topics, namespaces, frames, resources, prefixes, named_robots, meeting)

@@ -14,6 +14,7 @@ from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import inserted, is_plain, tag_of
 from multibot_rewrite.model import Claim
 from multibot_rewrite.rewriters.switches import switched_off
+from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rosnames import split_remap
 
 
@@ -169,6 +170,5 @@ def tf_not_remapped(subject: Subject) -> Iterator[Problem]:
 
 
 def _moves_tf(plugin: _Element) -> bool:
-    texts = (it.text or "" for it in plugin.iter("remapping", "argument"))
-    rules = (split_remap(text.strip()) for text in texts)
+    rules = (split_remap(text_of(it)) for it in plugin.iter("remapping", "argument"))
     return any(it is not None and it.source.strip("/") == "tf" for it in rules)

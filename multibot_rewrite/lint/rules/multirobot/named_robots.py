@@ -194,27 +194,6 @@ def collision_number_unstable(subject: Subject) -> Iterator[Problem]:
             yield Problem(claim.element, message, claim.attribute, "use affix prefix")
 
 
-sensor_names_collide = rule(
-    "MB425",
-    "sensor-names-collide",
-    WARNING,
-    what="A plugin looks sensors up by bare name in the whole world, and the sensors have the same "
-    "names for all robots.",
-    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
-    "none if two have it: the second robot reads the first one's data, or nothing.",
-    fix="Use the layout both, which renames sensors for each robot.",
-    bad='<link name="a"/>\n'
-    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
-    '<ros2_control name="h" type="system">\n'
-    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
-    '  <sensor name="imu"/>\n'
-    "</ros2_control>\n",
-    good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
-    line=3,
-    options={"robots": TWO, "naming": AS_WRITTEN},
-)(partial(_if_robots, _by_naming(hazards.bare_lookups)))
-
-
 @rule(
     "MB426",
     "process-wide-rule",

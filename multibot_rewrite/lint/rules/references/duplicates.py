@@ -18,6 +18,7 @@ from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_link
 from multibot_rewrite.lint.rules.references.shared import ARM, IMU, a_plugin, a_system, name_of
 from multibot_rewrite.model import Claim
+from multibot_rewrite.rewriters.text import text_at
 
 if TYPE_CHECKING:
     from multibot_rewrite.sources.trace import Origin
@@ -68,7 +69,7 @@ def _cause(subject: Subject, claim: Claim, first: Claim) -> object:
 def _origin(subject: Subject, start: int) -> Origin | None:
     if not subject.origins:
         return None
-    return subject.origins[bisect_left(subject.document.starts, start)]
+    return subject.origins.of(bisect_left(subject.document.starts, start))
 
 
 @rule(
@@ -181,7 +182,7 @@ def one_node_twice(subject: Subject) -> Iterator[Problem]:
     """Plugins whose name is that of a node."""
     nodes = [it for it in subject.inventory.claims if it.site.kinds == ("node",)]
     found = (
-        ((it.element.findtext("ros/namespace", "").strip("/ "), it.value.strip()), it.element)
+        ((text_at(it.element, "ros/namespace").strip("/"), it.value.strip()), it.element)
         for it in nodes
         if it.site.path == "@name" and it.element.find("ros") is not None
     )

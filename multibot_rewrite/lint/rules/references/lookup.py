@@ -12,6 +12,7 @@ from multibot_rewrite.checks.references import Loose, doubtful, loose_ends, unde
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim
+from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
 
 # Its joints are those of the simulated PROTO, not of the URDF.
@@ -61,8 +62,7 @@ def _elsewhere(loose: Loose, inventory: Inventory) -> bool:
     if claim.site.section != "element ros2_control":
         return False
     system = next(claim.element.iterancestors("ros2_control"), None)
-    class_ = "" if system is None else system.findtext("hardware/plugin", "")
-    return class_.strip().startswith(WEBOTS)
+    return system is not None and text_at(system, "hardware/plugin").startswith(WEBOTS)
 
 
 def undeclared(code: str, subject: Subject) -> Iterator[Problem]:

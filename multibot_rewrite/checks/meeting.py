@@ -1,0 +1,66 @@
+"""What all robots of a description would share, by the second reading of what was written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import islice
+
+from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.model import InputError, ProofError
+from multibot_rewrite.naming import TOPIC_KINDS, Naming
+from multibot_rewrite.readback.meeting import same_for_all
+from multibot_rewrite.readback.reading import FRAME, NODE, RuntimeName, read
+from multibot_rewrite.rewriters.vocabulary import Vocabulary
+from multibot_rewrite.steps.apply import fill
+from multibot_rewrite.steps.document import Document
+
+# Stands for a robot: a word that is in no file and no vocabulary.
+TWIN = "multibot_twin"
+SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
+SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP})
+
+
+def shared_by_all(
+    document: Document, pieces: list[bytes], naming: Naming, vocabulary: Vocabulary
+) -> Iterator[Problem]:
+    """The names that every robot of a description would have, each at its element in the source.
+
+    ``pieces`` are the text between the robot's names: a name in the running system that does not
+    hold the robot's is the same for all. Raises ProofError for a text that is no XML.
+    """
+    robot = TWIN
+    while robot.encode() in document.source:
+        robot += "x"
+    try:
+        reading = read(fill(pieces, robot), document.file, vocabulary)
+    except InputError as error:
+        raise ProofError(str(error)) from None
+    for it in same_for_all(reading, robot, naming):
+        element = next(islice(document.root.iter(it.tag), it.number, None), document.root)
+        yield Problem(element, _message(it), None, _hint(it), (), code_of(it))
+
+
+def code_of(name: RuntimeName) -> str:
+    """The rule that a shared name of this kind is about."""
+    if name.kind in TOPIC_KINDS:
+        return SHARED_TOPIC
+    return {NODE: SHARED_NODE, FRAME: SHARED_FRAME}.get(name.kind, SHARED_LOOKUP)
+
+
+def _message(name: RuntimeName) -> str:
+    if code_of(name) == SHARED_LOOKUP:
+        return (
+            f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
+            "it may find that of another robot"
+        )
+    return f"all robots would have the {name.kind} {name.name!r} ({name.path})"
+
+
+def _hint(name: RuntimeName) -> str:
+    if name.kind in TOPIC_KINDS:
+        return "set a topic that is renamed for each robot, or allow it with --shared-topics"
+    if name.kind == NODE:
+        return "give the plugin a namespace or another name"
+    if code_of(name) == SHARED_LOOKUP:
+        return f"use --layout both, which renames {name.kind}s for each robot"
+    return "set the frame for each robot, or allow it with --shared-frames"

@@ -1,0 +1,35 @@
+"""A robot of a fleet, with all that its rewritten description says."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from multibot_rewrite.checks.meeting import SHARED_CODES
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.library import Rewrite
+from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.steps.collect import Inventory, collect
+from multibot_rewrite.steps.document import Document, read_document
+
+
+class Member(NamedTuple):
+    """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
+    holds and starts; ``source`` is the description before, ``shared`` are findings about names that
+    any two robots of it would have.
+    """
+
+    robot: str
+    tag: str
+    inventory: Inventory
+    reading: Reading
+    source: Document
+    shared: tuple[Finding, ...]
+
+
+def member(source: Rewrite, data: bytes, tag: str) -> Member:
+    """The robot of a rewrite; ``data`` is its final description."""
+    document, tree = source.template.inventory.document, source.template.tree
+    written = collect(read_document(data, document.file), tree)
+    reading = read(data, document.file, tree.vocabulary)
+    shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
+    return Member(source.robot, tag, written, reading, document, shared)

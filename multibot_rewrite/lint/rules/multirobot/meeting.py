@@ -1,0 +1,127 @@
+"""What the named robots would share in the running system, as the programs read the rewritten file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+
+from multibot_rewrite.checks import meeting
+from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.findings.finding import ERROR, WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lint.facts.memo import memoized
+from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.lint.rules.multirobot.shared import APART, AS_WRITTEN, TWO
+from multibot_rewrite.steps.apply import cut
+from multibot_rewrite.steps.plan import make_plan
+
+
+@memoized
+def _shared(subject: Subject) -> tuple[Problem, ...]:
+    """What a rewrite for the named robots would report; nothing where it would be refused."""
+    if not subject.settings.robots:
+        return ()
+    naming, document = subject.settings.naming, subject.document
+    plan = make_plan(subject.inventory, naming)
+    if any(it.level == ERROR for it in plan.findings):
+        return ()
+    pieces = cut(document.source, plan.edits)
+    return tuple(meeting.shared_by_all(document, pieces, naming, subject.tree.vocabulary))
+
+
+def _of_code(code: str, subject: Subject) -> Iterator[Problem]:
+    return (it for it in _shared(subject) if it.code == code)
+
+
+sensor_names_collide = rule(
+    meeting.SHARED_LOOKUP,
+    "lookup-in-the-world",
+    WARNING,
+    what="A plugin looks a sensor, link or light up by its bare name in the whole world, and all "
+    "robots have it under the same name.",
+    why="gz_ros2_control takes the first IMU with that name; the realsense and kobuki plugins find "
+    "none if two have it: the second robot reads the first one's data, or nothing.",
+    fix="Use the layout both, which renames sensors for each robot.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>\n'
+    '<ros2_control name="h" type="system">\n'
+    "  <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>\n"
+    '  <sensor name="imu"/>\n'
+    "</ros2_control>\n",
+    good='<link name="a"/><gazebo reference="a"><sensor name="imu" type="imu"/></gazebo>',
+    line=3,
+    options={"robots": TWO, "naming": AS_WRITTEN},
+)(partial(_of_code, meeting.SHARED_LOOKUP))
+
+shared_topic = rule(
+    meeting.SHARED_TOPIC,
+    "shared-topic",
+    WARNING,
+    what="After a rewrite all robots would still have the same topic or service.",
+    why="The nodes of all robots use it: one command moves all robots, or their data is mixed. "
+    "A rewrite leaves a topic as it is where it holds a placeholder, or where the plugin takes no "
+    "parameter or remap rule for it.",
+    fix="Write a topic that can be renamed for each robot, give the plugin a namespace, or allow it "
+    "with --shared-topics.",
+    bad='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="lidar" type="gpu_lidar">\n'
+    "    <topic>{name}/scan</topic>\n"
+    "  </sensor>\n"
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    '<gazebo reference="a">\n'
+    '  <sensor name="lidar" type="gpu_lidar">\n'
+    "    <topic>scan</topic>\n"
+    "  </sensor>\n"
+    "</gazebo>\n",
+    line=3,
+    options={"robots": TWO, "naming": APART},
+)(partial(_of_code, meeting.SHARED_TOPIC))
+
+shared_node = rule(
+    meeting.SHARED_NODE,
+    "shared-node",
+    WARNING,
+    what="After a rewrite the node of a plugin would have the same full name for all robots.",
+    why="Nodes of one name cannot be told apart: parameters and services of the wrong one are "
+    "called, and a launch file's parameters reach both.",
+    fix="Give the plugin a namespace without a placeholder, or another name.",
+    bad="<gazebo>\n"
+    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><namespace>{name}</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <ros><namespace>demo</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
+    options={"robots": TWO, "naming": APART},
+)(partial(_of_code, meeting.SHARED_NODE))
+
+shared_frame = rule(
+    meeting.SHARED_FRAME,
+    "shared-frame",
+    WARNING,
+    what="After a rewrite all robots would still have the same frame, in a layout that gives each "
+    "robot its own frames.",
+    why="The transforms of all robots meet in one frame: it has two parents, or it jumps between "
+    "the robots.",
+    fix="Write the frame without a placeholder, or allow it with --shared-frames.",
+    bad='<link name="a"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <odometry_frame>__odom__</odometry_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="drive" filename="libgazebo_ros_diff_drive.so">\n'
+    "    <odometry_frame>odom</odometry_frame>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
+    options={"robots": TWO, "naming": APART},
+)(partial(_of_code, meeting.SHARED_FRAME))

@@ -1,0 +1,4 @@
+"""The second reading: a description as the programs that load it read it, and what they run.
+
+It shares no reader with the rewrite. What plugins mean is the vocabulary, the one table of both.
+"""

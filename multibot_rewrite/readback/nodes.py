@@ -1,0 +1,219 @@
+"""A plugin -> the ROS node it starts, with its endpoints, rules, frames; topics of other plugins.
+
+Sources: gazebo_ros_pkgs ros2 gazebo_ros/src/node.cpp (a <ros> hides the plugin's own settings, the
+plugin's name is the node's, an empty namespace is the root), gz_ros2_control_plugin.cpp.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterable, Iterator
+from typing import NamedTuple
+
+from lxml.etree import _Element
+
+from multibot_rewrite.model import Site, UsageError
+from multibot_rewrite.naming import TOPIC_KINDS
+from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
+from multibot_rewrite.readback.xml import child_text, text_of
+from multibot_rewrite.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, parse_remap, resolve_bound
+
+TOPIC, SERVICE = "topic", "service"
+ROLES = ("publishes", "subscribes", "serves")
+
+
+class ReadEndpoint(NamedTuple):
+    """A topic or service of a node: its name in the code or in a parameter, and in the graph.
+
+    ``full`` is empty where rcl refuses the name; ``off`` are parameters that would turn it on.
+    """
+
+    kind: str
+    role: str
+    name: str
+    full: str
+    parameter: str = ""
+    off: str = ""
+
+
+class ReadRule(NamedTuple):
+    """A remap rule of a plugin, and its line in the description that was read."""
+
+    rule: RemapRule
+    line: int
+
+
+class ReadNode(NamedTuple):
+    """The node of a plugin, which is the ``number``-th of the file.
+
+    ``name`` and ``namespace`` are those before its ``rules``; ``stems`` are parameters with what
+    further topics are below; ``frames`` are parameters with the frames they hold, ``sends`` the
+    parameters of parent and child of a transform it publishes.
+    """
+
+    section: VocabularySection
+    number: int
+    name: str
+    namespace: str
+    rules: tuple[ReadRule, ...]
+    endpoints: tuple[ReadEndpoint, ...]
+    stems: tuple[tuple[str, str], ...]
+    frames: tuple[tuple[str, str], ...]
+    sends: tuple[tuple[str, str], ...]
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+
+def node_of(
+    plugin: _Element, number: int, section: VocabularySection, links: Container[str]
+) -> ReadNode | None:
+    """The ROS 2 node that a plugin starts; None where it starts none.
+
+    ``links`` are those of the description.
+    """
+    paths = {site.path for site in section.sites}
+    if "ros/namespace" not in paths:
+        return None
+    home = plugin.find("ros")
+    if home is None and "namespace" in paths:
+        home = plugin
+    name = _node_name(plugin, section)
+    namespace = "/" + ("" if home is None else child_text(home, "namespace") or "").strip("/")
+    rules = tuple(() if home is None else _rules(home))
+    bound = _bound(name, namespace, [it.rule for it in rules])
+    frames = tuple(_frames(plugin, section))
+    return ReadNode(
+        section,
+        number,
+        name,
+        namespace,
+        rules,
+        tuple(_endpoints(plugin, section, bound, rules)),
+        tuple(_stems(plugin, section, bound)),
+        frames,
+        tuple(_sends(plugin, section, frames, links)),
+    )
+
+
+def _node_name(plugin: _Element, section: VocabularySection) -> str:
+    """A Gazebo Classic plugin's own name, or that of the controller manager it loads."""
+    if any(site.path == "@name" for site in section.sites if site.role == "declares"):
+        return plugin.get("name", "").strip()
+    sites = (site for site in section.sites if site.kinds[:1] == ("node",) and site.default)
+    named = (value for site in sites for value in values_of(plugin, site))
+    return next(named, "") or section.names[0].replace("-", "_")
+
+
+def _rules(home: _Element) -> Iterator[ReadRule]:
+    for element in home.iterfind("remapping"):
+        rule = parse_remap(text_of(element))
+        if rule is not None:
+            line: int = element.sourceline or 0  # type: ignore[assignment]
+            yield ReadRule(rule, line)
+
+
+def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode | None:
+    try:
+        return bind(name, namespace, rules)
+    except UsageError:
+        return None
+
+
+def _full(name: str, kind: str, bound: BoundNode | None) -> str:
+    try:
+        return resolve_bound(name, kind, bound) if bound else ""
+    except UsageError:
+        return ""
+
+
+def _endpoints(
+    plugin: _Element,
+    section: VocabularySection,
+    bound: BoundNode | None,
+    rules: tuple[ReadRule, ...],
+) -> Iterator[ReadEndpoint]:
+    off = switched_off(plugin, section)
+    for role in ROLES:
+        kind = SERVICE if role == "serves" else TOPIC
+        for name in getattr(section, role):
+            yield ReadEndpoint(kind, role, name, _full(name, kind, bound), "", off.get(name, ""))
+    for site in filter(_holds_topic, section.sites):
+        kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
+        for name in values_of(plugin, site):
+            yield ReadEndpoint(kind, "", name, _full(name, kind, bound), site.path)
+    # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
+    for source in (it.rule.source for it in rules):
+        if source.startswith("~"):
+            yield ReadEndpoint(TOPIC, "", source, _full(source, TOPIC, bound))
+
+
+def _holds_topic(site: Site) -> bool:
+    """Is its value a topic or service? Where a word topics are made of is set, they are below it."""
+    whole = site.form == "whole" and site.role != "keep"
+    return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
+
+
+def _frames(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+    for site in section.sites:
+        if site.form == "whole" and site.kinds[:1] == ("frame",):
+            for value in values_of(plugin, site):
+                yield site.path, value
+
+
+def _stems(
+    plugin: _Element, section: VocabularySection, bound: BoundNode | None
+) -> Iterator[tuple[str, str]]:
+    for site in section.sites:
+        if site.form == "whole" and site.kinds[:1] == ("stem",):
+            for value in values_of(plugin, site):
+                yield site.path, _full(value, TOPIC, bound)
+
+
+def _sends(
+    plugin: _Element,
+    section: VocabularySection,
+    frames: tuple[tuple[str, str], ...],
+    links: Container[str],
+) -> Iterator[tuple[str, str]]:
+    """Of a plugin that publishes tf: from its odometry frame to a link."""
+    own = [path for path, frame in frames if frame not in links]
+    base = [path for path, frame in frames if frame in links]
+    if "/tf" in section.publishes and own and base and sends_odometry(plugin, section):
+        yield own[0], base[0]
+
+
+def resolved(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+    """Kind, name and parameter of the topics of something that is no ROS 2 node.
+
+    Names are below the namespace that it puts in front, and below the word that topics are made of;
+    none where those come from the model, whose name each robot has for itself.
+    """
+    above = _namespace(host, section)
+    stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
+    words = [(site.path, value) for site in stems for value in values_of(host, site)]
+    if above is not None:
+        yield from ((TOPIC, _joined(above, word), path) for path, word in words)
+    for site in filter(_holds_topic, section.sites):
+        kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
+        below = above
+        if site.kinds[0] == "subtopic" and stems and above is not None:
+            below = _joined(above, words[0][1]) if words else None
+        for name in values_of(host, site):
+            if name.startswith("/"):
+                yield kind, name, site.path
+            elif below is not None:
+                yield kind, _joined(below, name), site.path
+
+
+def _namespace(host: _Element, section: VocabularySection) -> str | None:
+    """What the plugin puts in front of relative names; None where that is the model's name."""
+    sites = [it for it in section.sites if it.kinds[:1] == ("namespace",) and it.form == "whole"]
+    values = [value for site in sites for value in values_of(host, site)]
+    return values[0] if values else None if sites else "/"
+
+
+def _joined(above: str, name: str) -> str:
+    return f"/{above.strip('/')}/{name.strip('/')}".replace("//", "/")

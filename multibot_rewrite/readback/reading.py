@@ -1,0 +1,155 @@
+"""Description bytes -> everything that runs because of it, by the names it has then."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator
+from typing import NamedTuple
+
+from lxml.etree import _Element
+
+from multibot_rewrite.readback.nodes import TOPIC, ReadNode, node_of, resolved
+from multibot_rewrite.readback.parameters import values_of
+from multibot_rewrite.readback.sections import hardware_section, plugin_section, sensor_sections
+from multibot_rewrite.readback.xml import read_xml
+from multibot_rewrite.rewriters.vocabulary import Vocabulary, VocabularySection
+
+NODE, FRAME, NAMESPACE = "node", "frame", "namespace"
+# Elements besides plugins and sensors that have a topic, by what holds it.
+WITH_TOPICS = (
+    ("gazebo", "particle_emitter"),
+    ("sdf.link", "particle_emitter"),
+    ("webots", "webots"),
+)
+
+
+class RuntimeName(NamedTuple):
+    """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
+    in the whole world), its text, and where it comes from: the ``number``-th element with this
+    ``tag``, and ``path``, the parameter."""
+
+    kind: str
+    name: str
+    tag: str
+    number: int
+    path: str
+
+
+class Reading(NamedTuple):
+    """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
+    as its number among the plugins and its library."""
+
+    nodes: tuple[ReadNode, ...]
+    names: tuple[RuntimeName, ...]
+    unknown: tuple[tuple[int, str], ...]
+
+
+class _Host(NamedTuple):
+    """An element that something runs for, and what is known about it."""
+
+    element: _Element
+    number: int
+    section: VocabularySection
+
+
+def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
+    """Read a description as the programs do that load it; raises InputError."""
+    root = read_xml(data, file)
+    hosts: list[_Host] = []
+    unknown: list[tuple[int, str]] = []
+    for number, plugin in enumerate(root.iter("plugin")):
+        # The class of a ros2_control system, not a plugin of the simulator.
+        if not plugin.attrib:
+            continue
+        section, known = plugin_section(plugin, vocabulary)
+        if not known:
+            unknown.append((number, plugin.get("filename", "") or plugin.get("name", "")))
+        if section is not None:
+            hosts.append(_Host(plugin, number, section))
+    links = [*_links(root)]
+    known_links = frozenset(it.name for it in links)
+    nodes = tuple(node for it in hosts if (node := node_of(*it, known_links)) is not None)
+    with_node = {it.number for it in nodes}
+    names = [*links, *_of_nodes(nodes), *_of_plugins(root, hosts, with_node, vocabulary)]
+    names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
+    names += _of_elements(root, vocabulary)
+    return Reading(nodes, tuple(names), tuple(unknown))
+
+
+def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
+    for node in nodes:
+        yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
+        for it in node.endpoints:
+            if not it.off and it.full:
+                yield RuntimeName(it.kind, it.full, "plugin", node.number, it.parameter or it.name)
+        for path, full in node.stems:
+            yield RuntimeName(TOPIC, full, "plugin", node.number, path)
+
+
+def _of_plugins(
+    root: _Element, hosts: list[_Host], nodes: Container[int], vocabulary: Vocabulary
+) -> Iterator[RuntimeName]:
+    for host in hosts:
+        if host.number not in nodes:
+            yield from _topics(*host, "plugin")
+        yield from _frames(host, "plugin")
+        yield from _lookups(root, host, vocabulary)
+
+
+def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    for number, system in enumerate(root.iter("ros2_control")):
+        section = hardware_section(system, vocabulary)
+        if section is not None:
+            yield from _topics(system, number, section, "ros2_control")
+            yield from _frames(_Host(system, number, section), "ros2_control")
+            yield from _lookups(root, _Host(system, number, section), vocabulary)
+
+
+def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    for number, sensor in enumerate(root.iter("sensor")):
+        for section in sensor_sections(sensor, vocabulary):
+            yield from _topics(sensor, number, section, "sensor")
+
+
+def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    for tag, held in WITH_TOPICS:
+        if next(root.iter(held), None) is None:
+            continue
+        (section,) = vocabulary.find("element", tag)
+        for number, element in enumerate(root.iter(tag.rpartition(".")[2])):
+            yield from _topics(element, number, section, element.tag)
+
+
+def _links(root: _Element) -> Iterator[RuntimeName]:
+    """The links of the robot and of its models: frames that robot_state_publisher sends."""
+    for number, link in enumerate(root.iter("link")):
+        parent = link.getparent()
+        if parent is not None and parent.tag in ("robot", "model") and link.get("name"):
+            yield RuntimeName(FRAME, link.get("name", "").strip(), "link", number, "@name")
+
+
+def _topics(
+    host: _Element, number: int, section: VocabularySection, tag: str
+) -> Iterator[RuntimeName]:
+    """Topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
+    for kind, name, path in resolved(host, section):
+        yield RuntimeName(kind, name, tag, number, path)
+
+
+def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
+    for site in host.section.sites:
+        if site.role != "keep" and site.form == "whole" and site.kinds[0] == FRAME:
+            for value in values_of(host.element, site):
+                yield RuntimeName(FRAME, value, tag, host.number, site.path)
+
+
+def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
+    """Names that a plugin or system looks up in the whole world, of things that this file has."""
+    kind, tag = host.section.unique, str(host.element.tag)
+    if not kind:
+        return
+    there = {element.get("name") for element in root.iter(kind)}
+    (every,) = vocabulary.find("element", tag)
+    for site in (*every.sites, *host.section.sites):
+        if site.role != "keep" and kind in site.kinds:
+            for value in there.intersection(values_of(host.element, site)):
+                yield RuntimeName(kind, str(value), tag, host.number, site.path)

@@ -1,0 +1,168 @@
+"""Which argument of a xacro goes into which names: found by expanding it with another word for each."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.access import BOUNDED, Reach
+from multibot_rewrite.sources.expand import expand, expand_traced
+from multibot_rewrite.sources.own_names import MARKS, ROBOT
+from multibot_rewrite.sources.read import read_file
+from multibot_rewrite.steps.collect import Inventory, collect
+from multibot_rewrite.steps.document import read_document, slot_values
+
+# More arguments, or longer, and the rest is not tried.
+MOST, SECONDS = 100, 60.0
+PREFIX, POSTFIX, WHOLE, INSIDE = "prefix", "postfix", "whole", "inside"
+_MARK = MARKS[0]
+_SEPARATORS = "/_-."
+_ARGUMENT = "{*}arg"
+
+
+class Use(NamedTuple):
+    """What an argument is in names of one kind: ``how`` is prefix, postfix, whole or inside.
+
+    ``separator`` is what the file itself puts between the argument and the rest; ``names`` of the
+    ``total`` names of the kind have the argument, ``example`` is one, with ``{robot}`` in its place.
+    """
+
+    kind: str
+    how: str
+    separator: str
+    names: int
+    total: int
+    example: str
+
+
+class Argument(NamedTuple):
+    """An argument, its value where none is given, and its uses in names.
+
+    ``others`` are values with it that are no known name. ``fault`` is why a word is not taken: the
+    argument is a number, a switch, a file or one of some words.
+    """
+
+    name: str
+    default: str
+    uses: tuple[Use, ...]
+    others: int
+    fault: str
+
+    @property
+    def value(self) -> str:
+        """What gives every robot its own names by this argument; empty where it is not for that.
+
+        It is for that if it is empty by default, and goes before or behind names or is a namespace.
+        """
+        ends = {use.how: use.separator for use in self.uses if use.how in (PREFIX, POSTFIX)}
+        spaces = any((use.kind, use.how) == ("namespace", WHOLE) for use in self.uses)
+        if self.default.strip(_SEPARATORS) or not (ends or spaces):
+            return ""
+        before = "_" if ends.get(POSTFIX) == "" else ""
+        after = "_" if ends.get(PREFIX) == "" else ""
+        return f"{before}{ROBOT}{after}"
+
+
+class XacroArguments(NamedTuple):
+    """The arguments of a file, in the order in which they are declared; ``untried`` were too many."""
+
+    file: str
+    arguments: tuple[Argument, ...]
+    untried: tuple[str, ...]
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """``NAME:=VALUE`` for every argument that names robots."""
+        return tuple(f"{it.name}:={it.value}" for it in self.arguments if it.value)
+
+
+def find_arguments(
+    path: str,
+    given: Mapping[str, str],
+    tree: Tree,
+    clock: Callable[[], float] = time.monotonic,
+    reach: Reach = BOUNDED,
+) -> XacroArguments:
+    """The arguments of a xacro file; ``given`` are values for some. Raises InputError where the file
+    does not expand with these."""
+    end = clock() + SECONDS
+    read = expand_traced(path, read_file(path), given, None, reach).sources
+    declared = {**_declared(read), **given}
+    found = []
+    for name, default in list(declared.items())[:MOST]:
+        if clock() > end:
+            break
+        found.append(_argument(path, given, name, default, tree, reach))
+    return XacroArguments(path, tuple(found), tuple(declared)[len(found) :])
+
+
+def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:
+    """The ``<xacro:arg>`` of all files with their defaults: the first one counts, as for xacro."""
+    found: dict[str, str] = {}
+    for file, data in sources.items():
+        for element in read_document(data, file).root.iter(_ARGUMENT):
+            if "xacro}" in str(element.tag):
+                found.setdefault(element.get("name", ""), element.get("default", ""))
+    return found
+
+
+def _argument(
+    path: str, given: Mapping[str, str], name: str, default: str, tree: Tree, reach: Reach
+) -> Argument:
+    try:
+        data = expand(path, {**given, name: _MARK}, reach=reach)
+        inventory = collect(read_document(data, path), tree)
+    except InputError as error:
+        return Argument(name, default, (), 0, _reason(error))
+    values = [it for it in slot_values(inventory.document.root) if _MARK in it]
+    claimed = sum(_MARK in claim.value for claim in inventory.claims)
+    return Argument(name, default, tuple(_uses(inventory)), max(len(values) - claimed, 0), "")
+
+
+def _reason(error: InputError) -> str:
+    """What xacro said, without place and advice."""
+    text = str(error)
+    return text.rpartition("xacro failed")[2].partition(": ")[2].partition("; ")[0] or text
+
+
+def _uses(inventory: Inventory) -> Iterator[Use]:
+    names = dict.fromkeys(
+        (it.kind or it.kinds[0], it.text) for found in inventory.names for it in found
+    )
+    totals = Counter(kind for kind, _ in names)
+    groups: dict[tuple[str, str, str], list[str]] = {}
+    for kind, text in names:
+        if _MARK in text:
+            groups.setdefault((kind, *_how(text)), []).append(text)
+    for (kind, how, separator), texts in groups.items():
+        example = texts[0].replace(_MARK, ROBOT)
+        yield Use(kind, how, separator, len(texts), totals[kind], example)
+
+
+def _how(text: str) -> tuple[str, str]:
+    """Where in a name the argument is, and the separator beside it."""
+    before, _, after = text.strip("/").partition(_MARK)
+    if not before and not after:
+        return WHOLE, ""
+    if before and after:
+        return INSIDE, ""
+    beside = after[:1] or before[-1:]
+    return (PREFIX if after else POSTFIX), beside if beside in _SEPARATORS else ""
+
+
+def as_json(found: XacroArguments) -> dict[str, object]:
+    """The report as ``--form json`` writes it."""
+    return {
+        "file": found.file,
+        "arguments": [_argument_json(it) for it in found.arguments],
+        "untried": found.untried,
+        "for_robots": found.words,
+    }
+
+
+def _argument_json(it: Argument) -> dict[str, object]:
+    return {**it._asdict(), "uses": [use._asdict() for use in it.uses], "for_robots": it.value}

@@ -1,0 +1,30 @@
+"""The text of an element as its consumers read it.
+
+TinyXML-2, which urdfdom, ros2_control and sdformat read with, takes the first text and skips comments
+before it (``XMLElement::GetText``, since 8.1); white space alone is no text, and sdformat trims it
+around a text (Param.cc).
+"""
+
+from __future__ import annotations
+
+from lxml import etree
+
+
+def text_of(element: etree._Element) -> str:
+    """The text in force, white space around it aside; empty where there is none."""
+    text = (element.text or "").strip()
+    if text or not len(element):
+        return text
+    for child in element:
+        if not isinstance(child, etree._Comment):
+            break
+        text = (child.tail or "").strip()
+        if text:
+            return text
+    return ""
+
+
+def text_at(element: etree._Element, path: str) -> str:
+    """The text of the first element at ``path``; empty where there is none."""
+    found = element.find(path)
+    return "" if found is None else text_of(found)

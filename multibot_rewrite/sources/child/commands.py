@@ -1,0 +1,9 @@
+"""What the process that forks children is told: start one (with a socket for it), end one."""
+
+from __future__ import annotations
+
+import struct
+
+# A letter and the number of a process; the answer is such a number, or that of a signal.
+COMMAND, REPLY = struct.Struct(">ci"), struct.Struct(">i")
+START, END = b"s", b"e"

@@ -1,0 +1,47 @@
+"""The frames that a child and its parent send each other: a letter, a length, and that many bytes.
+
+A child asks for what it needs (QUESTION), one thing at a time, and gets a VALUE or a REFUSAL. Its
+result is a REPORT, and for an expansion the TEXT, and the numbers of ORIGINS and CALLS.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Mapping
+
+HEAD = struct.Struct(">cI")
+REQUEST, VALUE, REFUSAL = b"R", b"V", b"X"
+QUESTION, REPORT, TEXT, ORIGINS, CALLS = b"Q", b"J", b"T", b"O", b"C"
+# What a child may ask for.
+READ, GLOB, FIND, ENVIRONMENT = "read", "glob", "find", "env"
+# The fences around a child.
+LIMITS, LANDLOCK, SECCOMP, AUDIT = "limits", "landlock", "seccomp", "audit"
+FENCES = (LIMITS, LANDLOCK, SECCOMP, AUDIT)
+# How long each frame of a child may be; a larger one is a lie.
+MOST_TEXT = 16 * 2**20
+LONGEST: Mapping[bytes, int] = {
+    QUESTION: 2**16,
+    REPORT: 2**20,
+    TEXT: MOST_TEXT,
+    ORIGINS: 2**25,
+    CALLS: 2**25,
+}
+# The signed integers of ORIGINS and CALLS.
+NUMBER = "i"
+
+
+class GarbageError(Exception):
+    """What came is no frame that was agreed on."""
+
+
+def framed(kind: bytes, data: bytes) -> bytes:
+    """A frame as it is sent."""
+    return HEAD.pack(kind, len(data)) + data
+
+
+def received(read: Callable[[int], bytes], longest: Mapping[bytes, int]) -> tuple[bytes, bytes]:
+    """The next frame; ``read`` gives as many bytes as it is asked for. Raises GarbageError."""
+    kind, length = HEAD.unpack(read(HEAD.size))
+    if length > longest.get(kind, -1):
+        raise GarbageError
+    return kind, read(length)

@@ -1,0 +1,32 @@
+"""Calls of Linux that Python has no function for."""
+
+from __future__ import annotations
+
+import ctypes
+import signal
+import sys
+
+_SET_PDEATHSIG, _SET_DUMPABLE, _SET_NO_NEW_PRIVS = 1, 4, 38
+
+SYSTEM = ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
+
+
+def control(*arguments: object) -> bool:
+    """``prctl``: is it done?"""
+    numbers = [ctypes.c_ulong(it) if isinstance(it, int) else it for it in arguments[1:]]
+    return SYSTEM is not None and SYSTEM.prctl(arguments[0], *numbers) == 0
+
+
+def no_new_privileges() -> bool:
+    """Without it an unprivileged process may not fence itself in."""
+    return control(_SET_NO_NEW_PRIVS, 1, 0, 0, 0)
+
+
+def undumpable() -> bool:
+    """Other processes of this user cannot read the memory of this one, nor its files in /proc."""
+    return control(_SET_DUMPABLE, 0, 0, 0, 0)
+
+
+def die_with_parent() -> bool:
+    """The kernel kills this process when its parent ends."""
+    return control(_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)

@@ -1,0 +1,197 @@
+"""What anybody may write is read within bounds of size, depth and expansion, by every reader."""
+
+from __future__ import annotations
+
+import ast
+import json
+import os
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+import yaml
+
+import multibot_rewrite
+from multibot_rewrite import bounded
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.fleets.manifest import read_manifest
+from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.snapshot import from_json
+from multibot_rewrite.lint.config.baseline import read_baseline
+from multibot_rewrite.model import InputError, MultibotError
+from multibot_rewrite.remap.stacks import user_stack
+from multibot_rewrite.remap.yaml_with_lines import read_yaml_with_lines
+from multibot_rewrite.rewriters.vocabulary import load_vocabulary
+from multibot_rewrite.sources.read import read_file
+
+PACKAGE = Path(multibot_rewrite.__file__).parent
+Reader = Callable[[str], object]
+
+
+def bomb(levels: int, width: int = 10) -> str:
+    """Lists of aliases of lists: ``width`` to the power of ``levels`` words in the end."""
+    lines = [f"a0: &a0 [{', '.join('x' * width)}]"]
+    for at in range(1, levels):
+        lines.append(f"a{at}: &a{at} [{', '.join([f'*a{at - 1}'] * width)}]")
+    return "\n".join(lines) + "\n"
+
+
+YAML_FAULTS = {
+    "flow lists": ("[" * 100_000, "nested deeper than 100 levels"),
+    "flow mappings": ("{a: " * 100_000, "nested deeper than 100 levels"),
+    "block lists": ("- " * 3_000 + "a", "nested deeper than 100 levels"),
+    "complex keys": ("? " * 3_000 + "a", "nested deeper than 100 levels"),
+    "block mappings": (
+        "\n".join(f"{' ' * at}a:" for at in range(3_000)),
+        "nested deeper than 100 levels",
+    ),
+    "lists at their keys": (
+        "\n".join(f"{' ' * at}- a:" for at in range(0, 2_000, 2)),
+        "nested deeper than 100 levels",
+    ),
+    "flow in quotes and comments": (
+        "".join(f"# ]]]]]]\n['{']' * 9}',\n" for _ in range(101)),
+        "nested deeper than 100 levels",
+    ),
+    "bomb": (bomb(9), "aliases stand for more than 100,000 values"),
+    "recursive list": ("a: &a [*a]", "the alias is inside the value that it repeats"),
+    "recursive key": ("a: &a\n  b:\n  - *a\n", "the alias is inside the value that it repeats"),
+    "recursive merge": ("a: &a\n  <<: *a\n", "the alias is inside the value that it repeats"),
+}
+YAML_READERS: dict[str, Reader] = {
+    "parameters, rviz, bridge, moveit, fleet": lambda text: read_yaml(text.encode(), "f"),
+    "plan": lambda text: from_yaml(text.encode(), "f"),
+    "nodes": lambda text: read_yaml_with_lines(text, "f"),
+}
+
+
+@pytest.mark.parametrize("fault", YAML_FAULTS)
+@pytest.mark.parametrize("reader", YAML_READERS)
+def test_every_yaml_reader_has_the_bounds(reader: str, fault: str) -> None:
+    text, message = YAML_FAULTS[fault]
+    with pytest.raises(MultibotError) as caught:
+        YAML_READERS[reader](text)
+    assert str(caught.value).startswith("f:") and message in str(caught.value)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 300
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        pytest.param("[" * 100 + "]" * 100, id="at-the-limit"),
+        pytest.param(bomb(4), id="few-aliases"),
+        pytest.param("a: &a [1]\nb: *a\nc: &a [2]\nd: [*a]\n", id="an-anchor-again"),
+        pytest.param("[a, [b]]\n" + "# [[[[ {{{{ & *\n" * 99, id="brackets-in-comments"),
+        pytest.param("\n".join(f"- [[{at}]]" for at in range(999)), id="many-lists"),
+        pytest.param(" " * 300 + "a: 1", id="far-right"),
+        pytest.param("*x", id="unknown-anchor"),
+    ],
+)
+def test_what_is_within_the_bounds_is_read_as_before(text: str) -> None:
+    def read(load: Callable[[str], object]) -> object:
+        try:
+            return load(text)
+        except yaml.YAMLError as error:
+            return str(error)
+
+    assert read(bounded.load_yaml) == read(partial(yaml.load, Loader=yaml.CSafeLoader))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        pytest.param("x: " + "9" * 5_000, "5,000 characters, over the limit of 100", id="digits"),
+        pytest.param("x: 1" + ":1" * 50_000, "100,001 characters", id="base-60"),
+        pytest.param("x: " + "1" * 5_000 + ".0", "5,002 characters", id="float"),
+        pytest.param("x: 2001-13-45", "'2001-13-45' is not a value of the kind time", id="date"),
+        pytest.param("x: !!int y", "'y' is not a value of the kind int", id="int"),
+        pytest.param("x: !!bool y", "'y' is not a value of the kind bool", id="bool"),
+        pytest.param("x: !!timestamp y", "'y' is not a value of the kind time", id="time"),
+    ],
+)
+def test_a_value_that_python_cannot_hold_is_a_fault_with_its_line(text: str, message: str) -> None:
+    with pytest.raises(InputError, match=r"^f:1:4: not valid YAML: ") as caught:
+        from_yaml(text.encode(), "f")
+    assert message in str(caught.value)
+
+
+JSON_FAULTS = {
+    "lists": ("[" * 100_000, "nested deeper than 100 levels"),
+    "objects": ('{"a":' * 100_000, "nested deeper than 100 levels"),
+    "behind strings": ('[["]]]]\\"]]]",' * 101, "nested deeper than 100 levels"),
+    "digits": ("9" * 5_000, "5,000 characters, over the limit of 100"),
+}
+
+
+def _baseline(text: str) -> object:
+    Path("f").write_text(text)
+    return read_baseline("f")
+
+
+JSON_READERS: dict[str, Reader] = {
+    "snapshot": lambda text: from_json(text.encode(), "f"),
+    "baseline": _baseline,
+    "manifest": lambda text: read_manifest(text.encode(), "f"),
+}
+
+
+@pytest.mark.parametrize("fault", JSON_FAULTS)
+@pytest.mark.parametrize("reader", JSON_READERS)
+def test_every_json_reader_has_the_bounds(
+    reader: str, fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    text, message = JSON_FAULTS[fault]
+    with pytest.raises(MultibotError) as caught:
+        JSON_READERS[reader](text)
+    assert str(caught.value).startswith("f:") and "\n" not in str(caught.value)
+    # A manifest is the tool's own: what is wrong in it does not matter.
+    assert message in str(caught.value) or reader == "manifest"
+
+
+@pytest.mark.parametrize(
+    "text", ['{"a":"[[[\\"[["}', "[[1], [2]]", "[" * 100 + "]" * 100, '"\\\\"']
+)
+def test_json_within_the_bounds_is_read_as_before(text: str) -> None:
+    assert bounded.load_json(text) == json.loads(text)
+
+
+READ_TEXT: dict[str, Reader] = {
+    "description": read_file,
+    "nodes": user_stack,
+    "parameters": load_known_nodes,
+    "vocabulary": lambda path: load_vocabulary((path,)),
+    "baseline": read_baseline,
+}
+
+
+@pytest.mark.parametrize("reader", READ_TEXT)
+@pytest.mark.parametrize("file", ["/dev/zero", "large"])
+def test_a_file_without_an_end_is_too_large(file: str, reader: str, tmp_path: Path) -> None:
+    path = tmp_path / "large"
+    path.touch()
+    os.truncate(path, 2**40)
+    given = file if file.startswith("/") else str(path)
+    with pytest.raises(MultibotError) as caught:
+        READ_TEXT[reader](given)
+    assert "it is larger than 16,777,216 bytes" in str(caught.value)
+
+
+def calls(file: Path) -> set[str]:
+    tree = ast.parse(file.read_text())
+    return {ast.unparse(it.func) for it in ast.walk(tree) if isinstance(it, ast.Call)}
+
+
+def test_the_parsers_are_called_in_one_place() -> None:
+    parsers = {f"{module}.{name}" for module in ("yaml", "json") for name in ("load", "loads")}
+    parsers |= {f"yaml.{name}" for name in ("compose", "parse", "safe_load", "load_all")}
+    found = {
+        path.relative_to(PACKAGE).as_posix()
+        for path in PACKAGE.rglob("*.py")
+        if calls(path) & parsers
+    }
+    # What these read is written by the tool: its schema, and messages between its processes.
+    own = {"fleets/fleet_file.py", "cli/rehearse.py", "graph/live/request.py"}
+    assert found == {"bounded.py", "graph/live/stub_nodes.py", *own}
