@@ -51,31 +51,30 @@ def already_rewritten(
     for robot in robots:
         # Most robots are in no name at all. With ``again`` names alone do not matter.
         looked = robot in text and (not again or robot in marked)
-        found = carrying(_names(inventory, own), robot) if looked else []
+        found = carrying(_names(inventory), robot, own) if looked else []
         if found or robot in marked:
             yield _problem(inventory, robot, found, robot in marked)
 
 
-def _names(inventory: Inventory, own: OwnNames) -> list[UsedName]:
+def _names(inventory: Inventory) -> list[UsedName]:
     """Every name that some rewrite changes, once. A model may well be called like its robot."""
-    kept = {text for _, text in own}
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():
             kind = name.kind or name.kinds[0]
-            if kind != "model" and name.text not in kept and (kind, name.text) not in found:
+            if kind != "model" and (kind, name.text) not in found:
                 found[kind, name.text] = UsedName(kind, name.text, claim)
     return list(found.values())
 
 
-def carrying(names: Iterable[UsedName], robot: str) -> list[UsedName]:
-    """The names that carry a robot's name in any layout, with any separator.
+def carrying(known: list[UsedName], robot: str, own: OwnNames = NO_OWN_NAMES) -> list[UsedName]:
+    """The names that carry a robot's name in any layout, with any separator, ``own`` aside.
 
     Where it is called like a part, such as ``left`` or ``arm``, only if more than half of the links,
     joints, namespaces or topics do: a few have the word without any rewrite.
     """
-    known = list(names)
-    found = [name for name in known if _carries_name(name, robot)]
+    kept = {text for _, text in own}
+    found = [name for name in known if name.text not in kept and _carries_name(name, robot)]
     return found if not is_part(robot) or _most(found, known) else []
 
 
