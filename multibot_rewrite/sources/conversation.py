@@ -10,7 +10,7 @@ from array import array
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from multibot_rewrite.bounded import MAX_BYTES
+from multibot_rewrite.bounded import MAX_BYTES, load_json
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.access import Access, NotAllowedError
 from multibot_rewrite.sources.child.frames import (
@@ -123,7 +123,7 @@ def _answered(it: Child, sources: Sources) -> bytes:
 
 
 def _answer(data: bytes, sources: Sources) -> bytes:
-    what, name = json.loads(data)
+    what, name = load_json(data)
     access = sources.access
     ways: Mapping[str, Callable[[str], bytes]] = {
         READ: sources.read,
@@ -146,7 +146,7 @@ def _answer(data: bytes, sources: Sources) -> bytes:
 
 def _result(it: Child, data: bytes) -> Result:
     """The rest of what a child tells; raises what converse catches."""
-    report = json.loads(data)
+    report = load_json(data)
     if "missing" in report:
         raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
     failed = report.get("error")

@@ -22,7 +22,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
         key = names, claim.site.namespaced
         if key not in known:
             known[key] = _spans(*key, naming, robot)
-        if known[key] and is_reached(claim, naming) and not _inside(claim, removed):
+        if known[key] and is_reached(claim, naming) and not is_inside(claim, removed):
             edits += _claim_edits(document.source, claim, known[key])
 
     def unspell(kind: str, name: str) -> str:
@@ -37,10 +37,11 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
 
 def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     """The claims that are not in inserted elements."""
-    return [claim for claim in claims if not _inside(claim, removed)] if removed else claims
+    return [claim for claim in claims if not is_inside(claim, removed)] if removed else claims
 
 
-def _inside(claim: Claim, removed: list[Edit]) -> bool:
+def is_inside(claim: Claim, removed: list[Edit]) -> bool:
+    """Is the claim in an inserted element?"""
     return any(edit.start <= claim.start < edit.end for edit in removed)
 
 
