@@ -147,7 +147,9 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     kind, tag = host.section.unique, str(host.element.tag)
     if not kind:
         return
-    there = {element.get("name") for element in root.iter(kind)}
+    # A URDF is one model, by the name of its root.
+    own = root.iter("robot", "model") if kind == "model" else root.iter(kind)
+    there = {element.get("name") for element in own}
     (every,) = vocabulary.find("element", tag)
     for site in (*every.sites, *host.section.sites):
         if site.role != "keep" and kind in site.kinds:
