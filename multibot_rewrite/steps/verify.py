@@ -16,7 +16,7 @@ from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 from multibot_rewrite.steps.inserted import removals
 from multibot_rewrite.steps.plan import Plan
-from multibot_rewrite.steps.strip import not_inserted, strip_edits
+from multibot_rewrite.steps.strip import not_inserted, own_places, strip_edits
 
 
 def verify(
@@ -49,7 +49,8 @@ def verify(
     _same_values(inventory, values, slot_values(result.document.root), come)
     if b"".join(cut(output, invert(plan.edits, source, robot))) != source:
         raise ProofError(f"{file}: undoing the edits does not give the input back")
-    if b"".join(cut(output, strip_edits(result, naming, robot))) != source:
+    own = own_places(inventory, naming)
+    if b"".join(cut(output, strip_edits(result, naming, robot, own))) != source:
         raise ProofError(f"{file}: stripping {robot} from the output does not give the input back")
 
 
