@@ -22,7 +22,7 @@ from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 from multibot_rewrite.steps.plan import make_plan
-from multibot_rewrite.steps.renames import RenameMap, make_renames, respelled_names
+from multibot_rewrite.steps.renames import RenameMap, make_renames
 from multibot_rewrite.steps.strip import NOWHERE, own_places, strip_edits
 from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
@@ -58,7 +58,7 @@ def prepare(
             else shared_by_all(inventory.document, pieces, naming, tree.vocabulary)
         )
         findings += to_findings(inventory.document, found, WARNING)
-    return Template(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
+    return Template(inventory, plan, pieces, findings, naming, tree, urdf_declarations)
 
 
 def _shared_with_twin(
@@ -87,7 +87,7 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     The others differ from it in nothing but the robot's name at the same places; that no two names
     become one is checked for all of them before the first is returned.
     """
-    inventory, plan, values, *_ = prepared
+    inventory, plan, *_ = prepared
     renames = plan.renames
     document = inventory.document
     taken = checks.taken_names(inventory, renames, robots)
@@ -100,9 +100,9 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     for number, robot in enumerate(robots):
         output = fill(prepared.pieces, robot)
         if number == 0:
+            slots = len(prepared.pieces) - 1
             *_, naming, tree, urdf_declarations = prepared
-            declared = respelled_names(urdf_declarations, renames, robot)
-            verify(inventory, plan, values, output, robot, naming, tree, declared)
+            verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
         yield output
 
 

@@ -43,7 +43,7 @@ def strip_edits(
         key = names, claim.site.namespaced
         if key not in known:
             known[key] = _spans(*key, naming, robot)
-        if known[key] and is_reached(claim, naming) and not _inside(claim, removed):
+        if known[key] and is_reached(claim, naming) and not is_inside(claim, removed):
             edits += _claim_edits(document.source, claim, known[key])
 
     def unspell(kind: str, name: str) -> str:
@@ -63,7 +63,7 @@ def _without(
     at = 0
     found = []
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
-        if _inside(claim, removed):
+        if is_inside(claim, removed):
             found.append(names)
             continue
         found.append(tuple(it for number, it in enumerate(names) if (at, number) not in own))
@@ -73,10 +73,11 @@ def _without(
 
 def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     """The claims that are not in inserted elements."""
-    return [claim for claim in claims if not _inside(claim, removed)] if removed else claims
+    return [claim for claim in claims if not is_inside(claim, removed)] if removed else claims
 
 
-def _inside(claim: Claim, removed: list[Edit]) -> bool:
+def is_inside(claim: Claim, removed: list[Edit]) -> bool:
+    """Is the claim in an inserted element?"""
     return any(edit.start <= claim.start < edit.end for edit in removed)
 
 
