@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
+from itertools import accumulate
+
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
@@ -36,14 +40,14 @@ def strip_edits(
     document = inventory.document
     edits = removals(document, robot)
     claims = not_inserted(inventory.claims, edits)
-    removed = list(edits)
+    is_inserted = inside_of(edits)
     known: dict[tuple[tuple[ResolvedName, ...], bool], list[tuple[int, int]]] = {}
-    added = _without(inventory, own, removed) if own else inventory.names
-    for claim, names in zip(inventory.claims, added, strict=True):
+    kept_out = _without(inventory, own, is_inserted) if own else inventory.names
+    for claim, names in zip(inventory.claims, kept_out, strict=True):
         key = names, claim.site.namespaced
         if key not in known:
             known[key] = _spans(*key, naming, robot)
-        if known[key] and is_reached(claim, naming) and not is_inside(claim, removed):
+        if known[key] and is_reached(claim, naming) and not is_inserted(claim):
             edits += _claim_edits(document.source, claim, known[key])
 
     def unspell(kind: str, name: str) -> str:
@@ -57,13 +61,13 @@ def strip_edits(
 
 
 def _without(
-    inventory: Inventory, own: frozenset[Place], removed: list[Edit]
+    inventory: Inventory, own: frozenset[Place], is_inserted: Callable[[Claim], bool]
 ) -> list[tuple[ResolvedName, ...]]:
     """The names in each value but those at places of ``own``."""
     at = 0
     found = []
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
-        if is_inside(claim, removed):
+        if is_inserted(claim):
             found.append(names)
             continue
         found.append(tuple(it for number, it in enumerate(names) if (at, number) not in own))
@@ -73,12 +77,17 @@ def _without(
 
 def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     """The claims that are not in inserted elements."""
-    return [claim for claim in claims if not is_inside(claim, removed)] if removed else claims
+    is_inserted = inside_of(removed)
+    return [claim for claim in claims if not is_inserted(claim)] if removed else claims
 
 
-def is_inside(claim: Claim, removed: list[Edit]) -> bool:
-    """Is the claim in an inserted element?"""
-    return any(edit.start <= claim.start < edit.end for edit in removed)
+def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
+    """Whether a claim is in one of the elements."""
+    spans = sorted((edit.start, edit.end) for edit in removed)
+    starts = [start for start, _ in spans]
+    # How far those up to each one reach.
+    ends = [0, *accumulate((end for _, end in spans), max)]
+    return lambda claim: claim.start < ends[bisect_right(starts, claim.start)]
 
 
 def _spans(

@@ -30,7 +30,7 @@ from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.steps.inserted import Marker, markers, removals
 from multibot_rewrite.steps.plan import Plan
-from multibot_rewrite.steps.strip import own_places, strip_edits
+from multibot_rewrite.steps.strip import inside_of, own_places, strip_edits
 
 Names = tuple[ResolvedName, ...]
 
@@ -81,8 +81,9 @@ def verify(
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
     pairs = list(zip(result.claims, result.names, strict=True))
-    added = [pair for pair in pairs if is_inside(pair[0], inserted)] if inserted else []
-    found = [pair for pair in pairs if not is_inside(pair[0], inserted)] if inserted else pairs
+    is_inserted = inside_of(inserted)
+    added = [pair for pair in pairs if is_inserted(pair[0])] if inserted else []
+    found = [pair for pair in pairs if not is_inserted(pair[0])] if inserted else pairs
     expected = list(_expected(inventory, naming))
     it = Evidence(
         inventory, plan, slots, robot, naming, expected, result, mine, inserted, found, added
