@@ -11,6 +11,7 @@ from multibot_rewrite.checks.arguments import missed_by_arguments
 from multibot_rewrite.checks.meeting import shared_by_all, shared_with
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import Problem, to_findings
+from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
@@ -90,13 +91,13 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     inventory, plan, *_ = prepared
     renames = plan.renames
     document = inventory.document
-    taken = checks.taken_names(inventory, renames, robots)
-    whole = chain(
-        checks.meeting(inventory, renames, overlap(prepared.naming, robots)),
-        checks.already_rewritten(inventory, renames, robots, again),
+    at_values = chain(
+        checks.taken_names(inventory, renames, robots),
+        already_rewritten(inventory, robots, again, renames.naming.own),
     )
+    whole = checks.meeting(inventory, renames, overlap(prepared.naming, robots))
     at_start = to_findings(document, whole, ERROR, of_file=True)
-    _stop_on_errors([*to_findings(document, taken, ERROR), *at_start])
+    _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for number, robot in enumerate(robots):
         output = fill(prepared.pieces, robot)
         if number == 0:
