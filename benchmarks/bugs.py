@@ -23,7 +23,10 @@ _WORDS = {"declare", "print", "add_argument"}
 
 
 class Bug(NamedTuple):
-    """In ``file``, ``old`` at bytes ``start:end`` became ``new``."""
+    """In ``file``, ``old`` at bytes ``start:end`` became ``new``.
+
+    ``text`` is the line it is in, ``function`` the first line of the function around it or 0.
+    """
 
     file: str
     line: int
@@ -31,6 +34,8 @@ class Bug(NamedTuple):
     end: int
     old: str
     new: str
+    text: str = ""
+    function: int = 0
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: {self.old} -> {self.new}"
@@ -39,16 +44,18 @@ class Bug(NamedTuple):
 def bugs_in(home: Path, file: str) -> list[Bug]:
     """Every bug that can be planted in a file below ``home``."""
     source = (home / file).read_bytes()
+    lines = source.splitlines(keepends=True)
     starts = [0]
-    for line in source.splitlines(keepends=True):
+    for line in lines:
         starts.append(starts[-1] + len(line))
     found = []
-    for node, new in _changes(ast.parse(source)):
+    for node, new, function in _changes(ast.parse(source), 0):
         start = starts[node.lineno - 1] + node.col_offset
         end = starts[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
         old = " ".join(source[start:end].decode().split())
         if old != new:
-            found.append(Bug(file, node.lineno, start, end, old, new))
+            text = lines[node.lineno - 1].decode().strip()
+            found.append(Bug(file, node.lineno, start, end, old, new, text, function))
     return sorted(set(found))
 
 
@@ -57,16 +64,18 @@ def planted(source: bytes, bug: Bug) -> bytes:
     return source[: bug.start] + bug.new.encode() + source[bug.end :]
 
 
-def _changes(node: ast.AST) -> Iterator[tuple[ast.expr | ast.stmt, str]]:
-    """Each node that can be changed, and what to write in its place."""
+def _changes(node: ast.AST, function: int) -> Iterator[tuple[ast.expr | ast.stmt, str, int]]:
+    """Each node that can be changed, what to write in its place, and the function around it."""
+    if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)):
+        function = min([node.lineno, *(it.lineno for it in node.decorator_list)])
     if isinstance(node, ast.expr):
-        yield from ((node, new) for new in _expression(node))
+        yield from ((node, new, function) for new in _expression(node))
     if isinstance(node, ast.stmt):
-        yield from ((node, new) for new in _statement(node))
+        yield from ((node, new, function) for new in _statement(node))
     for test in _conditions(node):
-        yield test, f"(not ({ast.unparse(test)}))"
+        yield test, f"(not ({ast.unparse(test)}))", function
     for child in _inner(node):
-        yield from _changes(child)
+        yield from _changes(child, function)
 
 
 def _inner(node: ast.AST) -> Iterator[ast.AST]:

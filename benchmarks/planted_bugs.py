@@ -12,6 +12,7 @@ could see, with the reason. Bugs are made by ``bugs.py`` beside this file.
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import random
 import shutil
@@ -30,26 +31,11 @@ PAGE = ROOT / "docs" / "planted-bugs.md"
 HARMLESS = ROOT / "fixtures" / "harmless_bugs.tsv"
 PACKAGE = "multibot_rewrite"
 COPIED = (PACKAGE, "tests", "fixtures", "docs", "examples", "share", "benchmarks", "resource")
-# Room -> the folders of its tests, and of those that use it, in the order they are run.
-ROOMS = {
-    "rewriters": "tests/rewriters tests/steps tests/reports",
-    "steps": "tests/steps tests/rewriters",
-    "checks": "tests/findings tests/steps tests/rewriters tests/remap tests/cli",
-    "readback": "tests/readback tests/remap tests/rewriters",
-    "findings": "tests/findings tests/lint",
-    "reports": "tests/reports tests/cli",
-    "remap": "tests/remap tests/cli/test_remap_cli.py",
-    "graph": "tests/graph",
-    "lint": "tests/lint tests/findings",
-    "companions": "tests/companions tests/fleets",
-    "fleets": "tests/fleets tests/companions tests/cli",
-    "launch": "tests/launch",
-    "sources": "tests/sources tests/lint/test_lint_xacro.py tests/package",
-    "cli": "tests/cli tests/fleets",
-    "rosnames": "tests/remap tests/rewriters",
-    "naming.py": "tests/rewriters tests/steps tests/remap",
-    ".": "tests/package tests/sources tests/cli tests/rewriters",
-}
+# "." are the modules that are in no room.
+ROOMS = (
+    "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",
+    "companions", "fleets", "launch", "sources", "cli", "rosnames", "naming.py", ".",
+)  # fmt: skip
 # A bug in one of these could reach beyond the copy: they kill processes or delete folders.
 UNSAFE = (
     "lint/workers.py",
@@ -58,23 +44,25 @@ UNSAFE = (
     "cli/folders.py",
     "graph/live/",
 )
+AT_ONCE, MOST_TESTS, FEW_TESTS = 80, 600, 10
 FAST = ("-q", "-x", "-m", "not live and not slow", "-p", "no:cacheprovider", "--tb=no")
 
 
 class Outcome(NamedTuple):
-    """A bug and the first folder whose tests noticed it, empty where none did."""
+    """A bug, how many tests were run, and whether one of them noticed it."""
 
     room: str
     bug: Bug
-    noticed: str
+    tests: int
+    noticed: bool
 
 
 class Bench(NamedTuple):
-    """The copy that bugs are planted in; ``failing`` is what fails in a folder without a bug."""
+    """The copy that bugs are planted in, and the tests that call each of its functions."""
 
     copy: Path
     seconds: int
-    failing: dict[str, list[str]]
+    called: dict[str, list[str]]
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -82,7 +70,7 @@ def main(arguments: Sequence[str]) -> int:
     options = _options(arguments)
     with tempfile.TemporaryDirectory(prefix="planted_bugs_") as folder:
         copy = _copy(Path(folder) / "copy")
-        bench = Bench(copy, options.seconds, {})
+        bench = Bench(copy, options.seconds, _called(copy, options.notes))
         outcomes = [it for room in options.rooms for it in _room(room, bench, options)]
     lines = list(_page(outcomes, options))
     print("\n".join(lines))
@@ -97,7 +85,8 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("rooms", nargs="*", metavar="ROOM", help=f"of {', '.join(ROOMS)}")
     parser.add_argument("-n", type=int, default=6, help="bugs in each room")
     parser.add_argument("--seed", type=int, default=1, help="which ones")
-    parser.add_argument("--seconds", type=int, default=240, help="for the tests of one folder")
+    parser.add_argument("--seconds", type=int, default=120, help="for the tests of one bug")
+    parser.add_argument("--notes", type=Path, help="file that keeps which test calls what")
     parser.add_argument("--write", action="store_true", help="make the page anew")
     options = parser.parse_args(arguments)
     options.rooms = options.rooms or list(ROOMS)
@@ -113,14 +102,48 @@ def _copy(target: Path) -> Path:
     return target
 
 
+def _called(copy: Path, notes: Path | None) -> dict[str, list[str]]:
+    """The tests by the functions that they call, those that fail without a bug left out."""
+    notes = (notes or copy / "called.json").resolve()
+    if not notes.exists():
+        _note_calls(copy, notes)
+    calls: dict[str, list[str]] = json.loads(notes.read_text())
+    failing = set(calls.pop("", ()))
+    print(f"{len(failing)} tests fail without a bug", file=sys.stderr, flush=True)
+    return {name: [it for it in tests if it not in failing] for name, tests in calls.items()}
+
+
+def _note_calls(copy: Path, notes: Path) -> None:
+    environment = {**_environment(copy), "CALLED": str(notes)}
+    command = [*_pytest(), *(word for word in FAST if word != "-x"), "-p", "called", "tests"]
+    subprocess.run(command, cwd=copy, env=environment, stdout=subprocess.DEVNULL, check=False)
+
+
 def _room(room: str, bench: Bench, options: argparse.Namespace) -> Iterator[Outcome]:
     chance = random.Random(f"{options.seed} {room}")
     home = bench.copy / PACKAGE
     every = [bug for file in _files(room, home) for bug in bugs_in(home, file)]
     for bug in sorted(chance.sample(every, min(options.n, len(every)))):
-        noticed = _noticed(bug, ROOMS[room].split(), bench)
-        print(f"{room}: {bug}: {noticed or 'SURVIVED'}", file=sys.stderr, flush=True)
-        yield Outcome(room, bug, noticed)
+        tests = _tests_of(bug, bench, chance)
+        noticed = any(_is_noticed(bug, part, bench) for part in (tests[:AT_ONCE], tests[AT_ONCE:]))
+        word = "noticed" if noticed else "SURVIVED"
+        print(f"{room}: {bug}: {word}, {len(tests)} tests", file=sys.stderr, flush=True)
+        yield Outcome(room, bug, len(tests), noticed)
+
+
+def _tests_of(bug: Bug, bench: Bench, chance: random.Random) -> list[str]:
+    """Tests that call the function with the bug, and of the module where few do: what is made once is
+    made in one test. Those of files that name the module most often come first."""
+    found = set(bench.called.get(f"{bug.file}:{bug.function}", ()))
+    if len(found) < FEW_TESTS:
+        mine = (key for key in bench.called if key.rpartition(":")[0] == bug.file)
+        found.update(test for key in mine for test in bench.called[key])
+    name = Path(bug.file).stem if Path(bug.file).stem != "__init__" else Path(bug.file).parent.name
+    files = {test.partition("::")[0] for test in found}
+    named = {it: (bench.copy / it).read_text().count(name) for it in files}
+    nearest = sorted(found, key=lambda it: (-named[it.partition("::")[0]], it))
+    near, far = nearest[:AT_ONCE], nearest[AT_ONCE:]
+    return near + chance.sample(far, min(MOST_TESTS - AT_ONCE, len(far)))
 
 
 def _files(room: str, home: Path) -> Iterator[str]:
@@ -132,40 +155,19 @@ def _files(room: str, home: Path) -> Iterator[str]:
             yield file
 
 
-def _noticed(bug: Bug, folders: list[str], bench: Bench) -> str:
+def _is_noticed(bug: Bug, tests: list[str], bench: Bench) -> bool:
     target = bench.copy / PACKAGE / bug.file
     source = target.read_bytes()
-    for folder in folders:
-        if folder not in bench.failing:
-            bench.failing[folder] = _failing(folder, bench)
-        target.write_bytes(planted(source, bug))
-        try:
-            if _notices(folder, bug.file, bench):
-                return folder
-        finally:
-            target.write_bytes(source)
-    return ""
+    target.write_bytes(planted(source, bug))
+    try:
+        return bool(tests) and _fails(tests, bench)
+    finally:
+        target.write_bytes(source)
 
 
-def _failing(folder: str, bench: Bench) -> list[str]:
-    """What fails without a bug: it is left out."""
-    command = [*_pytest(), *(word for word in FAST if word != "-x"), "-rfE", folder]
-    done = subprocess.run(
-        command, cwd=bench.copy, env=_environment(bench.copy), timeout=3 * bench.seconds,
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    lines = [line.partition(" - ")[0] for line in done.stdout.splitlines()]
-    found = [line.partition(" ")[2] for line in lines if line.startswith(("FAILED ", "ERROR "))]
-    if found:
-        print(f"{folder}: {len(found)} tests fail without a bug", file=sys.stderr, flush=True)
-    return found
-
-
-def _notices(folder: str, file: str, bench: Bench) -> bool:
-    left_out = [f"--deselect={name}" for name in bench.failing[folder]]
-    tests = _nearest_first(bench.copy, folder, file)
+def _fails(tests: list[str], bench: Bench) -> bool:
     run = subprocess.Popen(
-        [*_pytest(), *FAST, *left_out, *tests], cwd=bench.copy, env=_environment(bench.copy),
+        [*_pytest(), *FAST, *tests], cwd=bench.copy, env=_environment(bench.copy),
         start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
     )  # fmt: skip
     try:
@@ -174,14 +176,6 @@ def _notices(folder: str, file: str, bench: Bench) -> bool:
         return True
     finally:
         _end(run)
-
-
-def _nearest_first(copy: Path, folder: str, file: str) -> list[str]:
-    """The test files of a folder; first those that name the module most often."""
-    name = Path(file).stem if Path(file).stem != "__init__" else Path(file).parent.name
-    files = sorted((copy / folder).rglob("test_*.py")) or [copy / folder]
-    files.sort(key=lambda it: -it.read_text().count(name))
-    return [it.relative_to(copy).as_posix() for it in files]
 
 
 def _end(run: subprocess.Popen[bytes]) -> None:
@@ -196,13 +190,14 @@ def _pytest() -> list[str]:
 
 
 def _environment(copy: Path) -> dict[str, str]:
-    return {**os.environ, "PYTHONPATH": str(copy), "PYTHONHASHSEED": "0"}
+    paths = os.pathsep.join((str(copy), str(copy / "benchmarks")))
+    return {**os.environ, "PYTHONPATH": paths, "PYTHONHASHSEED": "0"}
 
 
-def harmless() -> dict[tuple[str, str, str], str]:
-    """Judged by hand: (file, what was there, what was planted) -> why nobody can see it."""
+def harmless() -> dict[tuple[str, ...], str]:
+    """Judged by hand: file, line, what was there and what was planted -> why nobody can see it."""
     rows = [line.split("\t") for line in HARMLESS.read_text().splitlines() if line[:1] not in "#"]
-    return {(file, old, new): why for file, old, new, why in rows}
+    return {tuple(key): why for *key, why in rows}
 
 
 def _alive(outcomes: Iterable[Outcome]) -> list[Outcome]:
@@ -210,8 +205,8 @@ def _alive(outcomes: Iterable[Outcome]) -> list[Outcome]:
     return [it for it in outcomes if not it.noticed and _key(it.bug) not in known]
 
 
-def _key(bug: Bug) -> tuple[str, str, str]:
-    return bug.file, bug.old, bug.new
+def _key(bug: Bug) -> tuple[str, ...]:
+    return bug.file, bug.text, bug.old, bug.new
 
 
 def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]:
@@ -220,6 +215,7 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
     yield "# Planted bugs\n"
     yield "Made by `python benchmarks/planted_bugs.py --write`, on " + time.strftime("%Y-%m-%d.")
     yield f"Seed {options.seed}: operators, constants, conditions, calls and statements, by chance."
+    yield f"For each bug the tests that call its function are run, {MOST_TESTS} at most."
     yield "Bugs that change nothing anybody could see are judged by hand: `fixtures/harmless_bugs.tsv`."
     yield "\n| room | planted | noticed | harmless | survived |\n|---|--:|--:|--:|--:|"
     for room in [*options.rooms, "all"]:
@@ -227,13 +223,13 @@ def _page(outcomes: list[Outcome], options: argparse.Namespace) -> Iterator[str]
         left = [it for it in alive if it in mine]
         quiet = len([it for it in silent if it in mine]) - len(left)
         noticed = len(mine) - quiet - len(left)
-        yield f"| {_called(room)} | {len(mine)} | {noticed} | {quiet} | {len(left)} |"
+        yield f"| {_named(room)} | {len(mine)} | {noticed} | {quiet} | {len(left)} |"
     if alive:
         yield "\nWhat survived:\n"
         yield from (f"- `{it.bug}`" for it in alive)
 
 
-def _called(room: str) -> str:
+def _named(room: str) -> str:
     return {"all": "**all**", ".": "the modules beside them"}.get(room, f"`{room}`")
 
 

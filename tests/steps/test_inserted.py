@@ -122,3 +122,20 @@ def test_a_filled_element_that_was_edited_is_refused(old: str, new: str) -> None
     made = rewrite(EMPTY.format("<namespace/>"), "r1", layout="L1").text.replace(old, new)
     with pytest.raises(InputError, match="edited by hand"):
         strip(made, "r1", layout="L1")
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_inserted_lines_end_and_start_as_the_lines_around_them(end: str) -> None:
+    lines = ROVER.format("").replace("></plugin>", ">\n   <update_rate>5</update_rate>\n</plugin>")
+    made = rewrite(lines.replace("\n", end), "r1").text
+    assert f'name="drive_r1">{end}   <!-- multibot' in made
+    assert f"-->{end}   <odometry_frame>" in made
+    assert made.count("\n") == made.count(end)
+
+
+def test_a_marker_that_counts_an_element_of_the_user_is_refused_in_one_line() -> None:
+    source = ROVER.format("").replace("></plugin>", "><update_rate>5</update_rate ></plugin>")
+    made = rewrite(source, "r1").data
+    assert strip(made, "r1") == source.encode()
+    with pytest.raises(InputError, match="edited by hand"):
+        strip(made.replace(b"r1 +3", b"r1 +4"), "r1")
