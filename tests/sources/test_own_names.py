@@ -165,8 +165,13 @@ def test_one_value_for_several_robots_is_refused() -> None:
 
 def test_a_value_that_names_a_robot_by_accident_is_for_all() -> None:
     given = {"meshes": "package://left/meshes"}
-    made = list(rewrite_all(ARM, ["left", "right"], xacro_args=given))
-    assert [names(it.text, "link")[0] for it in made] == ["base_link/left", "base_link/right"]
+    made = list(rewrite_all(ARM, ["a", "left", "b"], xacro_args=given))
+    assert [it.robot for it in made] == ["a", "left", "b"]
+    assert [names(it.text, "link")[0] for it in made] == [
+        "base_link/a",
+        "base_link/left",
+        "base_link/b",
+    ]
 
 
 def test_names_of_two_robots_do_not_meet(tmp_path: Path) -> None:
@@ -326,3 +331,13 @@ def test_a_frame_with_the_argument_and_its_link_without_it(
     # The frame is as it was, also where the rewrite gives the link the same name.
     back = strip(done.data, "left", xacro=path, xacro_args=given, **policy)
     assert back == expand(str(path), {"p": "left"})
+
+
+def test_an_srdf_for_a_default_that_is_replaced_is_not_followed(tmp_path: Path) -> None:
+    body = '<link name="$(arg p)base"/><link name="$(arg p)tip"/>'
+    path = made('<xacro:arg name="p" default="arm_"/>', body, tmp_path)
+    srdf = '<robot name="made"><disable_collisions link1="arm_base" link2="arm_tip"/></robot>'
+    done = rewrite(srdf, "left", urdf=path, xacro_args={"p": "{robot}_"})
+    # What is not an insertion cannot be taken out again: the names are reported, and stay.
+    assert done.findings != ()
+    assert '"arm_base"' in done.text
