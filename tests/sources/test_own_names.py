@@ -341,3 +341,18 @@ def test_an_srdf_for_a_default_that_is_replaced_is_not_followed(tmp_path: Path) 
     # What is not an insertion cannot be taken out again: the names are reported, and stay.
     assert done.findings != ()
     assert '"arm_base"' in done.text
+
+
+def test_an_srdf_of_an_argument_behind_names(tmp_path: Path) -> None:
+    body = '<link name="base$(arg p)"/><link name="tip"/><joint name="base" type="fixed">'
+    body += '<parent link="base$(arg p)"/><child link="tip"/></joint>'
+    path = made('<xacro:arg name="p" default=""/>', body, tmp_path)
+    srdf = '<robot name="made"><disable_collisions link1="base" link2="tip"/>'
+    srdf += '<passive_joint name="base"/></robot>'
+    given = {"p": "_{robot}"}
+    done = rewrite(srdf, "left", urdf=path, xacro_args=given)
+    assert 'link1="base_left" link2="tip/left"' in done.text
+    assert 'passive_joint name="base_left"' in done.text
+    urdf = rewrite(path, "left", xacro_args=given).data
+    back = strip(done.data, "left", urdf=urdf, xacro=path, xacro_args=given)
+    assert back.decode() == srdf
