@@ -15,6 +15,7 @@ from multibot_rewrite.naming import (
     affix,
     is_keyword,
     removal,
+    spelled,
 )
 from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, NamePart
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
@@ -116,7 +117,9 @@ def renamed_at(at: int, kind: str, text: str, namespaced: bool, there: Affix) ->
 
 def must_be_declared(site: Site) -> bool:
     """A use of a name that this file must declare."""
-    return site.kinds[-1] in CLOSED_KINDS or site.form == "scoped"
+    if site.form in ("scoped", "member"):
+        return True
+    return site.kinds[0 if site.form == "suffixed" else -1] in CLOSED_KINDS
 
 
 def kind_of(part: NamePart, role: str, declared: Declared) -> str:
@@ -149,6 +152,14 @@ def respelled(value: str, spelling: Spelling, robot: str) -> str:
     for name in reversed(spelling):
         value = name.affix.spell(value, robot)
     return value
+
+
+def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+    """Declarations by the names they have after a rewrite for ``robot``."""
+    return {
+        kind: {spelled(naming, robot, kind, name): claim for name, claim in names.items()}
+        for kind, names in declared.items()
+    }
 
 
 def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:
