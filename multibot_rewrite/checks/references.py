@@ -93,7 +93,7 @@ def _fault(part: NamePart, declared: Declared) -> str:
 
 
 def _code(site: Site, part: NamePart) -> str:
-    if site.form == "scoped":
+    if site.form in ("scoped", "member"):
         return _SCOPE
     for section, path, code in _THEMES:
         if site.section == section and site.path.startswith(path):

@@ -37,6 +37,11 @@ from multibot_rewrite.sources.processes import Child, child
 # What a child may ask, and read in all.
 MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES
 _TRIPLE, _QUADRUPLE = 3, 4
+# What reading an answer raises that is not what was agreed on.
+_GARBAGE = (
+    GarbageError, ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError,
+    struct.error,
+)  # fmt: skip
 
 
 class Failure(NamedTuple):
@@ -51,10 +56,11 @@ class Failure(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What a child told. ``files`` are the names and numbers of elements of what it read, ``origins``
-    and ``calls`` are as ``marks`` has them; nothing says that they are true."""
+    """What a child told; nothing says that it is true. ``fences`` are those that it has, ``files``
+    the names and numbers of elements of what it read, ``origins`` and ``calls`` as in ``marks``."""
 
     notes: str
+    fences: tuple[str, ...]
     files: tuple[tuple[str, int], ...]
     macros: tuple[str, ...]
     failure: Failure | None
@@ -104,8 +110,8 @@ def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Re
         except TimeoutError:
             raise InputError(_ended(access.path, signal.SIGALRM, seconds)) from None
         except (EOFError, ConnectionError):
-            raise InputError(_ended(access.path, it.end(), seconds)) from None
-        except (GarbageError, ValueError, KeyError, TypeError, RecursionError, struct.error):
+            raise InputError(_ended(access.path, it.end(ended=True), seconds)) from None
+        except _GARBAGE:
             said = "its process gave a wrong answer; a file that tampers with it is not expanded"
             raise InputError(f"{access.path}: xacro failed: {said}") from None
 
@@ -154,6 +160,7 @@ def _result(it: Child, data: bytes) -> Result:
     origins = b"" if failed else _expected(it, ORIGINS)
     return Result(
         _text(report["notes"]),
+        tuple(_text(name) for name in report["fences"]),
         tuple((_text(name), int(count)) for name, count in report["files"]),
         tuple(_text(name) for name in report["macros"]),
         _failure(failed) if failed else None,
