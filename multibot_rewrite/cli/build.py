@@ -6,6 +6,7 @@ import argparse
 import os
 from collections.abc import Iterable, Mapping, Sequence
 
+from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.cli.fleet import words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
@@ -44,7 +45,9 @@ def run(options: argparse.Namespace) -> int:
         known = _known(options.output)
         there = _there(options.output, {*known, *(it.path for it in files)})
         found = output_changes(files, known, there)
-        return _stale(options, found) if options.check else _written(options, files, found)
+        if options.check:
+            return _stale(options, found)
+        return _written(options, files, found, not_proved(made.findings))
 
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
@@ -101,7 +104,12 @@ def _stale(options: argparse.Namespace, found: OutputChanges) -> int:
     return DONE
 
 
-def _written(options: argparse.Namespace, files: Sequence[OutputFile], found: OutputChanges) -> int:
+def _written(
+    options: argparse.Namespace,
+    files: Sequence[OutputFile],
+    found: OutputChanges,
+    why: Sequence[str],
+) -> int:
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")
@@ -118,7 +126,8 @@ def _written(options: argparse.Namespace, files: Sequence[OutputFile], found: Ou
     for path in found.write:
         detail(options, f"wrote {os.path.join(options.output, path)}")
     robots = plural(len({it.path.partition("/")[0] for it in files if "/" in it.path}), "robot")
-    note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written")
+    end = f"; not proved: {', '.join(why)}" if why else ""
+    note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
     return DONE
 
 

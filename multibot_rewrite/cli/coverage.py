@@ -194,13 +194,15 @@ def _parts(report: CoverageReport, top: int | None) -> Iterator[str | Grid]:
     yield from _loaded_parts(total, "plugin", "plugins", top)
     yield from _loaded_parts(total, "hardware", "hardware classes", top)
     claims = sorted(total.claims.items(), key=lambda pair: (-pair[1], pair[0]))
-    yield f"\n{plural(sum(total.claims.values()), 'value')} claimed"
+    yield ""
+    yield f"{plural(sum(total.claims.values()), 'value')} claimed"
     if claims:
         yield "  " + ", ".join(f"{kind} {count}" for kind, count in claims)
     yield from _mention_parts("unclaimed and exactly a link or joint", ranked(exact.left), top)
     yield from _mention_parts("unclaimed with a link or joint inside", _inside(report), top)
     if exact.explained:
-        yield f"\n{plural(_times(exact.explained), 'exact mention')} explained"
+        yield ""
+        yield f"{plural(_times(exact.explained), 'exact mention')} explained"
         rows = [
             (str(t.times), str(t.files), m.path, reason.text) for m, t, reason in exact.explained
         ]
@@ -214,7 +216,8 @@ def _loaded_parts(total: Survey, type_: str, words: str, top: int | None) -> Ite
     count, known = share(total, type_)
     names = [it.known for it in total.loaded if it.type == type_]
     percent = _percentage(count, known)
-    yield f"\n{known} of {count} {words} known ({percent} %), {sum(names)} of {len(names)} names"
+    yield ""
+    yield f"{known} of {count} {words} known ({percent} %), {sum(names)} of {len(names)} names"
     unknown = _unknown(total, type_)
     rows = [(str(t.times), str(t.files), it.name, t.place) for it, t in unknown]
     if rows:
@@ -225,7 +228,8 @@ def _loaded_parts(total: Survey, type_: str, words: str, top: int | None) -> Ite
 def _mention_parts(
     what: str, mentions: Sequence[tuple[MentionPlace, Tally]], top: int | None
 ) -> Iterator[str | Grid]:
-    yield f"\n{_times(mentions)} {what}"
+    yield ""
+    yield f"{_times(mentions)} {what}"
     rows = [(str(t.times), str(t.files), m.path, clip(t.value), t.place) for m, t in mentions]
     if rows:
         yield Grid(("count", "files", "path", "value", "first seen"), rows[:top])

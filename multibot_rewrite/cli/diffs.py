@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import os
 
+from multibot_rewrite.printable import one_line
+
 _PAINT = {b"+": b"\033[32m", b"-": b"\033[31m", b"@": b"\033[36m"}
 _PLAIN = b"\033[0m"
 
@@ -15,11 +17,15 @@ def diff(old: bytes, new: bytes, name: str, new_name: str, colour: bool = False)
 
     # Unlike splitlines, this ends lines at line feeds only, as patch does.
     before, after = io.BytesIO(old).readlines(), io.BytesIO(new).readlines()
-    names = os.fsencode(name), os.fsencode(new_name)
-    lines = diff_bytes(unified_diff, before, after, *names)
+    lines = diff_bytes(unified_diff, before, after, _named(name), _named(new_name))
     cut_short = b"\n\\ No newline at end of file\n"
     whole = (line if line.endswith(b"\n") else line + cut_short for line in lines)
     return b"".join(map(_painted, whole) if colour else whole)
+
+
+def _named(path: str) -> bytes:
+    """The bytes of a path; what would end its line is escaped."""
+    return os.fsencode("".join(it if it >= " " else one_line(it) for it in path))
 
 
 def _painted(line: bytes) -> bytes:

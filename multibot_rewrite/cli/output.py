@@ -11,6 +11,7 @@ from typing import TypeVar
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.terminal import is_coloured
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.printable import for_terminal, one_line
 
 MANY = 20
 STANDARD = "-"
@@ -59,7 +60,9 @@ def print_bytes(data: bytes) -> None:
     if sys.stdout is None:
         raise UsageError("standard output is closed; name a file with -o")
     try:
-        sys.stdout.buffer.write(data)
+        # A program gets the bytes; a terminal would obey some of them.
+        shown = _shown(data) if sys.stdout.isatty() else data
+        sys.stdout.buffer.write(shown)
         sys.stdout.buffer.flush()
     except OSError as error:
         # Python would complain again when it closes standard output.
@@ -69,10 +72,13 @@ def print_bytes(data: bytes) -> None:
         raise UsageError(f"standard output: cannot be written: {error.strerror}") from None
 
 
+def _shown(data: bytes) -> bytes:
+    return for_terminal(data.decode("utf-8", "surrogateescape")).encode()
+
+
 def print_lines(lines: Iterable[object]) -> None:
-    """A line each to standard output; what no text can hold, from a file, is shown escaped."""
-    text = "".join(f"{line}\n" for line in lines)
-    print_bytes(text.encode("utf-8", "backslashreplace"))
+    """A line each to standard output; what is no text of one line is shown escaped."""
+    print_bytes("".join(f"{one_line(str(line))}\n" for line in lines).encode())
 
 
 def prints_colour(options: argparse.Namespace) -> bool:
@@ -82,7 +88,7 @@ def prints_colour(options: argparse.Namespace) -> bool:
 
 def say(text: str, program: str) -> None:
     """A line to standard error."""
-    sys.stderr.write(f"{program}: {text}\n")
+    sys.stderr.write(f"{one_line(f'{program}: {text}')}\n")
 
 
 def note(options: argparse.Namespace, text: str) -> None:

@@ -14,6 +14,7 @@ from multibot_rewrite.cli.options import Command, Example, OptionGroup
 from multibot_rewrite.cli.terminal import AUTO, is_coloured
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.nearest import did_you_mean_one_of
+from multibot_rewrite.printable import one_line
 from multibot_rewrite.version import __version__
 
 UNUSABLE = 2
@@ -29,7 +30,7 @@ class Parser(argparse.ArgumentParser):
     colour = AUTO
 
     def error(self, message: str) -> NoReturn:
-        self.exit(UNUSABLE, f"{self.prog}: {message}; see {self.prog} --help\n")
+        self.exit(UNUSABLE, f"{self.prog}: {one_line(message)}; see {self.prog} --help\n")
 
     def format_help(self) -> str:
         import shutil  # only a help text needs the terminal's width

@@ -11,6 +11,7 @@ from itertools import zip_longest
 from typing import NamedTuple
 
 from multibot_rewrite.cli.output import deliver, goes_to_file, prints_colour
+from multibot_rewrite.printable import in_json, one_line
 
 JSON = "json"
 # Columns with these names are set to the right.
@@ -30,8 +31,7 @@ class Grid(NamedTuple):
 
 def deliver_report(options: argparse.Namespace, parts: Iterable[str | Grid]) -> None:
     """Write lines and tables where ``-o`` says, as wide as the terminal that shows them."""
-    text = render(parts, _width(options), prints_colour(options))
-    deliver(options, text.encode("utf-8", "surrogateescape"))
+    deliver(options, render(parts, _width(options), prints_colour(options)).encode())
 
 
 def _width(options: argparse.Namespace) -> int | None:
@@ -49,7 +49,11 @@ def render(parts: Iterable[str | Grid], width: int | None = None, colour: bool =
 
 
 def _lines(part: str | Grid, width: int | None, colour: bool) -> Iterable[str]:
-    return part.split("\n") if isinstance(part, str) else _table(part, width, colour)
+    return [one_line(part)] if isinstance(part, str) else _table(_shown(part), width, colour)
+
+
+def _shown(grid: Grid) -> Grid:
+    return grid._replace(rows=[[one_line(cell) for cell in row] for row in grid.rows])
 
 
 def _table(grid: Grid, width: int | None, colour: bool) -> Iterator[str]:
@@ -129,5 +133,5 @@ def json_bytes(value: object) -> bytes:
     """``value`` as JSON; a path that is not UTF-8 keeps its bytes as escapes."""
     import json
 
-    text = json.dumps(value, indent=1, ensure_ascii=False)
+    text = in_json(json.dumps(value, indent=1, ensure_ascii=False))
     return text.encode("utf-8", "backslashreplace") + b"\n"

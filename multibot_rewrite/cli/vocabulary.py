@@ -70,7 +70,8 @@ def _list(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
 def _details(sections: Sequence[VocabularySection]) -> Iterator[str | Grid]:
     """Everything known, a block of lines a section."""
     for number, section in enumerate(sections):
-        yield f"{chr(10) * (number > 0)}{section.name}  {section.file}:{section.line}"
+        yield from [""] * (number > 0)
+        yield f"{section.name}  {section.file}:{section.line}"
         yield from (f"  {what}: {text}" for what, text in facts(section).items())
         rows = [_row(site, section) for site in section.sites]
         if rows:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
-from multibot_rewrite.cli.output import deliver
 from multibot_rewrite.cli.process import DONE
+from multibot_rewrite.cli.tables import deliver_report
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import explain
@@ -34,9 +34,7 @@ def run(options: argparse.Namespace) -> int:
     )
     if not found:
         raise UsageError(f"{options.why}: no value starts on this line")
-    deliver(
-        options, "".join(f"{line}\n" for it in found for line in _lines(it, path, robot)).encode()
-    )
+    deliver_report(options, (line for it in found for line in _lines(it, path, robot)))
     return DONE
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from multibot_rewrite.model import Edit, MultibotError
+from multibot_rewrite.printable import one_line
 
 ERROR, WARNING, NOTE, INCONCLUSIVE = "error", "warning", "note", "inconclusive"
 # From the worst on. Inconclusive is no level to ask for: the view of the graph was incomplete.
@@ -51,7 +52,8 @@ class Finding(NamedTuple):
 
     def __str__(self) -> str:
         hint = f" ({self.hint})" if self.hint else ""
-        return f"{self.place}: {self.level}: {self.code} {self.message}{same_for(self)}{hint}"
+        text = f"{self.place}: {self.level}: {self.code} {self.message}{same_for(self)}{hint}"
+        return one_line(text)
 
 
 def same_for(finding: Finding) -> str:

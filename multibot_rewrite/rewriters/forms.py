@@ -11,17 +11,15 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.model import Claim
+from multibot_rewrite.rewriters.patterns import Pattern, PatternError, pieces_of
 from multibot_rewrite.rosnames import split_remap
 
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
-# What a top-level "|" of a regular expression must not be looked for in.
 _WORD = re.compile(r"[^\s(),;\"]+")
 _OWNED = re.compile(r"::|/")
-# Assertions look beyond the name, so an affix cannot follow them.
-_ASSERTION = re.compile(r"\(\?|\\[bB]")
-_POSIX = {"alpha": "a-zA-Z", "digit": "0-9", "alnum": "a-zA-Z0-9", "lower": "a-z", "upper": "A-Z"}
-_REGEX_PIECES = re.compile(r"\\.|\[\^?\]?(?:\\.|[^\]])*\]|.", re.DOTALL)
+# Not a letter of it means more than itself.
+_LITERAL = re.compile(r"[\w /:-]*")
 
 
 class NamePart(NamedTuple):
@@ -156,8 +154,8 @@ def _alternatives(value: str) -> Iterator[tuple[int, str]]:
     """The pieces between top-level bars, anchors and white space aside, and where they start."""
     depth, begin = 0, 0
     bars = []
-    for piece in _REGEX_PIECES.finditer(value):
-        depth += {"(": 1, ")": -1}.get(piece[0], 0)
+    for piece in pieces_of(value):
+        depth += piece[0].startswith("(") - (piece[0] == ")")
         if piece[0] == "|" and depth == 0:
             bars.append(piece.start())
     for end in (*bars, len(value)):
@@ -168,14 +166,12 @@ def _alternatives(value: str) -> Iterator[tuple[int, str]]:
 
 
 def _matched(pattern: str, kinds: Kinds, declared: Declared) -> tuple[str, ...]:
-    """The kinds of which the pattern (ECMAScript's, as std::regex reads it) matches a name."""
-    if _ASSERTION.search(pattern):
-        return ()
-    for name, letters in _POSIX.items():
-        pattern = pattern.replace(f"[:{name}:]", letters)
+    """The kinds of which the pattern matches a name: none for one that cannot be understood."""
+    if _LITERAL.fullmatch(pattern):
+        return tuple(kind for kind in kinds if pattern in declared.get(kind, ()))
     try:
-        matches = re.compile(pattern).fullmatch
-    except re.error:
+        matches = Pattern(pattern).matches
+    except PatternError:
         return ()
     return tuple(kind for kind in kinds if any(map(matches, declared.get(kind, ()))))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.options import OptionGroup, choice, output, several, switch, value
+from multibot_rewrite.cli.options import Option, OptionGroup, choice, output, several, switch, value
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.naming import (
@@ -14,6 +14,8 @@ from multibot_rewrite.naming import (
     SHARED_TOPICS,
 )
 
+# argparse's word for an option that leaves what is there alone.
+SUPPRESS = "==SUPPRESS=="
 _LAYOUTS = ", ".join(f"{it.name} ({it.short}: {it.about})" for it in LAYOUTS)
 _LAYOUT_NAMES = tuple(name for it in LAYOUTS for name in (it.name, it.short))
 _SEPARATORS = " ".join(f"{kind}={mark}" for kind, mark in SEPARATORS.items())
@@ -79,6 +81,11 @@ FINDINGS = OptionGroup(
             LEVELS,
             "the lowest level that makes the exit code 1: error (default; urdf-lint: warning),"
             " warning or note",
+        ),
+        Option(
+            ("--strict",),
+            "the same as --fail-on warning: what is not proved fails",
+            {"action": "store_const", "dest": "fail_on", "const": "warning", "default": SUPPRESS},
         ),
         choice(
             "--format",

@@ -9,12 +9,12 @@ from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.formats.shared import (
     circumstances,
     file_of,
-    one_line,
     path_below,
     said_of,
     title,
     via,
 )
+from multibot_rewrite.printable import one_line
 
 _COMMANDS = {ERROR: "error", INCONCLUSIVE: "warning", WARNING: "warning", NOTE: "notice"}
 _DATA = str.maketrans({"%": "%25", "\r": "%0D", "\n": "%0A"})

@@ -9,8 +9,9 @@ from lxml import etree
 
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING, Finding
 from multibot_rewrite.findings.formats import Report
-from multibot_rewrite.findings.formats.shared import by_file, file_of, one_line, path_below, said
+from multibot_rewrite.findings.formats.shared import by_file, file_of, path_below, said
 from multibot_rewrite.findings.formats.text import lines
+from multibot_rewrite.printable import one_line
 
 _PASSED = "no findings"
 

@@ -11,13 +11,13 @@ from multibot_rewrite.findings.formats.shared import (
     by_file,
     circumstances,
     counts,
-    one_line,
     path_below,
     said_of,
     title,
     via,
 )
 from multibot_rewrite.plural import plural
+from multibot_rewrite.printable import one_line
 
 # A comment on GitHub holds 65,536 characters.
 ROOM = 60_000

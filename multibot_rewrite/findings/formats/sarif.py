@@ -18,12 +18,12 @@ from multibot_rewrite.findings.formats.shared import (
     fingerprints,
     inside,
     json_text,
-    one_line,
     said_of,
 )
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.model import Edit
+from multibot_rewrite.printable import one_line
 from multibot_rewrite.version import __version__
 
 Json = dict[str, Any]

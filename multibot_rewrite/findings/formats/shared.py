@@ -11,10 +11,8 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import LEVELS, Finding, same_for
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.printable import in_json, one_line
 
-# What ends a line, steers a terminal, or stands in no XML or UTF-8: lone surrogates are bytes of a
-# file's name that are no UTF-8.
-_ODD = lazy_compile("[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\ufffe\uffff]")
 _SURROGATE = lazy_compile("[\ud800-\udfff]")
 _CALL = lazy_compile(r"(?P<file>.*):(?P<line>\d+): (?P<macro>.*)", re.DOTALL)
 
@@ -27,16 +25,11 @@ class MacroCall(NamedTuple):
     macro: str
 
 
-def one_line(text: str) -> str:
-    r"""The text with every odd character as Python writes it: ``\n``, ``\x1b``, ``\udcff``."""
-    return _ODD.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
-
-
 def json_text(value: object) -> str:
     r"""JSON that strict readers take: a lone surrogate is text, ``\\udcff``, and no escape."""
     import json
 
-    text = json.dumps(value, indent=1, ensure_ascii=False) + "\n"
+    text = in_json(json.dumps(value, indent=1, ensure_ascii=False)) + "\n"
     return _SURROGATE.sub(lambda found: f"\\\\u{ord(found[0]):04x}", text)
 
 

@@ -9,11 +9,11 @@ from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, WARNING
 from multibot_rewrite.findings.formats import Report
 from multibot_rewrite.findings.formats.shared import (
     circumstances,
-    one_line,
     path_given,
     said,
     via,
 )
+from multibot_rewrite.printable import one_line
 
 _PAINT = {ERROR: "\033[31m", WARNING: "\033[33m", INCONCLUSIVE: "\033[35m", NOTE: "\033[36m"}
 _PLAIN = "\033[0m"

@@ -13,8 +13,10 @@ from multibot_rewrite.bounded import read_bytes
 from multibot_rewrite.model import UsageError
 
 _INCLUDE = re.compile(
-    rb"<xacro:include\s(?:[^>\"']|\"[^\"]*\"|'[^']*')*?filename\s*=\s*(\"[^\"]*\"|'[^']*')"
+    rb"<xacro:include\s(?:[^<>\"']|\"[^<\"]*\"|'[^<']*')*?filename\s*=\s*(\"[^<\"]*\"|'[^<']*')"
 )
+# PATH_MAX of Linux: no file has a longer name.
+_LONGEST = 4096
 # Only xacro knows these values: it may be any name.
 _UNKNOWN = re.compile(rb"\$.*[)}]|&#?\w+;", re.DOTALL)
 # Text in a file, or the end of its name -> files that it reads without naming them.
@@ -158,7 +160,8 @@ def _includes(path: str) -> Iterator[str]:
     if _YAML[0] in data:
         yield from _YAML[1]
     for name in _INCLUDE.findall(data):
-        yield os.fsdecode(_UNKNOWN.sub(b"*", name[1:-1]))
+        if len(name) < _LONGEST:
+            yield os.fsdecode(_UNKNOWN.sub(b"*", name[1:-1]))
 
 
 def _located(path: str, asked: Iterable[str], there: dict[str, list[str]]) -> Iterator[str]:

@@ -9,9 +9,8 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
-_INCLUDE = lazy_compile(rb"<xacro:include\s[^>]*?filename\s*=\s*[\"']([^\"']+)[\"']")
-# What is before the last substitution of a path is not known.
-_KNOWN = lazy_compile(r".*[)}]")
+# No tag goes on behind a "<": every letter is looked at once.
+_INCLUDE = lazy_compile(rb"<xacro:include\s[^<>]*?filename\s*=\s*[\"']([^<\"']+)[\"']")
 
 
 def included(paths: Sequence[str]) -> frozenset[str]:
@@ -37,7 +36,8 @@ def _asked_for(path: str) -> Iterator[str]:
     """The paths that a file includes, without what only xacro can fill in, and without itself."""
     own = os.path.realpath(path)
     for name in _names(path):
-        known = _KNOWN.sub("", name)
+        # What is before the last substitution of a path is not known.
+        known = name[max(name.rfind(")"), name.rfind("}")) + 1 :]
         asked = os.path.normpath(known).lstrip("./") if known.strip("/. ") else ""
         if asked and not own.endswith(f"/{asked}"):
             yield asked

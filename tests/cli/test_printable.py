@@ -1,0 +1,165 @@
+"""No name of a file, a description or the live graph steers the terminal or fakes a line."""
+
+from __future__ import annotations
+
+import json
+import re
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from fleet_folder import SMALL, fleet_folder
+from graph_cases import healthy, read_plan
+
+from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
+from multibot_rewrite.cli.declared import COMMANDS
+from multibot_rewrite.cli.output import print_bytes
+from multibot_rewrite.findings.formats import FORMATS
+from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.printable import for_terminal, one_line
+
+FAKED = "FAKE: all is well"
+# ESC ] 0 ; ... BEL names a window, U+009B 2 J clears it, U+202E turns the text.
+EVIL = f"e\x1b]0;x\x07\x9b2J\u202e\n{FAKED}\r\n"
+IN_XML = f"e&#x9b;2J&#x202e;&#10;{FAKED}&#13;&#10;"
+# What a person may be shown: no controls but the end of a line, nothing that turns.
+STEERING = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+LAYOUT = "frames-per-robot"
+DESCRIPTION = f"""<robot name="r {IN_XML}">
+  <link name="base_link"/>
+  <link name="{IN_XML}"/>
+  <joint name="{IN_XML}" type="fixed"><parent link="base_link"/><child link="{IN_XML}"/></joint>
+  <joint name="{IN_XML}" type="{IN_XML}"><parent link="nobody{IN_XML}"/><child link="x"/></joint>
+  <gazebo reference="none{IN_XML}">
+    <plugin name="{IN_XML}" filename="lib{IN_XML}.so">
+      <frame a="{IN_XML}">{IN_XML}</frame>
+      <other>base_link</other>
+    </plugin>
+    <plugin name="x" filename="libgazebo_ros_diff_drive.so">
+      <ros><namespace>{IN_XML}</namespace><remapping>odom:={IN_XML}</remapping></ros>
+      <left_joint>{IN_XML}</left_joint>
+    </plugin>
+  </gazebo>
+  <ros2_control name="{IN_XML}" type="system">
+    <hardware><plugin>{IN_XML}</plugin><param name="{IN_XML}">{IN_XML}</param></hardware>
+    <joint name="gone{IN_XML}"/>
+  </ros2_control>
+</robot>
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Files with names that no terminal should obey, in and on them."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / f"{EVIL}.urdf").write_text(DESCRIPTION)
+    (tmp_path / f"{EVIL}.xml").write_text("<robot")
+    (tmp_path / f"{EVIL}.lint.urdf").write_text('<robot name="r"><link name="a "/></robot>')
+    (tmp_path / "cut.urdf").write_text(DESCRIPTION[:-20])
+    fleet_folder(tmp_path, SMALL.replace("rover.urdf", json.dumps(f"{EVIL}.urdf")))
+    (tmp_path / f"{EVIL}.yaml").write_text(json.dumps({EVIL: [{EVIL: EVIL}]}))
+    plan, graph = read_plan(LAYOUT), healthy(LAYOUT)
+    (tmp_path / "plan.yaml").write_text(to_yaml(plan))
+    (tmp_path / f"{EVIL}.plan").write_text(to_yaml(plan))
+    frames = tuple(it._replace(child=f"{it.child}{EVIL}") for it in graph.frames)
+    nodes = tuple(it._replace(name=f"{it.name}{EVIL}") for it in graph.nodes)
+    ends = tuple(it._replace(node=f"{it.node}{EVIL}", type=EVIL) for it in graph.endpoints)
+    evil = graph._replace(frames=(*graph.frames, *frames), nodes=nodes, endpoints=ends)
+    (tmp_path / "graph.json").write_bytes(to_json(evil))
+    (tmp_path / f"{EVIL}.json").write_bytes(to_json(graph)[:-9])
+    return tmp_path
+
+
+PROGRAMS: dict[str, Callable[[list[str]], int]] = {
+    "urdf-postfix": urdf_postfix.main,
+    "urdf-lint": urdf_lint.main,
+}
+FILE = f"{EVIL}.urdf"
+LINES = (
+    *(["urdf-postfix", FILE, "robot1", "robot2", "-o", f"{EVIL}/{{robot}}"],),
+    *(["urdf-postfix", FILE, "robot1", "--again", "--strict"],),
+    *(["urdf-postfix", FILE, EVIL],),
+    *(["urdf-postfix", "--strip", FILE, "robot1"],),
+    *(["urdf-postfix", f"{EVIL}.xml", "robot1"], ["urdf-postfix", "cut.urdf", "robot1"]),
+    *(["urdf-postfix", f"{EVIL}.none", "robot1"], ["urdf-postfix", FILE, "r", f"--{EVIL}"]),
+    *(["urdf-postfix", "--why", f"{FILE}:{line}"] for line in range(2, 22)),
+    *(["urdf-postfix", "--explain", EVIL], ["urdf-lint", "--explain", EVIL]),
+    *(["urdf-lint", "."], ["urdf-lint", FILE, "cut.urdf"], ["urdf-lint", f"{EVIL}.none"]),
+    *(["urdf-lint", FILE, "--format", it] for it in FORMATS),
+    *(["urdf-lint", FILE, "--select", EVIL], ["urdf-lint", ".", "--config", EVIL]),
+    *(
+        ["urdf-lint", f"{EVIL}.lint.urdf", "--fix", "--diff"],
+        ["coverage", "."],
+        ["coverage", ".", "--form", "json"],
+        ["coverage", FILE, "--explained", f"{EVIL}.yaml"],
+    ),
+    *(["vocabulary", "--suggest", FILE], ["vocabulary", EVIL], ["vocabulary", "--type", EVIL]),
+    *(["explain", EVIL], ["help", EVIL], [EVIL], ["remap", FILE, "robot1", "--stack", EVIL]),
+    *(["remap", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it] for it in ("table",)),
+    *(["remap", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),
+    *(["plan", FILE, "robot1", "robot2", "--stack", "nav2", "-o", EVIL],),
+    *(["check", "plan.yaml", "--snapshot", "graph.json"],),
+    *(["check", "plan.yaml", "--snapshot", "graph.json", "--format", it] for it in ("text",)),
+    *(["check", f"{EVIL}.plan", "--snapshot", "graph.json", "--verbose"],),
+    *(["check", "plan.yaml", "--snapshot", f"{EVIL}.json"],),
+    *(["check", f"{EVIL}.yaml", "--snapshot", "graph.json"], ["learn", "--snapshot", "graph.json"]),
+    *(["build", "fleet.yaml", "-o", f"{EVIL}out"], ["build", f"{EVIL}.yaml", "-o", "out"]),
+    *(["build", "fleet.yaml", "-o", "out", "--check"],),
+    *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
+)
+
+
+def test_every_command_is_tried() -> None:
+    tried = {words[0] for words in LINES}
+    assert {*COMMANDS, *PROGRAMS} <= tried
+
+
+@pytest.mark.parametrize(
+    "words", LINES, ids=[f"{number}-{words[0][:12]}" for number, words in enumerate(LINES)]
+)
+def test_a_name_does_not_steer_the_terminal(
+    words: list[str], folder: Path, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    try:
+        program = PROGRAMS.get(words[0])
+        _ = program(words[1:]) if program else multibot.main(words)
+    except SystemExit:
+        pass
+    out, err = capfdbinary.readouterr()
+    text = err.decode("utf-8", "surrogateescape")
+    # What is made of a description holds its names as they are, for programs.
+    if not (out.startswith(b"<robot") or words[0] in ("vocabulary", "learn")):
+        text += out.decode("utf-8", "surrogateescape")
+    assert text or out
+    assert STEERING.findall(text) == []
+    assert [line for line in text.splitlines() if line.startswith(FAKED)] == []
+    assert "Traceback" not in text
+
+
+def test_a_terminal_gets_a_document_without_what_it_would_obey(
+    monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
+) -> None:
+    data = "<a b='\x9b2J\u202e'>\t\x1b[31mred\x1b[0m\x1b]0;x\x07</a>\n".encode() + b"\xff"
+    print_bytes(data)
+    assert capfdbinary.readouterr().out == data
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    print_bytes(data)
+    shown = b"<a b='\\x9b2J\\u202e'>\t\x1b[31mred\x1b[0m\\x1b]0;x\\x07</a>\n\\udcff"
+    assert capfdbinary.readouterr().out == shown
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "shown"),
+    [
+        ("plain ä 中 😀", "plain ä 中 😀", "plain ä 中 😀"),
+        ("a\tb\nc", "a\\tb\\nc", "a\tb\nc"),
+        ("\x1b[1mbold\x1b[0m", "\\x1b[1mbold\\x1b[0m", "\x1b[1mbold\x1b[0m"),
+        ("\x1b[2J\x1b[31", "\\x1b[2J\\x1b[31", "\\x1b[2J\\x1b[31"),
+        ("\r\x07\x7f\x85", "\\r\\x07\\x7f\\x85", "\\r\\x07\\x7f\\x85"),
+        ("\u200e\u2066\ufeff", "\\u200e\\u2066\ufeff", "\\u200e\\u2066\ufeff"),
+    ],
+)
+def test_what_is_shown_of_a_text(text: str, line: str, shown: str) -> None:
+    assert (one_line(text), for_terminal(text)) == (line, shown)

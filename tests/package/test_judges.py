@@ -1,0 +1,76 @@
+"""Rewrite, lint, remap table, fleet and build name the same things that two robots would share."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import rewrite_all
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.fleet import make_fleet
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.lint.check import lint_file
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.model import MultibotError
+from multibot_rewrite.naming import make_naming
+
+pytestmark = pytest.mark.slow
+
+ROBOTS = ("robot1", "robot2")
+CODES = ("MB425", "MB430", "MB431", "MB432", "MR102")
+LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
+EVERY = 23
+_NAME = re.compile(r"'([^']+)'")
+
+
+def named(findings: Iterable[Finding]) -> set[str]:
+    """The names that these findings say are shared."""
+    found = [it for it in findings if it.code in CODES]
+    quoted = {text for it in found if not it.names for text in _NAME.findall(it.message)[:1]}
+    return quoted | {name for it in found for name in it.names}
+
+
+def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
+    """What each of the five says; empty where the description is refused."""
+    try:
+        first, _ = rewrite_all(path, ROBOTS, layout=layout)
+    except MultibotError:
+        return {}
+    settings = Settings(robots=ROBOTS, naming=make_naming(layout), select=CODES)
+    file = folder / "fleet.yaml"
+    robots = "\n".join(f"  - {{name: {it}}}" for it in ROBOTS)
+    file.write_text(f"layout: {layout}\ndescription: {path}\nrobots:\n{robots}\n")
+    plan = plan_fleet(read_fleet(str(file)))
+    return {
+        "rewrite": named(first.findings),
+        "lint": named(lint_file(str(path), settings)),
+        "remap": named(make_fleet(path, ROBOTS, (), {"layout": layout}).table.problems),
+        "fleet": named(plan.fleet.table.problems),
+        "build": named((*make_outputs(plan).findings, *plan.fleet.table.problems)),
+    }
+
+
+def disagreements(paths: Iterable[Path], folder: Path) -> dict[str, dict[str, set[str]]]:
+    wrong = {}
+    for path in paths:
+        for layout in LAYOUTS:
+            found = verdicts(path, layout, folder)
+            if len(set(map(frozenset, found.values()))) > 1:
+                wrong[f"{path.name} {layout}"] = found
+    return wrong
+
+
+def test_five_judges_agree(corpus: dict[str, Path], tmp_path: Path) -> None:
+    with_plugins = [it for it in corpus.values() if b"<plugin" in it.read_bytes()]
+    assert len(with_plugins[::EVERY]) > 10
+    assert disagreements(with_plugins[::EVERY], tmp_path) == {}
+
+
+@pytest.mark.deep
+def test_five_judges_agree_about_every_file(corpus: dict[str, Path], tmp_path: Path) -> None:
+    assert disagreements(corpus.values(), tmp_path) == {}
