@@ -11,6 +11,7 @@ from multibot_rewrite.checks.meeting import shared_by_all
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import to_findings
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -26,6 +27,7 @@ from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
 
 
+@gc_paused()
 def prepare(
     source: bytes, file: str, naming: Naming, tree: Tree, urdf_declarations: Declared = NOTHING
 ) -> Template:

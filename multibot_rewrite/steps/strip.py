@@ -17,13 +17,15 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     edits = removals(document, robot)
     claims = not_inserted(inventory.claims, edits)
     removed = list(edits)
-    known: dict[tuple[tuple[ResolvedName, ...], bool], list[tuple[int, int]]] = {}
+    # Claims share the names of equal values, so few are different.
+    known: dict[tuple[int, bool], list[tuple[int, int]]] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
-        key = names, claim.site.namespaced
-        if key not in known:
-            known[key] = _spans(*key, naming, robot)
-        if known[key] and is_reached(claim, naming) and not _inside(claim, removed):
-            edits += _claim_edits(document.source, claim, known[key])
+        key = id(names), claim.site.namespaced
+        spans = known.get(key)
+        if spans is None:
+            spans = known[key] = _spans(names, claim.site.namespaced, naming, robot)
+        if spans and is_reached(claim, naming) and not _inside(claim, removed):
+            edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
         return unspelled(naming, kind, name, robot)
@@ -41,7 +43,7 @@ def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
 
 
 def _inside(claim: Claim, removed: list[Edit]) -> bool:
-    return any(edit.start <= claim.start < edit.end for edit in removed)
+    return bool(removed) and any(edit.start <= claim.start < edit.end for edit in removed)
 
 
 def _spans(

@@ -6,6 +6,7 @@ from collections import Counter
 
 from lxml import etree
 
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import Claim, InputError, ProofError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
@@ -19,6 +20,7 @@ from multibot_rewrite.steps.plan import Plan
 from multibot_rewrite.steps.strip import not_inserted, strip_edits
 
 
+@gc_paused()
 def verify(
     inventory: Inventory,
     plan: Plan,
