@@ -55,7 +55,7 @@ class Home(NamedTuple):
 
 
 HOMES: tuple[Home, ...] = (
-    Home("MB1", "rewriting a description", ("steps.plan", "checks.robots")),
+    Home("MB1", "rewriting a description", ("steps.plan", "checks.robots", "checks.arguments")),
     Home(
         "MF1",
         "parameter files",

@@ -34,10 +34,10 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf = self.job
+        data, file, naming, _, urdf, own = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
-        return pipeline.prepare(data, file, naming, tree, beside)
+        return pipeline.prepare(data, file, naming, tree, beside, own)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Prepared) and self.job == other.job
@@ -252,7 +252,10 @@ def strip(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     if xacro is not None:
-        naming = read_job(xacro, naming, None, xacro_args, vocabulary, "", [robot], trust).naming
+        made, beside = (xacro, None) if urdf is None else (source, xacro)
+        naming = read_job(
+            made, naming, beside, xacro_args, vocabulary, words=[robot], trust=trust
+        ).naming
     job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust)
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.urdf_declarations)
 

@@ -252,7 +252,12 @@ def removal(
 ) -> tuple[int, int] | None:
     """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
     separator = naming.separators.get(kind)
-    if separator is None or robot not in text or (kind, text) in naming.own:
+    if robot not in text or (kind, text) in naming.own:
+        return None
+    for (of, stem), own in naming.own.items():
+        if of == kind and own is not None and own.spell(stem, robot) == text:
+            return own.at, own.at + len(text) - len(stem)
+    if separator is None:
         return None
     lead = 1 if text.startswith("/") else 0
     places = [(lead, robot + separator), (lead, robot)]

@@ -7,9 +7,10 @@ from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
-from multibot_rewrite.checks.meeting import shared_by_all
+from multibot_rewrite.checks.arguments import missed_by_arguments
+from multibot_rewrite.checks.meeting import shared_by_all, shared_with
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
-from multibot_rewrite.checks.problem import to_findings
+from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
@@ -17,11 +18,12 @@ from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource, own_names
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 from multibot_rewrite.steps.plan import make_plan
-from multibot_rewrite.steps.renames import RenameMap, make_renames, respelled_names
+from multibot_rewrite.steps.renames import RenameMap, make_renames
 from multibot_rewrite.steps.strip import strip_edits
 from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
@@ -29,32 +31,47 @@ from multibot_rewrite.steps.verify import verify
 
 @gc_paused()
 def prepare(
-    source: bytes, file: str, naming: Naming, tree: Tree, urdf_declarations: Declared = NOTHING
+    source: bytes,
+    file: str,
+    naming: Naming,
+    tree: Tree,
+    urdf_declarations: Declared = NOTHING,
+    own: OwnSource = OF_ALL,
 ) -> Template:
     """Everything that does not depend on a robot's name; raises InputError and RewriteRefused.
 
-    ``urdf_declarations`` is what the URDF beside an SRDF declares.
+    ``urdf_declarations`` is what the URDF beside an SRDF declares. ``own`` says more of a source that
+    is one robot's own.
     """
     inventory = collect(read_document(source, file), tree, urdf_declarations)
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
+    missed = missed_by_arguments(inventory, own.plain)
+    findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
     values = slot_values(inventory.document.root)
     findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
     pieces = cut(source, plan.edits)
-    findings += _shared(inventory, pieces, naming, tree)
-    return Template(inventory, plan, values, pieces, findings, naming, tree, urdf_declarations)
+    if inventory.format != SRDF:  # it starts nothing
+        found = (
+            _shared_with_twin(inventory, own.twin, naming, tree)
+            if own.twin
+            else shared_by_all(inventory.document, pieces, naming, tree.vocabulary)
+        )
+        findings += to_findings(inventory.document, found, WARNING)
+    return Template(inventory, plan, pieces, findings, naming, tree, urdf_declarations)
 
 
-def _shared(
-    inventory: Inventory, pieces: list[bytes], naming: Naming, tree: Tree
-) -> Iterator[Finding]:
-    """What all robots would share; an SRDF starts nothing."""
-    if inventory.format != SRDF:
-        document = inventory.document
-        found = shared_by_all(document, pieces, naming, tree.vocabulary)
-        yield from to_findings(document, found, WARNING)
+def _shared_with_twin(
+    inventory: Inventory, twin: bytes, naming: Naming, tree: Tree
+) -> Iterator[Problem]:
+    """What a robot whose xacro has arguments of its own would share with all others."""
+    document = inventory.document
+    other = collect(read_document(twin, document.file), tree)
+    own = naming._replace(own=own_names(other, [TWIN]))
+    text = fill(cut(twin, make_plan(other, own).edits), TWIN)
+    return shared_with(document, text, TWIN, naming, tree.vocabulary)
 
 
 def check_urdf(inventory: Inventory, urdf_declarations: Declared) -> None:
@@ -72,7 +89,7 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     The others differ from it in nothing but the robot's name at the same places; that no two names
     become one is checked for all of them before the first is returned.
     """
-    inventory, plan, values, *_ = prepared
+    inventory, plan, *_ = prepared
     renames = plan.renames
     document = inventory.document
     taken = checks.taken_names(inventory, renames, robots)
@@ -85,9 +102,9 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     for number, robot in enumerate(robots):
         output = fill(prepared.pieces, robot)
         if number == 0:
+            slots = len(prepared.pieces) - 1
             *_, naming, tree, urdf_declarations = prepared
-            declared = respelled_names(urdf_declarations, renames, robot)
-            verify(inventory, plan, values, output, robot, naming, tree, declared)
+            verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
         yield output
 
 

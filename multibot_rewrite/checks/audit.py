@@ -16,7 +16,7 @@ from multibot_rewrite.checks.references import (
     loose_ends,
     undeclared_names,
 )
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.rewriters.text import text_at
@@ -26,7 +26,7 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, without_comments
 from multibot_rewrite.steps.renames import RenameMap
 
-__all__ = ["audit", "is_unknown", "unknown_hardware", "unknown_plugins"]
+__all__ = ["audit", "is_unknown", "other_ros", "unknown_hardware", "unknown_plugins"]
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
@@ -40,6 +40,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         *to_findings(document, ambiguous(inventory), WARNING),
         *to_findings(document, unknown_plugins(inventory, tree), WARNING),
         *to_findings(document, unknown_hardware(inventory, tree), WARNING),
+        *to_findings(document, other_ros(inventory, tree), NOTE),
         *hazards(inventory, renames),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
@@ -119,6 +120,23 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         message = f"plugin {name!r} is not in the vocabulary: its own parameters are not renamed"
         hint = f"did you mean {near!r}?" if near else ""
         yield Problem(host.element, message, None, hint, (), "MB902")
+
+
+def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Parameters of the ROS 1 plugin of that name, which the ROS 2 plugin does not read."""
+    for host in inventory.hosts:
+        section = host.node.section
+        if section is None or section.type != "plugin" or section.ros != "2":
+            continue
+        flavours = tree.vocabulary.find("plugin", section.names[0])
+        theirs = {tag for other in flavours if other.ros == "1" for tag in other.tags}
+        known = section.tags | host.node.children.keys()
+        left = sorted({str(child.tag) for child in host.element} & (theirs - known))
+        if left:
+            tags = ", ".join(f"<{tag}>" for tag in left)
+            message = f"{section.names[0]} does not read {tags} in ROS 2: nothing in it is renamed"
+            hint = "delete what ROS 1 needed, or say it with <ros> and the names of ROS 2"
+            yield Problem(host.element, message, None, hint, (), "MB904")
 
 
 def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:

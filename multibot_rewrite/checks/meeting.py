@@ -31,8 +31,15 @@ def shared_by_all(
     robot = TWIN
     while robot.encode() in document.source:
         robot += "x"
+    return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
+
+
+def shared_with(
+    document: Document, text: bytes, robot: str, naming: Naming, vocabulary: Vocabulary
+) -> Iterator[Problem]:
+    """The same for the text of a ``robot`` that nothing else is called like."""
     try:
-        reading = read(fill(pieces, robot), document.file, vocabulary)
+        reading = read(text, document.file, vocabulary)
     except InputError as error:
         raise ProofError(str(error)) from None
     for it in same_for_all(reading, robot, naming):

@@ -100,10 +100,11 @@ def taken_names(
 
 
 def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:
-    """Declared names that stay as they are, and names that are used and declared nowhere."""
-    for kind, name, claim, changes in _declarations(inventory, renames):
-        if not changes:
-            yield kind, name, claim
+    """Declared names that stay as they are, those of the URDF beside an SRDF included, and names
+    that are used and declared nowhere."""
+    for kind, declared in inventory.declared.items():
+        same = (pair for pair in declared.items() if not renames.changes(kind, pair[0]))
+        yield from ((kind, name, claim) for name, claim in same)
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         lost = [it for it in names if not it.kind]
         if lost and claim.site.role == "uses" and must_be_declared(claim.site):

@@ -19,6 +19,7 @@ REASONS = {
     "MB432": ("frame", SHARED),
     "MB425": ("name", "looked up in the whole world"),
     "MB426": ("remap rule", "of the whole process"),
+    "MB143": ("frame", "that an argument of the xacro misses"),
     "MB422": ("prefix parameter", "that no postfix reaches"),
     "MB428": ("name", "fixed in a plugin's code"),
 }

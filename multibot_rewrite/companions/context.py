@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.companions.names.rename_map import CompanionNames
+from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
@@ -36,12 +36,17 @@ class Companion(NamedTuple):
 
 
 def make_context(
-    declared: Declared, naming: Naming, facts: Iterable[NodeFacts], distro: str = JAZZY
+    declared: Declared,
+    naming: Naming,
+    facts: Iterable[NodeFacts],
+    distro: str = JAZZY,
+    own: Mapping[tuple[str, str], str] = NO_OWN,
 ) -> Context:
-    """The context of a description (not rewritten) and the nodes that its robots run."""
+    """The context of a description (not rewritten) and the nodes that its robots run; ``own`` as in
+    ``CompanionNames``."""
     nodes = {it.name: f"/{it.name}" if it.shared else full_name(it.name, naming) for it in facts}
-    names, topics = (CompanionNames(declared, naming, slot) for slot in (TAG_SLOT, NAMESPACE_SLOT))
-    return Context(names, topics, nodes, distro)
+    names = CompanionNames(declared, naming, TAG_SLOT, own)
+    return Context(names, names._replace(robot=NAMESPACE_SLOT), nodes, distro)
 
 
 def full_name(node: str, naming: Naming) -> str:

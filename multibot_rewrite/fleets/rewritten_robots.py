@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.checks.meeting import SHARED_CODES
-from multibot_rewrite.companions.names.rename_map import CompanionNames
+from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import RobotSpec, Sources
@@ -96,13 +96,14 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _final(text, robot, naming)
         declared = text.template.inventory.declared
+        names = companion_names(declared, naming, robot.tag, jobs.description.own.plain)
         found = (*text.findings, *(semantic.findings if semantic else ()))
         yield RewrittenRobot(
             robot,
             data,
             _final(semantic, robot, naming) if semantic else b"",
-            CompanionNames(declared, naming, robot.tag),
-            CompanionNames(declared, naming, robot.namespace),
+            names,
+            names._replace(robot=robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag),
             # What robots share the fleet says, of the robots that it has.

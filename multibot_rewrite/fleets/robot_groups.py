@@ -36,7 +36,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None)
-        declared, naming, _ = robots[0].names
-        context = make_context(declared, naming, facts, plan.file.distro)
+        declared, naming, _, own = robots[0].names
+        context = make_context(declared, naming, facts, plan.file.distro, own)
         context = with_srdf(context, robots[0].semantics)
         yield RobotGroup(tuple(robots), facts, context)

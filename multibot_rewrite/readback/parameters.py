@@ -12,11 +12,11 @@ from multibot_rewrite.rewriters.vocabulary import VocabularySection
 
 
 def values_of(host: _Element, site: Site) -> list[str]:
-    """Its values, in order; an element that is empty or not there is the default."""
+    """Its values, in order, or the default; none where an empty element means something else."""
     if site.when and not _applies(host, site):
         return []
     given = list(values_at(host, site.path))
-    if not any(given):
+    if not any(given) and (not given or site.empty == "default"):
         given = [_default(host, site.default)]
     return [value for value in given if value]
 

@@ -23,11 +23,13 @@ def plugin_section(
     plugin: _Element, vocabulary: Vocabulary
 ) -> tuple[VocabularySection | None, bool]:
     """The section of a plugin, None where it has none, and whether the plugin itself is known."""
+    with_ros = plugin.find("ros") is not None
     for key in _keys(plugin):
         found = vocabulary.find("plugin", key)
-        if found:
+        # Nothing in ROS 1 reads a <ros>.
+        if found and not (with_ros and all(it.ros == ROS_1 for it in found)):
             return _of_release(found, plugin), True
-    if plugin.find("ros") is None:
+    if not with_ros:
         return None, False
     return vocabulary.find("plugin", WITH_ROS)[0], False
 

@@ -15,6 +15,7 @@ from multibot_rewrite.naming import (
     affix,
     is_keyword,
     removal,
+    spelled,
 )
 from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, NamePart
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
@@ -149,6 +150,14 @@ def respelled(value: str, spelling: Spelling, robot: str) -> str:
     for name in reversed(spelling):
         value = name.affix.spell(value, robot)
     return value
+
+
+def spelled_names(declared: Declared, naming: Naming, robot: str) -> Declared:
+    """Declarations by the names they have after a rewrite for ``robot``."""
+    return {
+        kind: {spelled(naming, robot, kind, name): claim for name, claim in names.items()}
+        for kind, names in declared.items()
+    }
 
 
 def stripped_names(declared: Declared, naming: Naming, robot: str) -> Declared:

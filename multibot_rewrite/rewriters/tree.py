@@ -211,9 +211,9 @@ class Tree:
 
         def select(element: _Element) -> TreeNode:
             for key in keys(element):
-                found = self.vocabulary.find(type_, key)
-                if found:
-                    return self._node(base, _flavour(found, element))
+                found = _flavour(self.vocabulary.find(type_, key), element)
+                if found is not None:
+                    return self._node(base, found)
             return base
 
         return select
@@ -281,13 +281,15 @@ SELECTORS: dict[str, Callable[[_Element], list[str]]] = {
 }
 
 
-def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection:
+def _flavour(found: Sequence[VocabularySection], element: _Element) -> VocabularySection | None:
     """ROS 1 and ROS 2 plugins share file names; the children tell them apart, ROS 2 where none do.
 
-    Source: gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace) and ros2 (snake_case,
-    a ``ros`` child).
+    A ``ros`` child is ROS 2, whatever was left from before: nothing in ROS 1 reads one. Source:
+    gazebo_ros_pkgs branches noetic-devel (camelCase, robotNamespace) and ros2 (snake_case).
     """
-    if len(found) == 1:
-        return found[0]
+    if element.find("ros") is not None:
+        found = [section for section in found if section.ros != "1"]
+    if len(found) < 2:
+        return found[0] if found else None
     tags = {child.tag for child in element}
     return max(found, key=lambda section: (len(section.tags & tags), section.ros))

@@ -50,6 +50,7 @@ class Access:
 
     def __init__(self, path: str, reach: Reach, find: Find | None) -> None:
         self.path, self.reach, self.find = path, reach, find
+        self.beside = {os.path.dirname(it) for it in _real(path)}
         self.roots = [os.path.realpath(it) for it in (*_homes(path), *reach.roots)]
         self.sourced = [os.path.abspath(it) for it in (*_prefixes(), *_listed("ROS_PACKAGE_PATH"))]
 
@@ -61,7 +62,9 @@ class Access:
         plain, real = os.path.abspath(name), os.path.realpath(name)
         if any(_below(plain, it) for it in self.sourced):
             return plain
-        root = next((it for it in self.roots if _below(real, it)), None)
+        folder = os.path.dirname(real)
+        roots = (*self.roots, folder) if folder in self.beside else self.roots
+        root = next((it for it in roots if _below(real, it)), None)
         if root is None:
             raise NotAllowedError(f"{name} is outside of the folders that xacro may read")
         if any(it[0] == "." for it in os.path.relpath(real, root).split(os.sep) if it != "."):
@@ -103,7 +106,7 @@ class Access:
                 if seen > MOST_FILES:
                     raise NotAllowedError(f"{pattern} names more than {MOST_FILES} files")
             found = beside
-        return sorted(it for it in found if os.path.lexists(it))
+        return sorted(it for it in found if self.readable(it) and os.path.lexists(it))
 
     def read(self, name: str) -> bytes:
         """The bytes of a file, one more than may be if it has more; raises NotAllowedError, OSError."""
@@ -114,16 +117,27 @@ class Access:
             return file.read(MAX_BYTES + 1)
 
 
+def _real(path: str) -> tuple[str, str]:
+    """A file without links in its folder, and the file that it is a link to."""
+    folder, name = os.path.split(os.path.abspath(path))
+    return os.path.join(os.path.realpath(folder), name), os.path.realpath(path)
+
+
 def _homes(path: str) -> Iterator[str]:
-    """The folder of a file, its package and its repository; those of the file a link leads to, too."""
-    for file in dict.fromkeys((os.path.abspath(path), os.path.realpath(path))):
+    """The folder of a file, its package and its repository; those of the file a link leads to, too.
+
+    The home of a user and what is above it are none, although they may hold a robot or be a repository.
+    """
+    home = os.path.realpath(os.path.expanduser("~"))
+    for file in _real(path):
         folder = os.path.dirname(file)
-        yield folder
-        for mark in ("package.xml", ".git"):
-            above = next((it for it in _above(folder) if os.path.lexists(f"{it}/{mark}")), "")
-            # The home of a user may be a repository, too; it is not the robot's.
-            if above and not _below(os.path.expanduser("~"), above):
-                yield above
+        marked = (_marked(folder, mark) for mark in ("package.xml", ".git"))
+        yield from (it for it in (folder, *marked) if it and not _below(home, it))
+
+
+def _marked(folder: str, mark: str) -> str:
+    """The nearest folder above that holds ``mark``; empty if there is none."""
+    return next((it for it in _above(folder) if os.path.lexists(os.path.join(it, mark))), "")
 
 
 def _above(folder: str) -> Iterator[str]:

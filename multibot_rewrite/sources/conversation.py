@@ -10,7 +10,7 @@ from array import array
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from multibot_rewrite.bounded import MAX_BYTES
+from multibot_rewrite.bounded import MAX_BYTES, load_json
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.access import Access, NotAllowedError
 from multibot_rewrite.sources.child.frames import (
@@ -51,10 +51,11 @@ class Failure(NamedTuple):
 
 
 class Result(NamedTuple):
-    """What a child told. ``files`` are the names and numbers of elements of what it read, ``origins``
-    and ``calls`` are as ``marks`` has them; nothing says that they are true."""
+    """What a child told; nothing says that it is true. ``fences`` are those that it has, ``files``
+    the names and numbers of elements of what it read, ``origins`` and ``calls`` as in ``marks``."""
 
     notes: str
+    fences: tuple[str, ...]
     files: tuple[tuple[str, int], ...]
     macros: tuple[str, ...]
     failure: Failure | None
@@ -104,7 +105,7 @@ def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Re
         except TimeoutError:
             raise InputError(_ended(access.path, signal.SIGALRM, seconds)) from None
         except (EOFError, ConnectionError):
-            raise InputError(_ended(access.path, it.end(), seconds)) from None
+            raise InputError(_ended(access.path, it.end(ended=True), seconds)) from None
         except (GarbageError, ValueError, KeyError, TypeError, RecursionError, struct.error):
             said = "its process gave a wrong answer; a file that tampers with it is not expanded"
             raise InputError(f"{access.path}: xacro failed: {said}") from None
@@ -123,7 +124,7 @@ def _answered(it: Child, sources: Sources) -> bytes:
 
 
 def _answer(data: bytes, sources: Sources) -> bytes:
-    what, name = json.loads(data)
+    what, name = load_json(data)
     access = sources.access
     ways: Mapping[str, Callable[[str], bytes]] = {
         READ: sources.read,
@@ -146,7 +147,7 @@ def _answer(data: bytes, sources: Sources) -> bytes:
 
 def _result(it: Child, data: bytes) -> Result:
     """The rest of what a child tells; raises what converse catches."""
-    report = json.loads(data)
+    report = load_json(data)
     if "missing" in report:
         raise InputError(f"{_text(report['missing'])}; pip install xacro, or source ROS 2")
     failed = report.get("error")
@@ -154,6 +155,7 @@ def _result(it: Child, data: bytes) -> Result:
     origins = b"" if failed else _expected(it, ORIGINS)
     return Result(
         _text(report["notes"]),
+        tuple(_text(name) for name in report["fences"]),
         tuple((_text(name), int(count)) for name, count in report["files"]),
         tuple(_text(name) for name in report["macros"]),
         _failure(failed) if failed else None,

@@ -25,6 +25,7 @@ _HINTS = (
     ("variables alone", "give --trust if you trust the file"),
     ("refused: ", "a xacro file may compute, no more; give --trust if you trust it"),
     ("not permitted", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("new thread", "a xacro file may compute, no more; give --trust if you trust it"),
     ("open files", "a xacro file may compute, no more; give --trust if you trust it"),
     ("Undefined substitution argument", "give it as {}:=VALUE"),
     ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),

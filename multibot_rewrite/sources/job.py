@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from functools import partial
+from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.model import InputError, UsageError
@@ -13,27 +13,37 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.own_names import (
+    OF_ALL,
     ROBOT,
     Arguments,
+    NameTexts,
+    OwnSource,
+    as_twin,
     filled,
+    has_mark,
     marked,
+    marked_texts,
     name_robot,
+    own_affixes,
     own_names,
+    own_texts,
 )
 from multibot_rewrite.sources.read import Source, args_for, read_source
-from multibot_rewrite.steps.collect import NOTHING, collect, declarations
+from multibot_rewrite.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.steps.document import read_document
 
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF. It holds no parsed document, so it can be pickled."""
+    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own. It holds no
+    parsed document, so it can be pickled."""
 
     data: bytes
     file: str
     naming: Naming
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
+    own: OwnSource = OF_ALL
 
     @property
     def tree(self) -> Tree:
@@ -44,6 +54,12 @@ class Job(NamedTuple):
     def urdf_declarations(self) -> Declared:
         """What the URDF beside an SRDF declares; raises InputError."""
         return declarations(*self.urdf, self.tree) if self.urdf else NOTHING
+
+    @property
+    def inventories(self) -> list[Inventory]:
+        """What is in the description, and in the URDF beside an SRDF; raises InputError."""
+        own = collect(read_document(self.data, self.file), self.tree, self.urdf_declarations)
+        return [own, collect(read_document(*self.urdf), self.tree)] if self.urdf else [own]
 
 
 def read_job(
@@ -62,12 +78,8 @@ def read_job(
     and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
     anything.
     """
-    given = xacro_args or {}
-    read = partial(_read, source, naming, urdf, tuple(vocabulary), file, trust)
-    job = read(filled(given, *words[:1]))
-    if not name_robot(given, words):
-        return job
-    return job._replace(naming=naming._replace(own=_own_names(read, given, words)))
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust)
+    return job_for(read, xacro_args or {}, words)
 
 
 def read_jobs(
@@ -82,13 +94,13 @@ def read_jobs(
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = partial(read_job, source, naming, urdf, given, tuple(vocabulary), file, trust=trust)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
-    jobs = {robot: read(words=[robot]) for robot in named}
+    jobs = {robot: job_for(read, given, [robot]) for robot in named}
     if others:
         _check_meant(given, {robot: job for robot, job in jobs.items() if job.naming.own}, others)
-        jobs |= dict.fromkeys(others, read(words=others[:1]))
+        jobs |= dict.fromkeys(others, job_for(read, given, others[:1]))
     return {robot: jobs[robot] for robot in robots}
 
 
@@ -103,37 +115,69 @@ def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) ->
         raise UsageError(f"{what}, and {others[0]} gets it, too; write {hint}")
 
 
-def _read(
+Reader = Callable[[Arguments], Job]
+
+
+def reader(
     source: Source,
     naming: Naming,
     urdf: Source | None,
     vocabulary: tuple[str, ...],
     file: str,
-    trust: bool,
-    args: Arguments,
-) -> Job:
-    data, name = read_source(source, args_for(source, urdf, args), trust)
-    beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
-    return Job(data, file or name, naming, vocabulary, beside)
+    trust: bool = False,
+) -> Reader:
+    """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
+
+    @cache
+    def read(pairs: frozenset[tuple[str, str]]) -> Job:
+        args = dict(pairs)
+        data, name = read_source(source, args_for(source, urdf, args), trust)
+        beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
+        return Job(data, file or name, naming, vocabulary, beside)
+
+    return lambda args: read(frozenset(args.items()))
 
 
-def _own_names(
-    read: Callable[[Arguments], Job], given: Arguments, words: Sequence[str]
-) -> OwnNames:
-    """The names that the arguments make of the robot's words, found with other words in their place."""
+def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
+    """The job of the robot with these words; raises as ``read_job``."""
+    job = read(filled(given, *words[:1]))
+    if not name_robot(given, words):
+        return job
+    other = _marked(read, given, words)
+    own = {key: None for part in other.inventories for key in own_names(part, words)}
+    twin = as_twin(other.data) if has_mark(other.data) else b""
+    job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(twin=twin))
+    try:
+        plain = read({it: text for it, text in given.items() if not name_robot({it: text}, words)})
+    except InputError:
+        # An argument without a default: nothing is known of names without it.
+        return job
+    texts = _marked_texts(plain, other)
+    job = job._replace(own=OwnSource(own_texts(texts, words), twin))
+    beside_plain = job.urdf and len(set(words)) == 1 and not twin
+    affixes = own_affixes(texts) if beside_plain else None
+    return _of_plain(job, plain, affixes) if affixes else job
+
+
+def _marked(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
+    """The sources with marks for the robot's words in every argument that takes them."""
     with suppress(InputError):
-        return _marked_names(read(marked(given, words)), words)
+        return read(marked(given, words))
     # Some file takes only words that it knows for one of them.
-    found: OwnNames = {}
-    plain = filled(given, words[0])
+    args = filled(given, words[0])
     for name, text in marked(given, words).items():
         with suppress(InputError):
-            found = {**found, **_marked_names(read({**plain, name: text}), words)}
-    return found
+            read({**args, name: text})
+            args[name] = text
+    return read(args)
 
 
-def _marked_names(job: Job, words: Sequence[str]) -> OwnNames:
-    inventories = [collect(read_document(job.data, job.file), job.tree, job.urdf_declarations)]
-    if job.urdf:
-        inventories.append(collect(read_document(*job.urdf), job.tree))
-    return {key: None for it in inventories for key in own_names(it, words)}
+def _marked_texts(plain: Job, other: Job) -> NameTexts:
+    pairs = zip(plain.inventories, other.inventories, strict=True)
+    return {key: text for pair in pairs for key, text in marked_texts(*pair).items()}
+
+
+def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:
+    """An SRDF that knows nothing of the arguments: its names are those of the URDF without them, and
+    become what the arguments make of these."""
+    return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))

@@ -8,17 +8,36 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import OwnNames
+from multibot_rewrite.naming import DECLARED_KINDS, Affix, OwnNames
 from multibot_rewrite.steps.collect import Inventory
 
 ROBOT = "{robot}"
 # Stand for the words of a robot. Letters alone are taken by every file that takes a name.
 MARKS = ("qzrobotzq", "qznamespacezq", "qztagzq")
+TWIN = MARKS[0]
 _TWICE = re.compile(r"(qz\w+?zq)[/_]*\1")
 _PLACEHOLDER = re.compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
 Arguments = Mapping[str, str]
+# Kind and text of a name -> another text of it.
+NameTexts = Mapping[tuple[str, str], str]
+NO_TEXTS: NameTexts = {}
+
+
+class OwnSource(NamedTuple):
+    """What is known of a description that is one robot's own, by the arguments of its xacro.
+
+    ``plain`` are the names that the arguments make, by what they are without these; ``twin`` are the
+    bytes for a robot that is called ``TWIN``.
+    """
+
+    plain: NameTexts = NO_TEXTS
+    twin: bytes = b""
+
+
+OF_ALL = OwnSource()
 
 
 def filled(arguments: Arguments, robot: str = "") -> dict[str, str]:
@@ -71,11 +90,72 @@ def own_names(inventory: Inventory, words: Sequence[str]) -> OwnNames:
 def _marked_names(inventory: Inventory) -> Iterator[tuple[str, str]]:
     for names in inventory.names:
         for name in names:
-            if name.kind and any(mark in name.text for mark in MARKS):
+            if name.kind and _is_marked(name.text):
                 yield name.kind, name.text
+
+
+def _is_marked(text: str) -> bool:
+    return any(mark in text for mark in MARKS)
+
+
+def has_mark(data: bytes) -> bool:
+    """Is there a mark anywhere in a text?"""
+    return any(mark.encode() in data for mark in MARKS)
 
 
 def _unmarked(text: str, words: Sequence[str]) -> str:
     for word, mark in zip(words, MARKS, strict=False):
         text = text.replace(mark, word)
     return text
+
+
+def marked_texts(plain: Inventory, marked: Inventory) -> NameTexts:
+    """Names as they are without the arguments -> the same with marks.
+
+    Names are the same by their order among those of their kind: a kind with more names in one of the
+    two is left out.
+    """
+    found: dict[tuple[str, str], str] = {}
+    before, after = _by_kind(plain), _by_kind(marked)
+    for kind, names in after.items():
+        same = len(before.get(kind, ())) == len(names)
+        pairs = zip(before[kind], names, strict=True) if same else ()
+        found.update({(kind, old): new for old, new in pairs if _is_marked(new)})
+    return found
+
+
+def _by_kind(inventory: Inventory) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for names in inventory.names:
+        for name in names:
+            if name.kind not in DECLARED_KINDS:
+                found.setdefault(name.kind, []).append(name.text)
+    # A reference that an argument misses is of another kind without its declaration.
+    return {**found, **{kind: list(names) for kind, names in inventory.declared.items()}}
+
+
+def own_texts(texts: NameTexts, words: Sequence[str]) -> NameTexts:
+    """The same for the robot with these words."""
+    return {key: _unmarked(text, words) for key, text in texts.items()}
+
+
+def own_affixes(texts: NameTexts) -> OwnNames | None:
+    """Where in the plain names the robot's name goes; None if the arguments replace more of a name."""
+    found = {key: _inserted(key[1], text) for key, text in texts.items()}
+    return None if None in found.values() else found
+
+
+def _inserted(plain: str, marked: str) -> Affix | None:
+    for at in range(len(plain) + 1):
+        middle = marked[at : len(marked) - len(plain) + at]
+        before, mark, after = middle.partition(MARKS[0])
+        if mark and plain[:at] + middle + plain[at:] == marked:
+            return Affix(at, before, after)
+    return None
+
+
+def as_twin(data: bytes) -> bytes:
+    """The text for a robot whose words are all ``TWIN``."""
+    for mark in MARKS:
+        data = data.replace(mark.encode(), TWIN.encode())
+    return data

@@ -18,7 +18,7 @@ from functools import lru_cache
 from time import monotonic
 
 from multibot_rewrite.model import InputError
-from multibot_rewrite.sources.child.commands import COMMAND, END, REPLY, START
+from multibot_rewrite.sources.child.commands import COMMAND, END, ENDED, REPLY, START
 
 _MODULE = "multibot_rewrite.sources.child.serve"
 # Python finds what this process finds, and nothing by the variables of the environment.
@@ -52,9 +52,9 @@ class Server:
         """Start a child with that socket; its number. Raises ServerGoneError."""
         return self._ask(START, 0, [theirs.fileno()])
 
-    def end(self, pid: int) -> int:
-        """End a child; the signal that had ended it, or 0. Raises ServerGoneError."""
-        return self._ask(END, pid, [])
+    def end(self, pid: int, ended: bool) -> int:
+        """End a child; the signal if it had ended by itself, or 0. Raises ServerGoneError."""
+        return self._ask(ENDED if ended else END, pid, [])
 
     def _ask(self, command: bytes, pid: int, descriptors: list[int]) -> int:
         with self.lock:
@@ -77,7 +77,7 @@ class Child:
 
     def __init__(self, server: Server, pid: int, ours: socket.socket, deadline: float) -> None:
         self.server, self.pid, self.ours, self.deadline = server, pid, ours, deadline
-        self.ended: int | None = None
+        self.signal: int | None = None
 
     def send(self, data: bytes) -> None:
         """Send all of it; raises OSError."""
@@ -101,14 +101,14 @@ class Child:
             raise TimeoutError
         return left
 
-    def end(self) -> int:
-        """End it; the signal that had ended it, or 0."""
-        if self.ended is None:
+    def end(self, ended: bool = False) -> int:
+        """End it; the signal if it had ended by itself, or 0."""
+        if self.signal is None:
             self.ours.close()
-            self.ended = 0
+            self.signal = 0
             with suppress(ServerGoneError):
-                self.ended = self.server.end(self.pid)
-        return self.ended
+                self.signal = self.server.end(self.pid, ended)
+        return self.signal
 
 
 @contextmanager

@@ -28,14 +28,3 @@ def cut(source: bytes, edits: Iterable[Edit]) -> list[bytes]:
 def fill(pieces: list[bytes], robot: str) -> bytes:
     """The text for one robot."""
     return robot.encode().join(pieces)
-
-
-def invert(edits: Iterable[Edit], source: bytes, robot: str) -> list[Edit]:
-    """Edits on the text for ``robot`` that give the source back."""
-    shift = 0
-    back = []
-    for start, end, before, after in edits:
-        new = len(before) + (len(robot) + len(after) if after is not None else 0)
-        back.append(Edit(start + shift, start + shift + new, source[start:end], None))
-        shift += new - (end - start)
-    return back

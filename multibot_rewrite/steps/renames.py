@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 from multibot_rewrite.naming import Affix, Naming, affix
 from multibot_rewrite.rewriters.contact import Respell
-from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import (
     Renamed,
     ResolvedName,
@@ -73,11 +72,3 @@ def _spelling(
 def respeller(renames: RenameMap, robot: str) -> Respell:
     """The new spelling of a declared link, joint or model for ``robot``."""
     return lambda kind, name: renames.spelled(robot, kind, name)
-
-
-def respelled_names(declared: Declared, renames: RenameMap, robot: str) -> Declared:
-    """Declarations by the names they have for ``robot``."""
-    return {
-        kind: {renames.spelled(robot, kind, name): claim for name, claim in names.items()}
-        for kind, names in declared.items()
-    }

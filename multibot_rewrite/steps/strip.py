@@ -24,7 +24,7 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
         spans = known.get(key)
         if spans is None:
             spans = known[key] = _spans(names, claim.site.namespaced, naming, robot)
-        if spans and is_reached(claim, naming) and not _inside(claim, removed):
+        if spans and is_reached(claim, naming) and not is_inside(claim, removed):
             edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
@@ -37,12 +37,22 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
     return sorted(edits, key=lambda edit: edit.start)
 
 
+def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robot: str) -> str:
+    """A claimed value without its affixes."""
+    value = claim.value
+    if is_reached(claim, naming):
+        for start, end in reversed(_spans(names, claim.site.namespaced, naming, robot)):
+            value = value[:start] + value[end:]
+    return value
+
+
 def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     """The claims that are not in inserted elements."""
-    return [claim for claim in claims if not _inside(claim, removed)] if removed else claims
+    return [claim for claim in claims if not is_inside(claim, removed)] if removed else claims
 
 
-def _inside(claim: Claim, removed: list[Edit]) -> bool:
+def is_inside(claim: Claim, removed: list[Edit]) -> bool:
+    """Is the claim in an inserted element?"""
     return bool(removed) and any(edit.start <= claim.start < edit.end for edit in removed)
 
 

@@ -17,7 +17,6 @@ class Template(NamedTuple):
 
     inventory: Inventory
     plan: Plan
-    values: list[str]
     pieces: list[bytes]
     findings: list[Finding]
     naming: Naming

@@ -10,7 +10,9 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite import RewriteRefused, UsageError, explain, rewrite, rewrite_all, strip
+from multibot_rewrite.naming import make_naming
 from multibot_rewrite.sources.expand import expand
+from multibot_rewrite.sources.job import read_job
 from multibot_rewrite.sources.own_names import filled
 
 ARM = FIXTURES / "xacros" / "arm.urdf.xacro"
@@ -228,3 +230,72 @@ def test_two_arguments_of_one_name_are_refused(tmp_path: Path) -> None:
         rewrite(path, "left", xacro_args={"p": "{robot}_", "q": "left_arm"})
     done = rewrite(path, "left", xacro_args={"p": "{robot}_", "q": "arm_{robot}"}).text
     assert names(done, "link") == ["left_arm_left"]
+
+
+PLAIN_SRDF = """\
+<robot name="arm">
+  <group name="arm"><chain base_link="base_link" tip_link="tool0"/></group>
+  <group_state name="home" group="arm"><joint name="elbow" value="0"/></group_state>
+  <disable_collisions link1="base_link" link2="camera_link" reason="Never"/>
+</robot>
+"""
+
+
+@pytest.mark.parametrize("layout", ["postfix", "tf-per-robot"])
+def test_an_srdf_that_knows_nothing_of_the_argument(layout: str) -> None:
+    done = rewrite(PLAIN_SRDF, "left", urdf=ARM, xacro_args=PREFIX, layout=layout)
+    camera = "camera_link/left" if layout == "postfix" else "camera_link"
+    model = "arm_left" if layout == "postfix" else "arm"
+    expected = (
+        PLAIN_SRDF.replace('"base_link"', '"left_base_link"')
+        .replace('"tool0"', '"left_tool0"')
+        .replace('"elbow"', '"left_elbow"')
+        .replace('"camera_link"', f'"{camera}"')
+        .replace('<robot name="arm"', f'<robot name="{model}"')
+    )
+    assert done.text == expected
+    assert done.findings == ()
+    urdf = rewrite(ARM, "left", xacro_args=PREFIX, layout=layout).data
+    back = strip(done.data, "left", urdf=urdf, xacro=ARM, xacro_args=PREFIX, layout=layout)
+    assert back.decode() == PLAIN_SRDF
+
+
+@pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
+def test_names_of_an_argument_are_not_shared_by_all(layout: str) -> None:
+    base = rewrite(BASE, "robot1", layout=layout, xacro_args={"namespace": "{robot}"})
+    arm = rewrite(ARM, "robot1", layout=layout, xacro_args=PREFIX)
+    assert not {"MB430", "MB431", "MB432"} & {it.code for it in (*base.findings, *arm.findings)}
+
+
+def test_what_no_argument_reaches_is_still_found_to_be_shared(tmp_path: Path) -> None:
+    body = (
+        '<link name="$(arg p)a"/><gazebo reference="$(arg p)a">'
+        '<sensor name="lidar" type="gpu_lidar"><topic>{name}/left/scan</topic></sensor></gazebo>'
+    )
+    path = made('<xacro:arg name="p" default=""/>', body, tmp_path)
+    done = rewrite(path, "left", xacro_args={"p": "{robot}_"})
+    # The robot's name in it is not there by the argument: every robot would have it.
+    assert [it.code for it in done.findings] == ["MB430"]
+    assert "{name}/left/scan" in done.findings[0].message
+
+
+def test_a_reference_without_the_argument_is_a_warning(tmp_path: Path) -> None:
+    body = (
+        '<link name="$(arg p)base_link"/><gazebo>'
+        '<plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+        "<robot_base_frame>{}base_link</robot_base_frame></plugin></gazebo>"
+    )
+    head = '<xacro:arg name="p" default=""/>'
+    path = made(head, body.format(""), tmp_path)
+    done = rewrite(path, "left", layout="both", xacro_args={"p": "{robot}_"})
+    assert [it.code for it in done.findings] == ["MB143"]
+    assert "frame 'base_link' is the link 'left_base_link'" in done.findings[0].message
+    assert rewrite(path, "left", layout="both").findings == ()
+    right = made(head, body.format("$(arg p)"), tmp_path)
+    assert rewrite(right, "left", layout="both", xacro_args={"p": "{robot}_"}).findings == ()
+
+
+def test_a_default_that_is_replaced_is_followed_as_well(tmp_path: Path) -> None:
+    path = made('<xacro:arg name="p" default="arm_"/>', '<link name="$(arg p)base"/>', tmp_path)
+    job = read_job(path, make_naming(), xacro_args={"p": "{robot}_"}, words=["left"])
+    assert job.own.plain == {("link", "arm_base"): "left_base"}

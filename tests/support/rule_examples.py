@@ -95,7 +95,9 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 def rewrite_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """The example rewritten for ``robots`` of the rule's options, or with ``strip`` taken back for
     that robot; the other options are those of the call."""
-    file = folder / f"example.{'srdf' if SRDF in rule.formats else 'urdf'}"
+    endings = {SRDF: "srdf", XACRO: "urdf.xacro"}
+    ending = next((endings[it] for it in rule.formats if it in endings), "urdf")
+    file = folder / f"example.{ending}"
     file.write_text(whole(example))
     options: dict[str, Any] = {"robots": ["robot1"], **rule.options}
     if "urdf" in options:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.naming import NOT_PLAIN, Naming, spelled
@@ -22,14 +23,19 @@ KINDS = {
     # The left part of ``elbow/position``: a joint, a sensor or a gpio.
     "component": ("joint", "sensor", "gpio"),
 }
+NO_OWN: Mapping[tuple[str, str], str] = {}
 
 
 class CompanionNames(NamedTuple):
-    """The names that a description declares (not rewritten), the naming, and the robot."""
+    """The names that a description declares (not rewritten), the naming, and the robot.
+
+    ``own`` are names (kind and text) that arguments of the xacro make another for the robot.
+    """
 
     declared: Declared
     naming: Naming
     robot: str
+    own: Mapping[tuple[str, str], str] = NO_OWN
 
 
 def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True) -> str:
@@ -40,7 +46,20 @@ def spell(names: CompanionNames, word: str, value: str, namespaced: bool = True)
     if not value or not NOT_PLAIN.isdisjoint(value) or "<" in value:
         return value
     kind = resolve(value, KINDS[word], "uses", names.declared)
+    if (kind, value) in names.own:
+        return names.own[kind, value]
     return spelled(names.naming, names.robot, kind, value, namespaced)
+
+
+def companion_names(
+    declared: Declared, naming: Naming, robot: str, own: Mapping[tuple[str, str], str]
+) -> CompanionNames:
+    """The names of a robot; ``own`` are declared by either of their texts."""
+    both = {kind: dict(names) for kind, names in declared.items()}
+    for (kind, plain), text in own.items():
+        if text in both.get(kind, ()):
+            both[kind].setdefault(plain, both[kind][text])
+    return CompanionNames(both, naming, robot, own)
 
 
 def is_declared(names: CompanionNames, word: str, value: str) -> bool:

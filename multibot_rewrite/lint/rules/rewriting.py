@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from multibot_rewrite.checks.audit import unknown_hardware, unknown_plugins
+from multibot_rewrite.checks.audit import other_ros, unknown_hardware, unknown_plugins
 from multibot_rewrite.checks.mentions import as_problem, unclaimed_mentions
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
@@ -78,3 +78,25 @@ unknown_hardware_class = rule(
     "  <hardware><plugin>my_company/Arm</plugin></hardware>\n"
     "</ros2_control>\n",
 )(partial(_audit, unknown_hardware))
+
+parameter_of_ros_1 = rule(
+    "MB904",
+    "parameter-of-ros-1",
+    NOTE,
+    what="A Gazebo Classic plugin of ROS 2 has parameters that only its ROS 1 version reads.",
+    why="A plugin with a <ros> is one of ROS 2, which takes its topics from there: a topic, frame or "
+    "joint in such a parameter has no effect, with one robot or several.",
+    fix="Delete it, or say it with <ros> and the parameters of the ROS 2 plugin.",
+    bad="<gazebo>\n"
+    '  <plugin name="move" filename="libgazebo_ros_planar_move.so">\n'
+    "    <ros><namespace>/demo</namespace></ros>\n"
+    "    <commandTopic>cmd_vel</commandTopic>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good="<gazebo>\n"
+    '  <plugin name="move" filename="libgazebo_ros_planar_move.so">\n'
+    "    <ros><namespace>/demo</namespace></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=2,
+)(partial(_audit, other_ros))

@@ -17,24 +17,24 @@ MOST_MEMORY = 2 * 2**30
 
 def put_up(wanted: Collection[str], seconds: float) -> list[str]:
     """Put up those fences, for good; the names of those that this system has."""
+    memory = _memory()
     ways: Mapping[str, Callable[[], bool]] = {
-        LIMITS: lambda: limit(seconds),
+        LIMITS: lambda: limit(seconds, memory),
         LANDLOCK: landlock.enclose,
         SECCOMP: seccomp.enclose,
         AUDIT: audit.enclose,
     }
-    # In this order: the later ones refuse what the earlier ones need.
     return [name for name in FENCES if name in wanted and ways[name]()]
 
 
-def limit(seconds: float) -> bool:
+def limit(seconds: float, memory: int) -> bool:
     """Bounds of time and memory; no new file, process, or byte in a file."""
     undumpable()
     signal.setitimer(signal.ITIMER_REAL, seconds)
     whole = int(seconds) + 1
     bounds = {
         resource.RLIMIT_CPU: whole,
-        resource.RLIMIT_AS: _memory() + MOST_MEMORY,
+        resource.RLIMIT_AS: memory + MOST_MEMORY,
         resource.RLIMIT_CORE: 0,
         resource.RLIMIT_FSIZE: 0,
         resource.RLIMIT_NPROC: 0,

@@ -16,7 +16,8 @@ QUESTION, REPORT, TEXT, ORIGINS, CALLS = b"Q", b"J", b"T", b"O", b"C"
 READ, GLOB, FIND, ENVIRONMENT = "read", "glob", "find", "env"
 # The fences around a child.
 LIMITS, LANDLOCK, SECCOMP, AUDIT = "limits", "landlock", "seccomp", "audit"
-FENCES = (LIMITS, LANDLOCK, SECCOMP, AUDIT)
+# In this order: the later ones refuse what the earlier ones need.
+FENCES = (LANDLOCK, LIMITS, SECCOMP, AUDIT)
 # How long each frame of a child may be; a larger one is a lie.
 MOST_TEXT = 16 * 2**20
 LONGEST: Mapping[bytes, int] = {

@@ -11,13 +11,14 @@ import os
 import select
 import signal
 import socket
+import time
 import warnings
 from contextlib import suppress
 from typing import Any, BinaryIO
 
 from multibot_rewrite.sources.child import fences, run_xacro
 from multibot_rewrite.sources.child.asking import Ask, asking
-from multibot_rewrite.sources.child.commands import COMMAND, REPLY, START
+from multibot_rewrite.sources.child.commands import COMMAND, ENDED, REPLY, START
 from multibot_rewrite.sources.child.frames import (
     CALLS,
     MOST_TEXT,
@@ -32,6 +33,7 @@ from multibot_rewrite.sources.child.run_xacro import Expanded
 from multibot_rewrite.sources.child.system import die_with_parent
 
 IDLE_SECONDS = 10.0
+MOST_LOOKS, BETWEEN_SECONDS = 250, 0.002
 # What Python imports at the first use of something; behind the fences nothing is imported.
 _LATE = (
     "encodings.idna", "encodings.latin_1", "encodings.utf_16", "linecache", "traceback",
@@ -72,7 +74,7 @@ def _asked(control: socket.socket, children: set[int]) -> bool:
         answer = _forked(control, sent[0])
         children.add(answer)
     else:
-        answer = _end(pid)
+        answer = _ended(pid) if command == ENDED else _end(pid)
         children.discard(pid)
     control.sendall(REPLY.pack(answer))
     return True
@@ -92,14 +94,21 @@ def _forked(control: socket.socket, descriptor: int) -> int:
     return pid
 
 
+def _ended(pid: int) -> int:
+    """The signal that ended a child, or 0. It closed its socket: when it ended, or to look so."""
+    for _ in range(MOST_LOOKS):
+        ended, status = os.waitpid(pid, os.WNOHANG)
+        if ended:
+            return os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+        time.sleep(BETWEEN_SECONDS)
+    return _end(pid)
+
+
 def _end(pid: int) -> int:
-    """Kill a child and wait for it; the signal that ended it before, or 0."""
-    ended, status = os.waitpid(pid, os.WNOHANG)
-    if not ended:
-        os.kill(pid, signal.SIGKILL)
-        os.waitpid(pid, 0)
-        return 0
-    return os.WTERMSIG(status) if os.WIFSIGNALED(status) else 0
+    """Kill a child and wait for it; 0."""
+    os.kill(pid, signal.SIGKILL)
+    os.waitpid(pid, 0)
+    return 0
 
 
 def _work(descriptor: int) -> None:
@@ -109,14 +118,15 @@ def _work(descriptor: int) -> None:
     request = json.loads(received(inbox.read, {REQUEST: MOST_TEXT})[1])
     folder = request["folder"]
     os.getcwd = lambda: folder
-    fences.put_up(request["fences"], request["seconds"])
+    held = fences.put_up(request["fences"], request["seconds"])
 
     def send(data: bytes) -> None:
         view = memoryview(data)
         while view:
             view = view[outbox.write(view) :]
 
-    send(_frames(_expanded(request, asking(inbox.read, send))))
+    result = _expanded(request, asking(inbox.read, send))
+    send(_frames(result._replace(report={**result.report, "fences": held})))
 
 
 def _expanded(request: dict[str, Any], ask: Ask) -> Expanded:
