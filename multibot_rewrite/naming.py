@@ -22,6 +22,7 @@ SEPARATORS = {
     "joint": "_",
     "frame": "/",
     "sensor": "_",
+    "light": "_",
     "transmission": "_",
     "actuator": "_",
     "hardware": "_",
@@ -48,7 +49,7 @@ TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
-DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor")
+DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light")
 # Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
 NOT_PLAIN = frozenset("{}$ ")
 
@@ -205,9 +206,13 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
         return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
     if kind == "namespace":
         return _namespace_affix(separator, text)
-    if kind in FRAME_KINDS and text.strip("/") in naming.shared_frames:
+    if _is_shared_frame(naming, kind, text):
         return None
     return _name_affix(naming.affix, separator, text)
+
+
+def _is_shared_frame(naming: Naming, kind: str, text: str) -> bool:
+    return kind in FRAME_KINDS and text.strip("/") in naming.shared_frames
 
 
 def spelled(naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False) -> str:
@@ -257,7 +262,7 @@ def removal(
     for (of, stem), own in naming.own.items():
         if of == kind and own is not None and own.spell(stem, robot) == text:
             return own.at, own.at + len(text) - len(stem)
-    if separator is None:
+    if separator is None or _is_shared_frame(naming, kind, text):
         return None
     lead = 1 if text.startswith("/") else 0
     places = [(lead, robot + separator), (lead, robot)]

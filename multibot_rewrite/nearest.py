@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import islice
 
 # How much alike two words have to be, from 0 to 1 (difflib's ratio): one of a short list that a
 # person can choose from, a name of a file, and a name where the finding itself rests on it.
 CHOICE, ALIKE, MISTYPED = 0.6, 0.7, 0.8
+# Looking costs: so many names of one report, each among so many.
+HINTED, COMPARED = 20, 2000
 # A shorter word begins too many others.
 _BEGINNING = 3
 
@@ -15,6 +18,24 @@ def nearest(name: str, known: Iterable[str], alike: float = ALIKE) -> str:
     """The known name most like ``name``, one that differs in case or dashes alone first; else ""."""
     found = nearest_few(name, known, 1, alike)
     return found[0] if found else ""
+
+
+class Guesses:
+    """The nearest known names for the unknown ones of one report, for the first of them alone."""
+
+    def __init__(self) -> None:
+        self._made: dict[str, str] = {}
+
+    def nearest(self, name: str, known: Iterable[str], alike: float = ALIKE) -> str:
+        """As ``nearest``, or "" where it has been asked for many others; ``known`` is the same for
+        the same name."""
+        if name not in self._made and len(self._made) < HINTED:
+            self._made[name] = nearest(name, islice(known, COMPARED), alike)
+        return self._made.get(name, "")
+
+    def hint(self, name: str, known: Iterable[str], alike: float = ALIKE) -> str:
+        """As ``did_you_mean``, with the same bound."""
+        return _hint(self.nearest(name, known, alike))
 
 
 def nearest_few(name: str, known: Iterable[str], most: int, alike: float = ALIKE) -> list[str]:

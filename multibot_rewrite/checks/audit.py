@@ -18,7 +18,7 @@ from multibot_rewrite.checks.references import (
 )
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.naming import Naming
-from multibot_rewrite.nearest import nearest
+from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
@@ -108,17 +108,15 @@ def is_unknown(section: VocabularySection) -> bool:
 
 def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Plugins no section knows: what their parameters name can only be guessed."""
-    known = {}
+    guesses = Guesses()
+    plugins = tree.vocabulary.names("plugin")
     for host in inventory.hosts:
         section = host.node.section
         if section is None or not is_unknown(section):
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
-        if name not in known:
-            known[name] = nearest(library_key(name), tree.vocabulary.names("plugin"))
-        near = known[name]
         message = f"plugin {name!r} is not in the vocabulary: its own parameters are not renamed"
-        hint = f"did you mean {near!r}?" if near else ""
+        hint = guesses.hint(library_key(name), plugins)
         yield Problem(host.element, message, None, hint, (), "MB902")
 
 
@@ -141,6 +139,8 @@ def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
 
 def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
     """Hardware classes no section knows that have parameters: one may be a name, or a prefix."""
+    guesses = Guesses()
+    classes = tree.vocabulary.names("hardware")
     for host in inventory.hosts:
         section = host.node.section
         if section is None or section.select != "hardware":
@@ -148,9 +148,8 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         name = text_at(host.element, "hardware/plugin")
         if not name or host.element.find("hardware/param") is None:
             continue
-        near = nearest(name, tree.vocabulary.names("hardware"))
         message = (
             f"hardware class {name!r} is not in the vocabulary: its own parameters are not renamed"
         )
-        hint = f"did you mean {near!r}?" if near else ""
+        hint = guesses.hint(name, classes)
         yield Problem(host.element, message, None, hint, (), "MB903")

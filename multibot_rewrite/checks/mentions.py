@@ -23,6 +23,10 @@ _BETWEEN = lazy_compile(r":=|::|[\s,;/]+")
 _NUMBERS = lazy_compile(r"[-+0-9.eE\s]*$")
 
 
+# What was found out for elements: a root may have thousands of children.
+Nodes = dict[etree._Element, TreeNode | None]
+
+
 class Mention(NamedTuple):
     """An unclaimed value that is ``name`` or holds it; ``attribute`` is empty for text."""
 
@@ -61,10 +65,11 @@ def unclaimed_mentions(
     suspects = {value for value in telling if count[value] > claimed[value]}
     if not suspects:
         return []
+    nodes: Nodes = {}
     return [
         Mention(*slot, telling[slot[3]])
         for slot in _unclaimed(inventory, suspects)
-        if not kept(slot[0], slot[2], tree)
+        if not kept(slot[0], slot[2], tree, nodes)
     ]
 
 
@@ -108,18 +113,24 @@ def _unclaimed(
                 yield element, start, attribute, value
 
 
-def kept(element: etree._Element, attribute: str, tree: Tree) -> Site | None:
-    """The ``keep`` site for a value, if the vocabulary has one."""
-    node = node_of(element, tree)
+def kept(element: etree._Element, attribute: str, tree: Tree, known: Nodes) -> Site | None:
+    """The ``keep`` site for a value, if the vocabulary has one; ``known`` serves the next call."""
+    node = node_of(element, tree, known)
     return node.keeps.get(attribute) if node else None
 
 
-def node_of(element: etree._Element, tree: Tree) -> TreeNode | None:
+def node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
     """The node of the tree that serves an element."""
+    if element not in known:
+        known[element] = _node_of(element, tree, known)
+    return known[element]
+
+
+def _node_of(element: etree._Element, tree: Tree, known: Nodes) -> TreeNode | None:
     parent = element.getparent()
     if parent is None:
         return tree.formats.get(tree.format_of(element))
-    above = node_of(parent, tree)
+    above = node_of(parent, tree, known)
     node = above.children.get(str(element.tag)) if above else None
     return node.select(element) if node is not None and node.select is not None else node
 

@@ -11,7 +11,7 @@ from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import CLOSED_KINDS, is_keyword
-from multibot_rewrite.nearest import did_you_mean
+from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.rewriters.forms import Declared, NamePart
 from multibot_rewrite.rewriters.spelling import kind_of, must_be_declared, names_in
 from multibot_rewrite.steps.collect import Inventory
@@ -36,8 +36,6 @@ _SRDF = {"link": "MB803", "joint": "MB804", "group": "MB805"}
 _OTHER = "MB220"
 # Only SDF has scopes.
 _SCOPE = "MB219"
-# Looking for what was meant costs: so many names, among so many.
-HINTED, COMPARED = 10, 2000
 
 
 class Loose(NamedTuple):
@@ -79,15 +77,13 @@ def loose_ends(
 
 def undeclared_names(loose: Iterable[Loose], declared: Declared) -> Iterator[Problem]:
     """A problem for each, with the code for where it is."""
-    hints: dict[str, str] = {}
+    guesses = Guesses()
     for it in loose:
         claim, part = it
-        if part.text not in hints and len(hints) < HINTED:
-            known = [known for kind in part.kinds for known in declared.get(kind, ())]
-            hints[part.text] = did_you_mean(part.text, known[:COMPARED])
+        known = (known for kind in part.kinds for known in declared.get(kind, ()))
         message = f"{where(claim)} names the {' or '.join(part.kinds)} {part.text!r}, "
         message += _fault(part, declared)
-        yield about(claim, _code(claim.site, part), message, hints.get(part.text, ""))
+        yield about(claim, _code(claim.site, part), message, guesses.hint(part.text, known))
 
 
 def _fault(part: NamePart, declared: Declared) -> str:
@@ -97,7 +93,7 @@ def _fault(part: NamePart, declared: Declared) -> str:
 
 
 def _code(site: Site, part: NamePart) -> str:
-    if site.form == "scoped":
+    if site.form in ("scoped", "member"):
         return _SCOPE
     for section, path, code in _THEMES:
         if site.section == section and site.path.startswith(path):

@@ -1,4 +1,4 @@
-"""Checks that depend on the robots' names: already rewritten, names that become one, strip."""
+"""Checks that depend on the robots' names: names that become one, strip."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import Claim
-from multibot_rewrite.naming import Naming, removal
+from multibot_rewrite.naming import FRAME_KINDS, TOPIC_KINDS, Naming, removal
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import is_reached, must_be_declared
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding
-from multibot_rewrite.steps.inserted import markers
 from multibot_rewrite.steps.renames import NameKey, RenameMap
 
 strip_other_robot = declare(
@@ -54,32 +53,6 @@ strip_other_options = declare(
 )
 
 
-def already_rewritten(
-    inventory: Inventory, renames: RenameMap, robots: Iterable[str], again: bool
-) -> Iterator[Problem]:
-    """A document that has a robot's affix on every name, or text that was inserted for it.
-
-    ``again`` rewrites it once more, but not where it has inserted elements of the same robot.
-    """
-    marked = {mark.robot for mark in markers(inventory.document)}
-    for robot in robots:
-        if robot in marked or (not again and _spelled_for(renames, robot)):
-            message = f"the description is already rewritten for {robot}"
-            more = "" if again else ", or rewrite it once more with --again"
-            hint = f"undo it with --strip{more}"
-            yield Problem(inventory.document.root, message, None, hint, (), "MB106")
-
-
-def _spelled_for(renames: RenameMap, robot: str) -> bool:
-    """Does every name that a rewrite would change carry the robot's affix?"""
-    some = False
-    for name in _changing(renames):
-        if removal(renames.naming, robot, *name) is None:
-            return False
-        some = True
-    return some
-
-
 def _changing(renames: RenameMap) -> Iterator[NameKey]:
     """The names in values that change, each as often as it is there."""
     return ((it.kind, it.text, it.namespaced) for value in renames.values for it in value)
@@ -88,7 +61,8 @@ def _changing(renames: RenameMap) -> Iterator[NameKey]:
 def taken_names(
     inventory: Inventory, renames: RenameMap, robots: Iterable[str]
 ) -> Iterator[Problem]:
-    """Names that stay as they are and are what another name becomes for some robot."""
+    """Names that stay as they are, or are shared, and are what another name becomes for some robot."""
+    yield from _shared_names(inventory, renames, robots)
     kept = list(_kept(inventory, renames))
     for robot in robots if kept else ():
         for kind, name, claim in kept:
@@ -97,6 +71,24 @@ def taken_names(
                     f"another {kind} would become {name!r} for {robot}, which the file already uses"
                 )
                 yield about(claim, "MB420", message, "choose another separator")
+
+
+def _shared_names(
+    inventory: Inventory, renames: RenameMap, robots: Iterable[str]
+) -> Iterator[Problem]:
+    """Names that become a shared one: ``base`` where ``robot1/base`` is shared by all robots."""
+    naming = renames.naming
+    shared = dict.fromkeys(FRAME_KINDS, naming.shared_frames)
+    shared |= dict.fromkeys(TOPIC_KINDS, naming.shared_topics)
+    for robot in robots:
+        if not any(robot in name for names in shared.values() for name in names):
+            continue
+        for key in sorted(renames.affixes):
+            new = renames.spelled(robot, *key)
+            if new.strip("/") in shared.get(key[0], ()):
+                message = f"{key[0]} {key[1]!r} would become {new!r} for {robot}, which is shared"
+                hint = "rename the robot or choose another separator"
+                yield Problem(inventory.document.root, message, None, hint, (), "MB420")
 
 
 def _kept(inventory: Inventory, renames: RenameMap) -> Iterator[tuple[str, str, Claim]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
@@ -39,14 +38,12 @@ def check_use(options: argparse.Namespace, printed: bool) -> None:
         check_folder(options.output)
 
 
-def build(options: argparse.Namespace, also: Sequence[str] = ()) -> Fleet:
-    """Make the fleet that the options describe; ``also`` are nodes that every robot runs, too."""
-    if options.input.endswith(FLEET_FILES):
-        return _from_file(options, also)
-    return _from_words(options, also)
+def build(options: argparse.Namespace) -> Fleet:
+    """Make the fleet that the options describe."""
+    return (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
 
 
-def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
+def _from_file(options: argparse.Namespace) -> Fleet:
     from multibot_rewrite.fleets.fleet_file import read_fleet  # one description needs none of it
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
@@ -54,10 +51,10 @@ def _from_file(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), also, trust=options.trust))
+    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), trust=options.trust))
 
 
-def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
+def _from_words(options: argparse.Namespace) -> Fleet:
     names = robots(options)
     if not names:
         raise UsageError("no ROBOT given, and the input is no fleet file (*.yaml)")
@@ -65,7 +62,7 @@ def _from_words(options: argparse.Namespace, also: Sequence[str]) -> Fleet:
     return make_fleet(
         options.input,
         names,
-        [*options.stack, *also],
+        options.stack,
         policy(options),
         nodes=options.nodes,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],

@@ -24,7 +24,7 @@ from multibot_rewrite.graph.rehearsal import (
     with_substitutes,
 )
 from multibot_rewrite.graph.snapshot import Snapshot, to_json
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edges, with_odometry
+from multibot_rewrite.graph.transforms import Edges, with_odometry
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.plural import plural
 
@@ -35,8 +35,8 @@ _DOMAINS = 100
 def run(options: argparse.Namespace) -> int:
     """Start the stubs, look, compare, sum up; returns the exit code."""
     _check_use(options)
-    made = fleet.build(options, also=[STATE_PUBLISHER])
-    table = fleet.findings(options, made)
+    made = fleet.build(options)
+    plan, table = expected(made), fleet.findings(options, made)
     nodes = list(stub_nodes(made.table, _edges(options, made), not options.without_rules))
     environ = stage(options.domain)
     try:
@@ -49,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     if options.save_snapshot:
         write_files(options, [(options.save_snapshot, to_json(graph))])
     _note_substitutes(options, replaced)
-    return conclude(options, with_substitutes(expected(made), replaced), graph, table)
+    return conclude(options, with_substitutes(plan, replaced), graph, table)
 
 
 def _check_use(options: argparse.Namespace) -> None:

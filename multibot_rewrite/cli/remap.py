@@ -9,7 +9,7 @@ from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file, note
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
-from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, Fleet
 from multibot_rewrite.remap.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table_formats import EVERY_ROBOT, FORMS
@@ -22,6 +22,7 @@ def run(options: argparse.Namespace) -> int:
     fleet.check_use(options, printed=not goes_to_file(options))
     made = fleet.build(options)
     failed = fleet.report_table(options, made)
+    _note_without_nodes(options, made)
     if options.form == TABLE:
         deliver_report(options, _parts(made.table))
     elif options.form == BRIDGE:
@@ -29,6 +30,14 @@ def run(options: argparse.Namespace) -> int:
     else:
         deliver(options, FORMS[options.form](made.table).encode())
     return STOPPED if failed else DONE
+
+
+def _note_without_nodes(options: argparse.Namespace, made: Fleet) -> None:
+    known = {node.robot for node in made.table.nodes}
+    nothing = [robot for robot in made.inventories if robot not in known]
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        note(options, f"no node of {', '.join(nothing)} is known, so no rule is for it; {hint}")
 
 
 def _bridge(options: argparse.Namespace, made: Fleet) -> str:

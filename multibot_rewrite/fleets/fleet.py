@@ -6,12 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleets.meeting import with_meetings
-from multibot_rewrite.fleets.member import Member, member
-from multibot_rewrite.graph.expectation import Expectation, expect, named_frames
-from multibot_rewrite.graph.transforms import Edge, Edges, edges_of, frames_of
+from multibot_rewrite.fleets.member import Member, line_of, member
+from multibot_rewrite.graph.expectation import Expectation, expect, named_frames, vacuous
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import rewrite_all
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
-from multibot_rewrite.remap.node_library import stack_of
+from multibot_rewrite.remap.node_library import stack_of, with_included
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
@@ -20,6 +21,8 @@ from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory
 
 NOTHING: Mapping[str, str] = {}
+# The stack of a robot whose description is published by something else.
+NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 
 
 class Fleet(NamedTuple):
@@ -63,9 +66,21 @@ def make_fleet(
 
 
 def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
-    """The nodes of these stacks, each once; UsageError for an unknown stack."""
+    """The nodes that a robot with these stacks runs, each once; UsageError for an unknown stack.
+
+    Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
+    for the stack ``no_robot_state_publisher``.
+    """
     library = user_stack(nodes) if nodes else built_in()
-    return tuple(dict.fromkeys(node for name in stacks for node in stack_of(library, name)))
+    found = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    has_publisher = any(node.package == STATE_PUBLISHER for node in found)
+    if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
+        added = () if has_publisher else stack_of(library, STATE_PUBLISHER)
+        return (*found, *added)
+    if has_publisher:
+        hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
+        raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
+    return tuple(found)
 
 
 def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
@@ -91,9 +106,8 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
     """The places of the plugins in the source: inserted text moves the lines of the result."""
     found = {}
     for it in members:
-        plugins = list(it.source.root.iter("plugin"))
         for node in it.reading.nodes:
-            line = plugins[node.number].sourceline
+            line = line_of(it.source, "plugin", node.number)
             found[node.full_name] = f"{it.source.file}:{line}"
     return found
 
@@ -115,7 +129,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
 
 
 def expected(fleet: Fleet) -> Expectation:
-    """The graph that the fleet should have."""
+    """The graph that the fleet should have; UsageError where any graph would be as planned."""
     sent: dict[str, list[Edge]] = {robot: [] for robot in fleet.inventories}
     for (robot, _), edges in fleet.edges.items():
         sent[robot] += edges
@@ -124,4 +138,10 @@ def expected(fleet: Fleet) -> Expectation:
         for robot, found in fleet.inventories.items()
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
-    return expect(fleet.table, fleet.naming, frames, fleet.facts, named, fleet.sources, fleet.tags)
+    tags, places = fleet.tags, fleet.sources
+    plan = expect(fleet.table, fleet.naming, frames, fleet.facts, named, places, tags)
+    nothing = vacuous(plan)
+    if nothing:
+        hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
+        raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
+    return plan

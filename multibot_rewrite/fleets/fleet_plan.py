@@ -29,32 +29,26 @@ class FleetPlan(NamedTuple):
 
 
 def plan_fleet(
-    file: FleetFile,
-    also: Sequence[str] = (),
-    jobs: Mapping[Sources, Jobs] | None = None,
-    trust: bool = False,
+    file: FleetFile, jobs: Mapping[Sources, Jobs] | None = None, trust: bool = False
 ) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
-    ``also`` are more nodes that every robot runs; ``jobs`` are the descriptions if they have been
-    read already; ``trust`` lets xacro files do anything. Raises as ``rewrite_all``, and UsageError
-    for an unknown stack.
+    ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
+    anything. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
     with gc_paused():
         naming = make_naming(**file.policy)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust)
         robots = rewrite_robots(file.robots, read)
-        return FleetPlan(file, tuple(robots), _fleet(file, robots, naming, also), read)
+        return FleetPlan(file, tuple(robots), _fleet(file, robots, naming), read)
 
 
-def _fleet(
-    file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming, also: Sequence[str]
-) -> Fleet:
+def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) -> Fleet:
     stacks: dict[tuple[str, ...], list[RewrittenRobot]] = {}
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
     fleets = [
-        assemble([it.member for it in group], facts_of((*names, *also), file.nodes or None), naming)
+        assemble([it.member for it in group], facts_of(names, file.nodes or None), naming)
         for names, group in stacks.items()
     ]
     fleet = merge(fleets)

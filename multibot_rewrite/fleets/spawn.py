@@ -7,6 +7,7 @@ Sources: ros_gz jazzy ``ros_gz_sim/src/create.cpp``; gazebo_ros_pkgs ros2 ``spaw
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from lxml import etree
@@ -39,7 +40,8 @@ class Spawn(NamedTuple):
 
 
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
-    """How each robot is spawned, and a finding if only some of its plugins have a namespace."""
+    """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
+    looks for the robot by another name."""
     made, findings = [], []
     for robot in plan.robots:
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
@@ -47,6 +49,7 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
         named, bare = _namespaces(robot)
         if named and bare:
             findings.append(_half(robot, bare))
+        findings += _other_models(robot)
     return tuple(made), tuple(findings)
 
 
@@ -174,3 +177,59 @@ def _half(robot: RewrittenRobot, bare: list[str]) -> Finding:
     some = f"robot {robot.spec.name!r}: some plugins have a namespace"
     hint = "add <ros><namespace> to these; -robot_namespace would overwrite the others"
     return at_robot(PARTLY_NAMESPACED, robot, f"{some}, but not {', '.join(bare)}", hint)
+
+
+MODEL_OF_OTHER_NAME = declare(
+    "MF707",
+    "model-of-other-name",
+    WARNING,
+    what="A plugin looks for its robot in the simulator by the name in the description, and the "
+    "robot is spawned by another name.",
+    why="The spawner's name is the model's: the plugin finds no model, or that of another robot.",
+    fix="Give the robot that name with `model:`, in a layout that renames the description's for each "
+    "robot.",
+    bad="""\
+layout: both
+affix: prefix
+robots:
+  - {name: robot1, description: docking.urdf}
+""",
+    good="""\
+layout: both
+affix: prefix
+robots:
+  - {name: robot1, description: docking.urdf, model: robot1_create3}
+""",
+    line=4,
+    formats=("fleet",),
+    beside={
+        "docking.urdf": """\
+<robot name="create3">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="dock" filename="libgazebo_ros_create_docking_status.so">
+      <robot_model_name>create3</robot_model_name>
+      <receiver_link_name>base_link</receiver_link_name>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    },
+)
+
+
+def _other_models(robot: RewrittenRobot) -> Iterator[Finding]:
+    """The first plugin that names the robot's own model, and not by the name it is spawned with."""
+    inventory = robot.member.inventory
+    own = inventory.document.root.get("name", "")
+    if own == robot.spec.model:
+        return
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        if claim.site.role == "uses" and any(it.kind == "model" and it.text == own for it in names):
+            who = f"robot {robot.spec.name!r} is spawned as {robot.spec.model!r}"
+            message = f"{who}, <{claim.element.tag}> looks for the model {own!r}"
+            hint = f"write model: {own} for it"
+            if "model" not in robot.names.naming.separators:
+                hint = "use layout: both, which renames the model, and give its name with model:"
+            yield at_robot(MODEL_OF_OTHER_NAME, robot, message, hint)
+            return

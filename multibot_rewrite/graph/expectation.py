@@ -74,6 +74,15 @@ def robot_words(plan: Expectation) -> dict[str, str]:
     return {word: it.name for it in plan.robots for word in (it.name, it.frame_tag) if word}
 
 
+def vacuous(plan: Expectation) -> str:
+    """Why a graph without any node would be as planned; empty for a plan that tests something."""
+    if not plan.robots:
+        return "no robot is planned"
+    idle = [it.name for it in plan.robots if set(it.nodes) <= set(it.optional)]
+    verb = "has" if len(idle) == 1 else "have"
+    return f"{', '.join(idle)} {verb} no node that must run" if idle else ""
+
+
 def expect(
     table: Table,
     naming: Naming,
@@ -94,13 +103,13 @@ def expect(
     optional = {node.name for node in known if node.when}
     usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
     robots = []
-    for name in (robot for robot in nodes if robot):
+    for name in dict.fromkeys((*frames, *filter(None, nodes))):
         own = tuple(frames.get(name, ()))
         word = words.get(name, name)
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
-        may_miss = tuple(full for stack_name, full in nodes[name] if stack_name in optional)
-        full = tuple(dict.fromkeys(full for _, full in nodes[name]))
+        may_miss = tuple(full for stack_name, full in nodes.get(name, ()) if stack_name in optional)
+        full = tuple(dict.fromkeys(full for _, full in nodes.get(name, ())))
         tf = tf_topic(name, naming)
         tag = word if word != name else ""
         robots.append(PlannedRobot(name, full, own, tf, tuple(left), may_miss, tag))

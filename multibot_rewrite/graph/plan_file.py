@@ -9,7 +9,12 @@ from functools import cache
 from typing import Any
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+    vacuous,
+)
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
@@ -95,13 +100,9 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         mark = getattr(error, "problem_mark", None)
         place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
         reason = getattr(error, "problem", None) or " ".join(str(error).split())
-        raise InputError(
-            f"{place}: not valid YAML: {reason}; use the file that multibot plan wrote"
-        ) from None
+        raise InputError(f"{place}: not valid YAML: {reason}; {_REMEDY}") from None
     except UnicodeDecodeError as error:
-        raise InputError(
-            f"{file}: not valid YAML: {error}; use the file that multibot plan wrote"
-        ) from None
+        raise InputError(f"{file}: not valid YAML: {error}; {_REMEDY}") from None
     top = _mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
     nodes, topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[1:4])
     robots: list[PlannedRobot] = []
@@ -110,7 +111,7 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         robot, ends = _read_robot(str(name), given, file)
         robots.append(robot)
         endpoints += ends
-    return Expectation(
+    plan = Expectation(
         str(top["layout"]),
         tuple(robots),
         nodes,
@@ -120,6 +121,10 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         _texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
         tuple(_sources(top.get("sources", {}), file)),
     )
+    nothing = vacuous(plan)
+    if nothing:
+        raise InputError(f"{file}: {nothing}, so every graph would be as planned; {_REMEDY}")
+    return plan
 
 
 def _read_robot(name: str, given: object, file: str) -> tuple[PlannedRobot, list[PlannedEndpoint]]:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from bisect import bisect_right
 from collections.abc import Mapping
 from functools import lru_cache
-from itertools import accumulate, count
+from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.place import locate
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.records import Subject
@@ -37,7 +37,7 @@ class Place(NamedTuple):
 def placed(subject: Subject, numbers: Numbers, problem: Problem, rule: Rule) -> Finding:
     """The finding for a problem; ``numbers`` are those of ``numbered``."""
     it = _place(subject, numbers[problem.element], problem.attribute)
-    line, column = _locate(it.source, it.offset)
+    line, column = locate(it.source, it.offset)
     return Finding(
         rule.code,
         rule.level,
@@ -69,19 +69,6 @@ def _place(subject: Subject, number: int, attribute: str | None) -> Place:
     return Place(origin.file, source, offset, origin.calls)
 
 
-@lru_cache(maxsize=8)
-def _line_starts(source: bytes) -> list[int]:
-    return [0, *accumulate([len(line) + 1 for line in source.split(b"\n")])]
-
-
-def _locate(source: bytes, offset: int) -> tuple[int, int]:
-    """As ``document.locate``, for many places of one text."""
-    starts = _line_starts(source)
-    line = bisect_right(starts, offset)
-    before = source[starts[line - 1] : offset]
-    return line, len(before.decode("utf-8", "replace")) + 1
-
-
 def _within(source: bytes, start: int, attribute: str | None) -> int:
     """The offset of a value from the start of its tag; 0 for an attribute that is missing."""
     if attribute is None:
@@ -103,5 +90,5 @@ def _attributes(source: bytes, start: int) -> dict[bytes, int]:
 
 
 def _call_text(subject: Subject, call: Call) -> str:
-    line, _ = _locate(subject.sources[call.file], call.start)
+    line, _ = locate(subject.sources[call.file], call.start)
     return f"{call.file}:{line}: {call.macro}"

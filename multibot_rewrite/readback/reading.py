@@ -79,7 +79,7 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
         yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
         for it in node.endpoints:
-            if not it.off and it.full:
+            if not it.off:
                 yield RuntimeName(it.kind, it.full, "plugin", node.number, it.parameter or it.name)
         for path, full in node.stems:
             yield RuntimeName(TOPIC, full, "plugin", node.number, path)
@@ -147,7 +147,9 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     kind, tag = host.section.unique, str(host.element.tag)
     if not kind:
         return
-    there = {element.get("name") for element in root.iter(kind)}
+    # A URDF is one model, by the name of its root.
+    own = root.iter("robot", "model") if kind == "model" else root.iter(kind)
+    there = {element.get("name") for element in own}
     (every,) = vocabulary.find("element", tag)
     for site in (*every.sites, *host.section.sites):
         if site.role != "keep" and kind in site.kinds:

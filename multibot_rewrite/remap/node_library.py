@@ -81,6 +81,13 @@ def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     return tuple(found.values())
 
 
+def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
+    """The names of a stack and of all stacks that it includes; a node is no stack."""
+    yield name
+    for other in library.stacks[name].include if name in library.stacks else ():
+        yield from with_included(library, other)
+
+
 def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
         raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")

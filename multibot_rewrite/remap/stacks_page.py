@@ -14,11 +14,12 @@ The topics, services and actions of known nodes, and the stacks of nodes that ar
 Generated from `multibot_rewrite/remap/nodes.yaml` and `stacks.yaml` by
 `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
 
-Select a stack, or a single node, with `--stack`. Names are those in the nodes' code: `scan` is
-resolved in the namespace, `/tf` is absolute, `~/odom` is below the node's name. A name in `<>` is
-made at run time, so no remap rule can be written before it is known: a stack sets it under `names`.
-*Only if* is the condition under which the node has the name. *Remapped to* is the name after the
-remap rules of the usual launch files.
+Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;
+the stack `no_robot_state_publisher` leaves it out, for robots whose tf comes from something else.
+Names are those in the nodes' code: `scan` is resolved in the namespace, `/tf` is absolute, `~/odom`
+is below the node's name. A name in `<>` is made at run time, so no remap rule can be written before
+it is known: a stack sets it under `names`. *Only if* is the condition under which the node has the
+name. *Remapped to* is the name after the remap rules of the usual launch files.
 
 Add your own nodes and stacks in a file of the same shape, for example:
 

@@ -111,7 +111,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
         for attribute, value in slots:
             place = _place(inventory, start, attribute, value)
             if value and place[0] == line and (start, attribute) not in claimed:
-                site = kept(element, attribute, tree)
+                site = kept(element, attribute, tree, {})
                 reason = site.note if site else _unclaimed(inventory, value)
                 path = tag_path(element, attribute)
                 yield Explanation(*place, path, value, site, reason, value)

@@ -105,18 +105,29 @@ def words(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
 
 
 def suffixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``link/light`` or ``link::visual``: a name and what is no name of ours behind it."""
-    return tuple(_owner(value, kinds, declared)[0])
+    """``link/light`` or ``link::visual``: a name of the first kind, and what is behind it: a name where
+    the file declares it as one of the others."""
+    parts, at = _owner(value, kinds[:1], declared)
+    name = value[at:].rstrip()
+    known = tuple(kind for kind in kinds[1:] if name in declared.get(kind, ()))
+    return (*parts, NamePart(at, name, known, True)) if known else tuple(parts)
 
 
 def member(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
-    """``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a name below a link's."""
+    """``link::sensor``, ``world::model::link::sensor`` or ``link/sensor``: a name below a link's.
+
+    The first name before the link is a model where none of them is: it should be one of the file.
+    """
     if not _OWNED.search(value):
         return whole(value, kinds, declared)
     scopes, at = _owner(value, ("link",), declared)
     name = value[at:].rstrip()
-    known = name and scopes and scopes[-1].text in declared["link"]
-    return (*scopes, NamePart(at, name, kinds)) if known else ()
+    if name and scopes and scopes[-1].text in declared["link"]:
+        return (*scopes, NamePart(at, name, kinds))
+    (start, model), *below = _pieces(value)
+    inside = member(value[below[0][0] :], kinds, declared) if below[1:] else ()
+    moved = (part._replace(at=part.at + below[0][0]) for part in inside)
+    return (NamePart(start, model, ("model",), True), *moved) if inside else ()
 
 
 def _owner(value: str, kinds: Kinds, declared: Declared) -> tuple[list[NamePart], int]:

@@ -117,7 +117,9 @@ def renamed_at(at: int, kind: str, text: str, namespaced: bool, there: Affix) ->
 
 def must_be_declared(site: Site) -> bool:
     """A use of a name that this file must declare."""
-    return site.kinds[-1] in CLOSED_KINDS or site.form == "scoped"
+    if site.form in ("scoped", "member"):
+        return True
+    return site.kinds[0 if site.form == "suffixed" else -1] in CLOSED_KINDS
 
 
 def kind_of(part: NamePart, role: str, declared: Declared) -> str:

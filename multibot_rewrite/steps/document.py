@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from typing import NamedTuple
 
 from lxml import etree
@@ -32,6 +33,8 @@ _COMMENTS = lazy_compile(rb"\s*(?:<!--.*?-->\s*)*", re.DOTALL)
 _ATTRIBUTE = lazy_compile(rb"\s([^\s=/>\"']+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
+# How far the common spelling of an attribute is looked for.
+_NEAR = 4096
 _HINTS = (
     ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),
@@ -132,8 +135,8 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
         return text_slot(source, start, value)
     # The common spelling, inside this tag and not inside another value; else the exact way.
     written = f' {attribute}="{value}"'.encode()
-    begin = source.find(written, start, source.find(b">", start))
-    if begin < 0:
+    begin = source.find(written, start, start + _NEAR)
+    if begin < 0 or source.find(b">", start, begin) >= 0:
         return attribute_slot(source, start, attribute, value)
     earlier = source.find(b"=", start, begin) >= 0
     if earlier and (b"'" in source[start:begin] or source.count(b'"', start, begin) % 2):
@@ -176,12 +179,18 @@ def attribute_slot(source: bytes, start: int, name: str, value: str) -> tuple[in
     A ``name`` of a namespace (``{uri}local``) matches under whatever prefix.
     """
     uri, _, local = name.encode().rpartition(b"}")
-    for found in _ATTRIBUTE.finditer(source, start, tag_end(source, start)):
-        prefix, _, written = found[1].rpartition(b":")
-        if (written == local and prefix) if uri else found[1] == local:
-            begin, end = found.start(2) + 1, found.end(2) - 1
-            return (begin, end) if _reads_as(b'<a b="%s"/>', source[begin:end], value) else None
-    return None
+    there = _attribute_slots(source, start)
+    # Without a prefix a name is in no namespace.
+    names = (it for it in there if it.endswith(b":" + local)) if uri else (local,)
+    slot = next((there[it] for it in names if it in there), None)
+    return slot if slot and _reads_as(b'<a b="%s"/>', source[slice(*slot)], value) else None
+
+
+# A tag may have thousands of attributes.
+@lru_cache(maxsize=4)
+def _attribute_slots(source: bytes, start: int) -> dict[bytes, tuple[int, int]]:
+    found = _ATTRIBUTE.finditer(source, start, tag_end(source, start))
+    return {it[1]: (it.start(2) + 1, it.end(2) - 1) for it in found}
 
 
 def text_slot(source: bytes, start: int, value: str) -> tuple[int, int] | None:

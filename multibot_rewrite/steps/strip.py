@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Callable, Iterable
+from itertools import accumulate
+
 from multibot_rewrite.model import Claim, Edit
 from multibot_rewrite.naming import Naming, removal
 from multibot_rewrite.rewriters.contact import respell_collisions
@@ -10,21 +14,42 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import emptied, value_places, value_slot
 from multibot_rewrite.steps.inserted import removals
 
+# A name of a description: the number of its value among the claims, its own in the value.
+Place = tuple[int, int]
+NOWHERE: frozenset[Place] = frozenset()
 
-def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
-    """Edits that undo ``make_plan`` for ``robot``, in source order."""
+
+def own_places(inventory: Inventory, naming: Naming) -> frozenset[Place]:
+    """Where a description that is not rewritten has names that are the robot's already."""
+    places = (
+        (at, number, (name.kind, name.text))
+        for at, names in enumerate(inventory.names if naming.own else ())
+        for number, name in enumerate(names)
+    )
+    return frozenset((at, number) for at, number, key in places if naming.own.get(key, key) is None)
+
+
+def strip_edits(
+    inventory: Inventory, naming: Naming, robot: str, own: frozenset[Place] = NOWHERE
+) -> list[Edit]:
+    """Edits that undo ``make_plan`` for ``robot``, in source order.
+
+    ``own`` are the ``own_places`` of what was rewritten: what is there was not put there by a rewrite,
+    though a rewrite makes another name like it.
+    """
     document = inventory.document
     edits = removals(document, robot)
     claims = not_inserted(inventory.claims, edits)
-    removed = list(edits)
+    is_inserted = inside_of(edits)
     # Claims share the names of equal values, so few are different.
     known: dict[tuple[int, bool], list[tuple[int, int]]] = {}
-    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+    kept_out = _without(inventory, own, is_inserted) if own else inventory.names
+    for claim, names in zip(inventory.claims, kept_out, strict=True):
         key = id(names), claim.site.namespaced
         spans = known.get(key)
         if spans is None:
             spans = known[key] = _spans(names, claim.site.namespaced, naming, robot)
-        if spans and is_reached(claim, naming) and not is_inside(claim, removed):
+        if spans and is_reached(claim, naming) and not is_inserted(claim):
             edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
@@ -46,14 +71,34 @@ def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robo
     return value
 
 
+def _without(
+    inventory: Inventory, own: frozenset[Place], is_inserted: Callable[[Claim], bool]
+) -> list[tuple[ResolvedName, ...]]:
+    """The names in each value but those at places of ``own``."""
+    at = 0
+    found = []
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        if is_inserted(claim):
+            found.append(names)
+            continue
+        found.append(tuple(it for number, it in enumerate(names) if (at, number) not in own))
+        at += 1
+    return found
+
+
 def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:
     """The claims that are not in inserted elements."""
-    return [claim for claim in claims if not is_inside(claim, removed)] if removed else claims
+    is_inserted = inside_of(removed)
+    return [claim for claim in claims if not is_inserted(claim)] if removed else claims
 
 
-def is_inside(claim: Claim, removed: list[Edit]) -> bool:
-    """Is the claim in an inserted element?"""
-    return bool(removed) and any(edit.start <= claim.start < edit.end for edit in removed)
+def inside_of(removed: Iterable[Edit]) -> Callable[[Claim], bool]:
+    """Whether a claim is in one of the elements."""
+    spans = sorted((edit.start, edit.end) for edit in removed)
+    starts = [start for start, _ in spans]
+    # How far those up to each one reach.
+    ends = [0, *accumulate((end for _, end in spans), max)]
+    return lambda claim: claim.start < ends[bisect_right(starts, claim.start)]
 
 
 def _spans(

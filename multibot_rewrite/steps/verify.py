@@ -7,14 +7,14 @@ made of it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import Claim, Edit, InputError, ProofError
-from multibot_rewrite.naming import Naming, affix, removal, spelled
+from multibot_rewrite.naming import FRAME_KINDS, Naming, affix, removal, spelled
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.insert import insertions, query
@@ -31,7 +31,7 @@ from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.steps.inserted import Marker, markers, removals
 from multibot_rewrite.steps.plan import Plan
-from multibot_rewrite.steps.strip import is_inside, strip_edits, stripped
+from multibot_rewrite.steps.strip import Place, inside_of, own_places, strip_edits, stripped
 
 Names = tuple[ResolvedName, ...]
 
@@ -83,8 +83,9 @@ def verify(
     except InputError as error:
         raise ProofError(f"the output does not parse: {error}") from None
     pairs = list(zip(result.claims, result.names, strict=True))
-    added = [pair for pair in pairs if is_inside(pair[0], inserted)] if inserted else []
-    found = [pair for pair in pairs if not is_inside(pair[0], inserted)] if inserted else pairs
+    is_inserted = inside_of(inserted)
+    added = [pair for pair in pairs if is_inserted(pair[0])] if inserted else []
+    found = [pair for pair in pairs if not is_inserted(pair[0])] if inserted else pairs
     expected = list(_expected(inventory, naming))
     it = Evidence(
         inventory, plan, slots, robot, naming, expected, result, mine, inserted, found, added
@@ -141,9 +142,18 @@ def same_targets(it: Evidence) -> None:
     """Every name means what it meant: a use finds what it named, and nothing else does."""
     file = it.inventory.document.file
     for names, (new, now) in zip(it.inventory.names, it.found, strict=True):
-        same = [name.kind for name in names] == [name.kind for name in now]
+        kept = {at for at, name in enumerate(names) if (name.kind, name.text) in it.naming.own}
+        same = _kinds(names, kept) == _kinds(now, kept)
         if not same or any(_left_behind(name, it.inventory) for name in now if not name.kind):
             raise ProofError(f"{file}: {new.value!r} does not name what it named before")
+
+
+def _kinds(names: Names, kept: Container[int]) -> list[str]:
+    """The kinds of names; a frame that an argument of the xacro names may become that of a link."""
+    return [
+        "frame" if at in kept and name.kind in FRAME_KINDS else name.kind
+        for at, name in enumerate(names)
+    ]
 
 
 def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
@@ -253,17 +263,18 @@ def a_slot_each(it: Evidence) -> None:
 
 def strips_to_source(it: Evidence) -> None:
     """Undoing the rewrite, by what the output alone says, gives the input back."""
+    own = own_places(it.inventory, it.naming)
     replaces = any(edit.start < edit.end for edit in it.plan.edits)
     fills = any(marker.filled for marker in it.markers)
-    if not (_strips(it) if replaces or fills else _adds_affixes(it)):
+    if not (_strips(it, own) if own or replaces or fills else _adds_affixes(it)):
         file = it.inventory.document.file
         raise ProofError(
             f"{file}: stripping {it.robot} from the output does not give the input back"
         )
 
 
-def _strips(it: Evidence) -> bool:
-    edits = strip_edits(it.result, it.naming, it.robot)
+def _strips(it: Evidence, own: frozenset[Place]) -> bool:
+    edits = strip_edits(it.result, it.naming, it.robot, own)
     return b"".join(cut(it.result.document.source, edits)) == it.inventory.document.source
 
 

@@ -153,8 +153,8 @@ def test_the_plan_reads_back_and_holds_each_robots_nodes(
     layout, files = fleet
     plan = from_yaml(files["plan.yaml"].encode(), "plan.yaml")
     by_name = {it.name: it for it in plan.robots}
-    # A robot without nodes is started by nobody: there is nothing to expect of it.
-    assert {"fleet_scout", "reach", "grip"} <= set(by_name)
+    assert set(by_name) == {"fleet_scout", "reach", "grip", "bare"}
+    assert all(any("robot_state_publisher" in node for node in it.nodes) for it in plan.robots)
     assert any("amcl" in it for it in by_name["fleet_scout"].nodes)
     assert any("move_group" in it for it in by_name["reach"].nodes)
     assert not any("amcl" in it for it in by_name["reach"].nodes)
@@ -237,7 +237,9 @@ def test_companions_of_one_name_would_be_one_file(tmp_path: Path) -> None:
 
 
 def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
-    text = SMALL.replace("stack: nav2\n", "").replace("  params: [params.yaml]\n", "")
+    text = SMALL.replace("stack: nav2\n", "stack: no_robot_state_publisher\n").replace(
+        "  params: [params.yaml]\n", ""
+    )
     plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text))))
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]

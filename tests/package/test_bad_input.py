@@ -256,7 +256,7 @@ def test_already_rewritten(tmp_path: Path) -> None:
     for robots in (["robot1"], ["robot2", "robot1"]):
         run(tmp_path, "-", "robot1", "-o", "in.urdf", stdin=ROVER.encode())
         result = run(tmp_path, "in.urdf", *robots, "-o", "{robot}.urdf")
-        words = ("in.urdf:", "MB106", "already rewritten for robot1", "--again", "--strip")
+        words = ("in.urdf:", "MB106", "already rewritten for robot1", "link 'base", "--strip")
         check_refusal(tmp_path, result, STOPPED, words)
         assert list(contents(tmp_path)) == ["in.urdf"]
 

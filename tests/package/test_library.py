@@ -294,9 +294,11 @@ def test_a_rewritten_file_is_refused(source: str, layouts: tuple[str, ...]) -> N
             rewrite(once.data, "r1", layout=layout)
 
 
-def test_a_name_that_ends_like_the_robot_is_no_rewritten_file() -> None:
+def test_a_name_that_ends_like_the_robot_is_spelled_twice_only_with_again() -> None:
     text = SMALL.replace('"mast"', '"base/r1"')
-    assert 'name="base/r1/r1"' in rewrite(text, "r1").text
+    with pytest.raises(RewriteRefused, match="MB106"):
+        rewrite(text, "r1")
+    assert 'name="base/r1/r1"' in rewrite(text, "r1", again=True).text
 
 
 def test_a_file_for_another_robot_may_be_rewritten() -> None:

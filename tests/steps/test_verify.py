@@ -125,7 +125,8 @@ def test_two_links_of_the_urdf_that_become_one_are_refused_with_the_srdf() -> No
 
 def test_a_name_of_the_input_may_be_what_is_inserted() -> None:
     """A link odom/robot1 is renamed, and a frame of that name is inserted."""
-    text = rewrite(ROVER.replace(b"odom_link_1", b"odom/robot1"), "robot1", layout="both").text
+    source = ROVER.replace(b"odom_link_1", b"odom/robot1")
+    text = rewrite(source, "robot1", layout="both", again=True).text
     assert re.findall(r"odom/robot1[^\"<]*", text) == ["odom/robot1/robot1", "odom/robot1"]
 
 

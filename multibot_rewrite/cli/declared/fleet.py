@@ -39,7 +39,12 @@ _DESCRIPTION = OptionGroup(
         argument("input", "INPUT", "the robot's description before any rewrite, or a fleet file"),
         argument("words", "ROBOT", "names of robots; NAME:=VALUE is for xacro", "*"),
         ROBOTS,
-        several("--stack", "NAME", "nodes that every robot runs (docs/stacks.md)", []),
+        several(
+            "--stack",
+            "NAME",
+            "nodes that every robot runs besides robot_state_publisher (docs/stacks.md)",
+            [],
+        ),
         value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
         VOCABULARY,
         TRUST,
@@ -125,8 +130,7 @@ REHEARSE = Command(
     LIVE_CODES,
     more=_FLEET_FILE + " Starts a stub for every node of each robot's plugins and stack with the"
     " names of its code, applies the rules of multibot remap, and looks at the graph as multibot"
-    " check does. A type that is not installed is replaced. robot_state_publisher is added where no"
-    " stack has it.",
+    " check does. A type that is not installed is replaced.",
     fail_on=ERROR,
     findings_first=True,
 )

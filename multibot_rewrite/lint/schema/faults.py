@@ -139,13 +139,15 @@ def _unknown_attributes(
 ) -> Iterator[Fault]:
     """Attributes that are missing, and those that no parser knows."""
     known = section.attributes
+    there = frozenset(keys)
+    free = [it for it in known if it not in there]
     # A file of macros has neither a name nor links.
     empty = section.name == ROBOT and element.find("link") is None
-    missing = [key for key in known if known[key].required and key not in keys and not empty]
+    missing = [key for key in known if known[key].required and key not in there and not empty]
     for key in keys:
         if key in known or key == "name" or not is_own(key):
             continue
-        meant = _near(key, [it for it in known if it not in keys])
+        meant = _near(key, free)
         hint = f"did you mean {meant!r}?" if meant else ""
         where = f"<{element.tag}> has an attribute {key!r}, which no URDF parser reads"
         if meant in missing:

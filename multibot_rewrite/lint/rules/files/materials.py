@@ -13,7 +13,7 @@ from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.facts.numbers import numbers
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.nearest import nearest
+from multibot_rewrite.nearest import Guesses
 
 _LOOKS = ["visual", "link", "robot"]
 Look = tuple[tuple[float, ...] | str, str]
@@ -46,16 +46,16 @@ def undefined_material(subject: Subject) -> Iterator[Problem]:
         if material not in misspelled:
             name = material.get("name", "")
             yield Problem(material, f"material {name!r} has neither colour nor texture", "name")
-    defined = {it.get("name") for it in tops}
+    defined = dict.fromkeys(it.get("name", "") for it in tops)
+    guesses = Guesses()
     for look in _looks(subject):
         name = look.get("name", "")
         if name in defined or not name:
             continue
         if len(look) and _defines(look):
-            defined.add(name)
+            defined[name] = None
             continue
-        near = nearest(name, [it for it in defined if it])
-        hint = f"did you mean {near!r}?" if near else ""
+        hint = guesses.hint(name, filter(None, defined))
         yield Problem(look, f"material {name!r} is not defined", "name", hint)
 
 

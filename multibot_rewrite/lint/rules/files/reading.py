@@ -7,10 +7,9 @@ from itertools import islice
 
 from multibot_rewrite.checks.audit import leftover_xacro, worlds
 from multibot_rewrite.checks.problem import Problem
-from multibot_rewrite.checks.robots import already_rewritten
+from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import declare, rule
-from multibot_rewrite.lint.facts.renames import rename_map
 from multibot_rewrite.lint.records import Subject
 
 # These three are reported where a file is read or expanded: see ``failures``.
@@ -82,21 +81,21 @@ def leftover(subject: Subject) -> Iterator[Problem]:
     "MB106",
     "already-rewritten",
     WARNING,
-    what="The description is already rewritten for one of the robots: every name that a rewrite "
-    "changes has that robot's prefix or postfix, or there is text that a rewrite inserted.",
+    what="The description is already rewritten for one of the robots: a name begins or ends with the "
+    "robot's, in any layout and with any separator, or there is text that a rewrite inserted. Where "
+    "the robot is called like a part (left, arm, base), more than half of the links, joints, "
+    "namespaces or topics have to be so: left_wheel alone is by chance.",
     why="urdf-postfix rejects it: a second rewrite would make base_link/robot1/robot1. If several "
     "robots use it, all of them have the frames and topics of that one robot.",
-    fix="Lint and rewrite the source file; undo the rewrite with urdf-postfix --strip, or exclude "
-    "generated files.",
+    fix="Lint and rewrite the source file, or give the robot another name; undo the rewrite with "
+    "urdf-postfix --strip, insist with --again, or exclude generated files.",
     bad='<robot name="r_robot1"><link name="base/robot1"/></robot>',
     good='<robot name="r"><link name="base"/></robot>',
     options={"robots": ("robot1", "robot2")},
 )
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding per file, for the first robot whose name is in it."""
-    settings = subject.settings
-    renames = rename_map(subject)
-    found = already_rewritten(subject.inventory, renames, settings.robots, False)
+    found = already_rewritten(subject.inventory, subject.settings.robots, False)
     for it in islice(found, 1):
         yield it._replace(hint="lint the source it was made from")
 
