@@ -14,6 +14,7 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.model import InputError
+from multibot_rewrite.sources.__main__ import main as tell_fences
 from multibot_rewrite.sources.access import Access, Reach
 from multibot_rewrite.sources.child import landlock, seccomp
 from multibot_rewrite.sources.child.frames import AUDIT, FENCES, LANDLOCK, LIMITS, SECCOMP
@@ -243,3 +244,9 @@ def test_each_fence_holds_without_limits(scene: Scene, name: str, fence: str) ->
         pytest.skip("Landlock is not for this")
     check_nothing_told(scene.said(name, (fence,)))
     scene.check_untouched()
+
+
+def test_a_user_can_ask_for_the_fences(capsys: pytest.CaptureFixture[str]) -> None:
+    tell_fences()
+    told = dict(line.split(": ") for line in capsys.readouterr().out.splitlines())
+    assert told == {it: "yes" if have(it) else "no" for it in FENCES}
