@@ -108,6 +108,7 @@ ALONE = (AUDIT, LANDLOCK, SECCOMP)
 # Without a limit on memory these would be a burden for the machine.
 LARGE = {"memory", "memory_list"}
 BRIEF = 0.5
+ENDLESS = {"macro_bomb", "no_alarm", "power", "questions", "sleep"}
 # What Landlock alone does not cover: it is no filter of system calls.
 BESIDE_LANDLOCK = {"udp", "fork_bomb", "threads", "chmod", "stat_secret"}
 
@@ -126,7 +127,7 @@ class Scene(NamedTuple):
     def said(self, name: str, fences: tuple[str, ...] = FENCES) -> str:
         """The message for a file, or its text."""
         try:
-            reach = Reach(seconds=BRIEF, fences=fences)
+            reach = Reach(seconds=BRIEF if name in ENDLESS else 60.0, fences=fences)
             return expand(self.file(name), self.arguments, reach=reach).decode()
         except InputError as error:
             assert "\n" not in str(error)
