@@ -13,6 +13,7 @@ from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -29,6 +30,7 @@ from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
 
 
+@gc_paused()
 def prepare(
     source: bytes,
     file: str,
