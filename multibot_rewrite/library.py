@@ -251,13 +251,14 @@ def strip(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
+    before = b""
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
-        naming = read_job(
-            made, naming, beside, xacro_args, vocabulary, words=[robot], trust=trust
-        ).naming
+        of = read_job(made, naming, beside, xacro_args, vocabulary, words=[robot], trust=trust)
+        naming, before = of.naming, b"" if beside else of.data
     job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust)
-    return pipeline.strip(job.data, job.file, robot, naming, job.tree, job.urdf_declarations)
+    beside_urdf = job.urdf_declarations
+    return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
 
 
 def _check_robots(robots: Iterable[str]) -> None:

@@ -24,7 +24,7 @@ from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
 from multibot_rewrite.steps.plan import make_plan
 from multibot_rewrite.steps.renames import RenameMap, make_renames
-from multibot_rewrite.steps.strip import strip_edits
+from multibot_rewrite.steps.strip import NOWHERE, own_places, strip_edits
 from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
 
@@ -46,7 +46,7 @@ def prepare(
     check_urdf(inventory, urdf_declarations)
     plan = make_plan(inventory, naming)
     findings = [*audit.audit(inventory, plan.renames, tree), *plan.findings]
-    missed = missed_by_arguments(inventory, own.plain)
+    missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
     findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
     values = slot_values(inventory.document.root)
@@ -129,10 +129,12 @@ def strip(
     naming: Naming,
     tree: Tree,
     urdf_declarations: Declared = NOTHING,
+    before: bytes = b"",
 ) -> bytes:
     """Undo a rewrite for ``robot``; the result is proved by rewriting it again.
 
-    ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares.
+    ``urdf_declarations`` is what the rewritten URDF beside a rewritten SRDF declares. ``before`` is
+    what the robot's own xacro arguments make, where the naming has names of these.
     """
     inventory = collect(read_document(source, file), tree, urdf_declarations)
     check_urdf(inventory, urdf_declarations)
@@ -140,7 +142,8 @@ def strip(
     found = checks.not_rewritten(inventory, renames, robot)
     found += checks.other_urdf(inventory, renames, robot, urdf_declarations)
     _stop_on_errors(found)
-    stripped = b"".join(cut(source, strip_edits(inventory, naming, robot)))
+    places = own_places(collect(read_document(before, file), tree), naming) if before else NOWHERE
+    stripped = b"".join(cut(source, strip_edits(inventory, naming, robot, places)))
     again = prepare(stripped, file, naming, tree, stripped_names(urdf_declarations, naming, robot))
     if fill(again.pieces, robot) != source:
         _stop_on_errors([checks.other_options(inventory, robot)])

@@ -1,4 +1,4 @@
-"""References that a xacro's own arguments miss: the author's prefix is on a link, and not on them."""
+"""Frames and links of which a xacro's own arguments reach only one: they no longer have one name."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ from collections.abc import Iterator, Mapping
 from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import XACRO, declare
+from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.steps.collect import Inventory
+from multibot_rewrite.steps.renames import RenameMap
+
+SEPARATORS = "/_-."
 
 _HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 _BODY = """\
@@ -25,11 +29,12 @@ ARGUMENT_MISSES_REFERENCE = declare(
     "MB143",
     "argument-misses-reference",
     WARNING,
-    what="A frame is the name of a link without the prefix that an argument of the xacro gives to the "
-    "link.",
-    why="The link has the robot's name by the argument, the frame gets it by the rewrite: the two "
-    "differ, and every look-up of the frame fails.",
-    fix="Write the argument there, too, or do not give it: the rewrite names all links and frames.",
+    what="A frame is the name of a link, and an argument of the xacro puts the robot's name into one "
+    "of the two only.",
+    why="One has the robot's name by the argument, the other one by the rewrite: they differ, and "
+    "every look-up of the frame fails.",
+    fix="Write the argument at both, or do not give it: the rewrite names all links and frames. Where "
+    "the argument is on the frame, the options of the rewrite may give the link the same name.",
     bad=_HEAD + _BODY.format(""),
     good=_HEAD + _BODY.format("$(arg prefix)"),
     # In the expansion, below the comment that xacro writes.
@@ -40,15 +45,28 @@ ARGUMENT_MISSES_REFERENCE = declare(
 
 
 def missed_by_arguments(
-    inventory: Inventory, plain: Mapping[tuple[str, str], str]
+    inventory: Inventory, renames: RenameMap, plain: Mapping[tuple[str, str], str], robot: str
 ) -> Iterator[Problem]:
-    """``plain`` maps names without the arguments (kind and text) to those with them."""
+    """``plain`` maps names without the arguments (kind and text) to those that ``robot`` has with
+    them."""
     links = inventory.declared["link"]
-    pairs = zip(inventory.claims, inventory.names, strict=True) if plain else ()
+    pairs = zip(inventory.claims, inventory.names, strict=True) if robot else ()
     for claim, names in pairs:
         for name in names:
-            own = plain.get(("link", name.text.removeprefix("/")))
-            if own and name.kind in FRAME_KINDS and name.text not in links and own in links:
-                message = f"frame {name.text!r} is the link {own!r}: the argument is missing here"
-                hint = "write the argument of the xacro here, too, or do not give it"
-                yield about(claim, ARGUMENT_MISSES_REFERENCE.code, message, hint)
+            text = name.text.removeprefix("/")
+            if name.kind not in FRAME_KINDS or text in links:
+                continue
+            if plain.get(("link", text)) in links:
+                yield _missed(claim, text, plain["link", text])
+            # A frame with the argument, named after a link without it.
+            bare = text.replace(robot, "").strip(SEPARATORS)
+            if (name.kind, name.text) in renames.naming.own and bare in links:
+                link = renames.spelled(robot, "link", bare)
+                if link != text:
+                    yield _missed(claim, text, link)
+
+
+def _missed(claim: Claim, frame: str, link: str) -> Problem:
+    message = f"frame {frame!r} is the link {link!r}: the xacro's argument reaches only one of them"
+    hint = "write the argument at both, or do not give it"
+    return about(claim, ARGUMENT_MISSES_REFERENCE.code, message, hint)

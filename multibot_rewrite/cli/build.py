@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     check_report(options, printed=False)
     plan = plan_fleet(read_fleet(options.fleet), trust=options.trust)
-    made = make_outputs(plan)
+    made = make_outputs(plan, os.path.abspath(options.output))
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)
         return STOPPED

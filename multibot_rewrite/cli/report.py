@@ -19,8 +19,6 @@ from multibot_rewrite.findings.selection import Selection, fails, selected
 from multibot_rewrite.model import UsageError
 
 TEXT = "text"
-# How the codes of all rules begin.
-GROUPS = ("MB", "MF", "MG", "MR")
 NO_ROBOTS: Mapping[str, str] = MappingProxyType({})
 NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
@@ -55,10 +53,8 @@ def _check_codes(option: str, codes: Sequence[str]) -> None:
     from multibot_rewrite.catalogue import rules  # it imports every check
 
     known = known_beginnings(rules())
-    # A group of which no rule is declared yet.
-    undeclared = set(GROUPS) - known
     for code in codes:
-        if code not in known and code[:2] not in undeclared:
+        if code not in known:
             raise UsageError(f"{option}: {no_rule(code, rules(), 'multibot explain')}")
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleets.meeting import with_meetings
-from multibot_rewrite.fleets.member import Member, member
+from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.expectation import Expectation, expect, named_frames, vacuous
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import rewrite_all
@@ -106,9 +106,8 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
     """The places of the plugins in the source: inserted text moves the lines of the result."""
     found = {}
     for it in members:
-        plugins = list(it.source.root.iter("plugin"))
         for node in it.reading.nodes:
-            line = plugins[node.number].sourceline
+            line = line_of(it.source, "plugin", node.number)
             found[node.full_name] = f"{it.source.file}:{line}"
     return found
 

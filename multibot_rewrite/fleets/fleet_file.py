@@ -79,12 +79,14 @@ class RobotSpec(NamedTuple):
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary."""
+    parameters, vocabulary. ``installed`` is where the results are when they are used, empty for where
+    they are written."""
 
     file: str
     policy: Policy
     world: str
     distro: str
+    installed: str
     nodes: str
     parameters: str
     vocabulary: tuple[str, ...]
@@ -117,6 +119,7 @@ def read_fleet(path: str) -> FleetFile:
         policy,
         data.get("world", ""),
         data.get("distro", "jazzy"),
+        data.get("installed", ""),
         nodes,
         parameters,
         vocabulary,

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from itertools import islice
 
 from multibot_rewrite.checks.meeting import code_of
 from multibot_rewrite.findings.finding import ERROR, Finding
-from multibot_rewrite.fleets.member import Member
+from multibot_rewrite.fleets.member import Member, line_of
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.readback.meeting import Meeting, meetings
 from multibot_rewrite.remap.records import Table
@@ -36,16 +35,7 @@ def _meetings(members: Sequence[Member], naming: Naming) -> Iterator[Finding]:
 
 def _finding(met: Meeting, member: Member) -> Finding:
     name, source = met.name, member.source
-    element = next(islice(source.root.iter(name.tag), name.number, None), source.root)
-    line: int = element.sourceline or 1  # type: ignore[assignment]
+    line = line_of(source, name.tag, name.number)
     message = f"{met.robot} and {met.other} would both have the {name.kind} {name.name!r}"
-    return Finding(
-        code_of(name),
-        ERROR,
-        message,
-        f"it comes from {name.path} here; urdf-postfix on this file says more",
-        source.file,
-        line,
-        1,
-        names=(name.name,),
-    )
+    hint = f"it comes from {name.path} here; urdf-postfix on this file says more"
+    return Finding(code_of(name), ERROR, message, hint, source.file, line, 1, names=(name.name,))

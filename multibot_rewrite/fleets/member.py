@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import islice
 from typing import NamedTuple
 
 from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.library import Rewrite
+from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.rosnames import bind, resolve_bound
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import Document, read_document
 
@@ -27,9 +30,31 @@ class Member(NamedTuple):
 
 
 def member(source: Rewrite, data: bytes, tag: str) -> Member:
-    """The robot of a rewrite; ``data`` is its final description."""
+    """The robot of a rewrite; ``data`` is its final description.
+
+    Raises InputError where ROS refuses the names of a plugin.
+    """
     document, tree = source.template.inventory.document, source.template.tree
     written = collect(read_document(data, document.file), tree)
     reading = read(data, document.file, tree.vocabulary)
+    _check_names(reading, document)
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
     return Member(source.robot, tag, written, reading, document, shared)
+
+
+def line_of(document: Document, tag: str, number: int) -> int:
+    """The line of the ``number``-th element with this tag, 1 where there is none."""
+    element = next(islice(document.root.iter(tag), number, None), document.root)
+    line: int = element.sourceline or 1  # type: ignore[assignment]
+    return line
+
+
+def _check_names(reading: Reading, document: Document) -> None:
+    for node in reading.nodes:
+        try:
+            bound = bind(node.name, node.namespace, [it.rule for it in node.rules])
+            for it in node.endpoints:
+                resolve_bound(it.name, it.kind, bound)
+        except UsageError as error:
+            place = f"{document.file}:{line_of(document, 'plugin', node.number)}"
+            raise InputError(f"{place}: {error}; change it in the description") from None

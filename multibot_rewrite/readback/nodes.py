@@ -16,7 +16,7 @@ from multibot_rewrite.naming import TOPIC_KINDS
 from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.readback.xml import child_text, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
-from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, parse_remap, resolve_bound
+from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, expand, parse_remap, resolve_bound
 
 TOPIC, SERVICE = "topic", "service"
 ROLES = ("publishes", "subscribes", "serves")
@@ -25,7 +25,7 @@ ROLES = ("publishes", "subscribes", "serves")
 class ReadEndpoint(NamedTuple):
     """A topic or service of a node: its name in the code or in a parameter, and in the graph.
 
-    ``full`` is empty where rcl refuses the name; ``off`` are parameters that would turn it on.
+    ``off`` are parameters that would turn it on.
     """
 
     kind: str
@@ -115,24 +115,26 @@ def _rules(home: _Element) -> Iterator[ReadRule]:
             yield ReadRule(rule, line)
 
 
-def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode | None:
+def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
+    """The node under its rules; without them where rcl refuses to start it."""
     try:
         return bind(name, namespace, rules)
     except UsageError:
-        return None
+        return BoundNode(name, namespace, {}, {})
 
 
-def _full(name: str, kind: str, bound: BoundNode | None) -> str:
+def _full(name: str, kind: str, bound: BoundNode) -> str:
+    """The full name, as text where rcl refuses it: a placeholder may be filled before it runs."""
     try:
-        return resolve_bound(name, kind, bound) if bound else ""
+        return resolve_bound(name, kind, bound)
     except UsageError:
-        return ""
+        return expand(name, bound.namespace, bound.node)
 
 
 def _endpoints(
     plugin: _Element,
     section: VocabularySection,
-    bound: BoundNode | None,
+    bound: BoundNode,
     rules: tuple[ReadRule, ...],
 ) -> Iterator[ReadEndpoint]:
     off = switched_off(plugin, section)
@@ -164,7 +166,7 @@ def _frames(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str,
 
 
 def _stems(
-    plugin: _Element, section: VocabularySection, bound: BoundNode | None
+    plugin: _Element, section: VocabularySection, bound: BoundNode
 ) -> Iterator[tuple[str, str]]:
     for site in section.sites:
         if site.form == "whole" and site.kinds[:1] == ("stem",):

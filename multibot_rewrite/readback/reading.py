@@ -79,7 +79,7 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
         yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
         for it in node.endpoints:
-            if not it.off and it.full:
+            if not it.off:
                 yield RuntimeName(it.kind, it.full, "plugin", node.number, it.parameter or it.name)
         for path, full in node.stems:
             yield RuntimeName(TOPIC, full, "plugin", node.number, path)

@@ -110,7 +110,8 @@ def node_table(
     ``others`` are the robot's nodes: a name below one of them is renamed with it.
     """
     if node.shared:
-        return NodeTable("", node.name, "/", node.name, ())
+        above, _, own = node.name.strip("/").rpartition("/")
+        return NodeTable("", node.name, f"/{above}", own, ())
     namespace, name = placed(robot, node.name, naming)
     # In a node's own namespace a relative target would stay below it.
     root = f"/{robot}/" if namespace.count("/") > 1 else ""

@@ -146,14 +146,14 @@ def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
     other = _marked(read, given, words)
     own = {key: None for part in other.inventories for key in own_names(part, words)}
     twin = as_twin(other.data) if has_mark(other.data) else b""
-    job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(twin=twin))
+    job = job._replace(naming=job.naming._replace(own=own), own=OwnSource(words[0], twin=twin))
     try:
         plain = read({it: text for it, text in given.items() if not name_robot({it: text}, words)})
     except InputError:
         # An argument without a default: nothing is known of names without it.
         return job
     texts = _marked_texts(plain, other)
-    job = job._replace(own=OwnSource(own_texts(texts, words), twin))
+    job = job._replace(own=OwnSource(words[0], own_texts(texts, words), twin))
     beside_plain = job.urdf and len(set(words)) == 1 and not twin
     affixes = own_affixes(texts) if beside_plain else None
     return _of_plain(job, plain, affixes) if affixes else job

@@ -29,10 +29,11 @@ NO_TEXTS: NameTexts = {}
 class OwnSource(NamedTuple):
     """What is known of a description that is one robot's own, by the arguments of its xacro.
 
-    ``plain`` are the names that the arguments make, by what they are without these; ``twin`` are the
-    bytes for a robot that is called ``TWIN``.
+    ``robot`` is its name; ``plain`` are the names that the arguments make, by what they are without
+    these; ``twin`` are the bytes for a robot that is called ``TWIN``.
     """
 
+    robot: str = ""
     plain: NameTexts = NO_TEXTS
     twin: bytes = b""
 

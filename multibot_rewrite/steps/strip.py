@@ -14,15 +14,36 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import emptied, value_places, value_slot
 from multibot_rewrite.steps.inserted import removals
 
+# A name of a description: the number of its value among the claims, its own in the value.
+Place = tuple[int, int]
+NOWHERE: frozenset[Place] = frozenset()
 
-def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
-    """Edits that undo ``make_plan`` for ``robot``, in source order."""
+
+def own_places(inventory: Inventory, naming: Naming) -> frozenset[Place]:
+    """Where a description that is not rewritten has names that are the robot's already."""
+    places = (
+        (at, number, (name.kind, name.text))
+        for at, names in enumerate(inventory.names if naming.own else ())
+        for number, name in enumerate(names)
+    )
+    return frozenset((at, number) for at, number, key in places if naming.own.get(key, key) is None)
+
+
+def strip_edits(
+    inventory: Inventory, naming: Naming, robot: str, own: frozenset[Place] = NOWHERE
+) -> list[Edit]:
+    """Edits that undo ``make_plan`` for ``robot``, in source order.
+
+    ``own`` are the ``own_places`` of what was rewritten: what is there was not put there by a rewrite,
+    though a rewrite makes another name like it.
+    """
     document = inventory.document
     edits = removals(document, robot)
     claims = not_inserted(inventory.claims, edits)
     is_inserted = inside_of(edits)
     known: dict[tuple[tuple[ResolvedName, ...], bool], list[tuple[int, int]]] = {}
-    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+    kept_out = _without(inventory, own, is_inserted) if own else inventory.names
+    for claim, names in zip(inventory.claims, kept_out, strict=True):
         key = names, claim.site.namespaced
         if key not in known:
             known[key] = _spans(*key, naming, robot)
@@ -37,6 +58,21 @@ def strip_edits(inventory: Inventory, naming: Naming, robot: str) -> list[Edit]:
         if slot is not None:
             edits.append(Edit(*slot, old.encode(), None))
     return sorted(edits, key=lambda edit: edit.start)
+
+
+def _without(
+    inventory: Inventory, own: frozenset[Place], is_inserted: Callable[[Claim], bool]
+) -> list[tuple[ResolvedName, ...]]:
+    """The names in each value but those at places of ``own``."""
+    at = 0
+    found = []
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        if is_inserted(claim):
+            found.append(names)
+            continue
+        found.append(tuple(it for number, it in enumerate(names) if (at, number) not in own))
+        at += 1
+    return found
 
 
 def not_inserted(claims: list[Claim], removed: list[Edit]) -> list[Claim]:

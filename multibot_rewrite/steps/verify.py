@@ -7,13 +7,13 @@ made of it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from typing import NamedTuple
 
 from lxml import etree
 
 from multibot_rewrite.model import Claim, Edit, InputError, ProofError
-from multibot_rewrite.naming import Naming, affix, removal, spelled
+from multibot_rewrite.naming import FRAME_KINDS, Naming, affix, removal, spelled
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.insert import insertions, query
@@ -30,7 +30,7 @@ from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.steps.inserted import Marker, markers, removals
 from multibot_rewrite.steps.plan import Plan
-from multibot_rewrite.steps.strip import inside_of, strip_edits
+from multibot_rewrite.steps.strip import inside_of, own_places, strip_edits
 
 Names = tuple[ResolvedName, ...]
 
@@ -140,9 +140,18 @@ def same_targets(it: Evidence) -> None:
     """Every name means what it meant: a use finds what it named, and nothing else does."""
     file = it.inventory.document.file
     for names, (new, now) in zip(it.inventory.names, it.found, strict=True):
-        same = [name.kind for name in names] == [name.kind for name in now]
+        kept = {at for at, name in enumerate(names) if (name.kind, name.text) in it.naming.own}
+        same = _kinds(names, kept) == _kinds(now, kept)
         if not same or any(_left_behind(name, it.inventory) for name in now if not name.kind):
             raise ProofError(f"{file}: {new.value!r} does not name what it named before")
+
+
+def _kinds(names: Names, kept: Container[int]) -> list[str]:
+    """The kinds of names; a frame that an argument of the xacro names may become that of a link."""
+    return [
+        "frame" if at in kept and name.kind in FRAME_KINDS else name.kind
+        for at, name in enumerate(names)
+    ]
 
 
 def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
@@ -253,7 +262,8 @@ def a_slot_each(it: Evidence) -> None:
 def strips_to_source(it: Evidence) -> None:
     """Undoing the rewrite, by what the output alone says, gives the input back."""
     source, file, *_ = it.inventory.document
-    edits = strip_edits(it.result, it.naming, it.robot)
+    own = own_places(it.inventory, it.naming)
+    edits = strip_edits(it.result, it.naming, it.robot, own)
     if b"".join(cut(it.result.document.source, edits)) != source:
         raise ProofError(
             f"{file}: stripping {it.robot} from the output does not give the input back"

@@ -48,6 +48,12 @@ DESCRIPTION = f"""<robot name="r {IN_XML}">
   </ros2_control>
 </robot>
 """
+XACRO = f"""<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:arg name="a" default="{IN_XML}"/>
+  <xacro:arg name="{IN_XML}" default="{IN_XML}"/>
+  <link name="$(arg a){IN_XML}"/>
+</robot>
+"""
 
 
 @pytest.fixture
@@ -56,6 +62,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     (tmp_path / f"{EVIL}.urdf").write_text(DESCRIPTION)
     (tmp_path / f"{EVIL}.xml").write_text("<robot")
+    (tmp_path / f"{EVIL}.xacro").write_text(XACRO)
     (tmp_path / f"{EVIL}.lint.urdf").write_text('<robot name="r"><link name="a "/></robot>')
     (tmp_path / "cut.urdf").write_text(DESCRIPTION[:-20])
     fleet_folder(tmp_path, SMALL.replace("rover.urdf", json.dumps(f"{EVIL}.urdf")))
@@ -96,6 +103,8 @@ LINES = (
         ["coverage", FILE, "--explained", f"{EVIL}.yaml"],
     ),
     *(["vocabulary", "--suggest", FILE], ["vocabulary", EVIL], ["vocabulary", "--type", EVIL]),
+    *(["arguments", f"{EVIL}.xacro"], ["arguments", f"{EVIL}.xacro", f"a:={EVIL}"]),
+    *(["arguments", EVIL], ["urdf-postfix", f"{EVIL}.xacro", "r", f"a:={EVIL}{{robot}}"]),
     *(["explain", EVIL], ["help", EVIL], [EVIL], ["remap", FILE, "robot1", "--stack", EVIL]),
     *(["remap", FILE, "robot1", "robot2", "--stack", "nav2", "--form", it] for it in ("table",)),
     *(["remap", FILE, "robot1", "--nodes", f"{EVIL}.yaml", "--stack", "nav2"],),

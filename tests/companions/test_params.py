@@ -473,6 +473,20 @@ def test_a_node_without_any_section_is_reported() -> None:
 # ---------------------------------------------------------------- what is told
 
 
+@pytest.mark.parametrize("key", ["command_interfaces", "state_interfaces", "interfaces"])
+def test_interfaces_of_an_unknown_controller_are_renamed(key: str) -> None:
+    """test_controller_spawner_with_interfaces.yaml of ros2_control; a known one has [position]."""
+    text, findings = made(section("own_controller", f"{key}: [elbow/position, other/position]"))
+    assert f"{key}: [r1_elbow/position, other/position]" in text
+    assert [it.code for it in findings] == ["MF114"]
+    assert f"{key}: [position]" in made(section("own_controller", f"{key}: [position]"))[0]
+
+
+@pytest.mark.parametrize("value", ["wrist/position", "elbow/", "elbow_x/position", "/scan/elbow"])
+def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
+    assert made(section("other", f"what: [{value}]"))[1] == ()
+
+
 @pytest.mark.parametrize(
     ("node", "line", "code", "words"),
     [
@@ -482,6 +496,8 @@ def test_a_node_without_any_section_is_reported() -> None:
         ("other", "what: elbow", "MF123", "is a joint of the robot"),
         ("other", "elbow: 1.0", "MF123", "is a joint of the robot"),
         ("other", "what: [1st, base_link]", "MF123", "is a link of the robot"),
+        ("other", "what: [elbow/position]", "MF123", "is an interface of the robot"),
+        ("other", "what: chained/elbow/velocity", "MF123", "is an interface of the robot"),
         ("other", "x_topic: /x", "MF114", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MF122", "not rewritten"),
         ("robot_state_publisher", "frame_prefix: a/", "MF115", "a second time"),

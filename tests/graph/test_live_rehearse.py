@@ -151,7 +151,9 @@ def children(pid: int) -> Iterator[int]:
 
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="no /proc to look for children")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize(
+    "number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.deep)]
+)
 def test_no_node_is_left(number: signal.Signals) -> None:
     command = [*COMMAND, *PAIR, "--stack", "nav2", "--layout", "L2", "--domain", str(domain(9))]
     env = live_fleet.environ(domain(9))

@@ -111,6 +111,7 @@ def test_the_worst_is_remembered_after_it_went(plan: Path) -> None:
     assert "Traceback" not in said
 
 
+@pytest.mark.deep
 def test_what_goes_away_is_missing_once_the_graph_is_quiet(plan: Path) -> None:
     own = domain(72)
     with watching(plan, own) as watch, live_fleet.running(own, [node("robot1")]):

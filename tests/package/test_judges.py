@@ -39,6 +39,7 @@ def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
     """What each of the five says; empty where the description is refused."""
     try:
         first, _ = rewrite_all(path, ROBOTS, layout=layout)
+        table = make_fleet(path, ROBOTS, (), {"layout": layout}).table
     except MultibotError:
         return {}
     settings = Settings(robots=ROBOTS, naming=make_naming(layout), select=CODES)
@@ -49,7 +50,7 @@ def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
     return {
         "rewrite": named(first.findings),
         "lint": named(lint_file(str(path), settings)),
-        "remap": named(make_fleet(path, ROBOTS, (), {"layout": layout}).table.problems),
+        "remap": named(table.problems),
         "fleet": named(plan.fleet.table.problems),
         "build": named((*make_outputs(plan).findings, *plan.fleet.table.problems)),
     }

@@ -164,6 +164,14 @@ def test_below_a_namespace_of_its_own_a_target_is_absolute() -> None:
     }
 
 
+def test_a_shared_node_may_have_a_namespace() -> None:
+    maps = NodeFacts("maps/server", "x", (Endpoint(TOPIC, PUBLISHES, "map"),), shared=True)
+    found = build_table(ROBOTS, (maps,), make_naming("both"))
+    (node,) = found.nodes
+    assert (node.namespace, node.name) == ("/maps", "server")
+    assert [it.name for it in found.names] == ["/maps/map"]
+
+
 def test_a_shared_node_runs_once_as_it_is() -> None:
     (node,) = (n for n in table("L2").nodes if n.node == "bridge")
     assert node == NodeTable("", "bridge", "/", "bridge", ())

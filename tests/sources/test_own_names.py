@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import pytest
 from lxml import etree
@@ -299,3 +300,29 @@ def test_a_default_that_is_replaced_is_followed_as_well(tmp_path: Path) -> None:
     path = made('<xacro:arg name="p" default="arm_"/>', '<link name="$(arg p)base"/>', tmp_path)
     job = read_job(path, make_naming(), xacro_args={"p": "{robot}_"}, words=["left"])
     assert job.own.plain == {("link", "arm_base"): "left_base"}
+
+
+@pytest.mark.parametrize(
+    ("policy", "codes"),
+    [
+        ({"layout": "frames-per-robot", "affix": "prefix"}, []),
+        ({"layout": "frames-per-robot"}, ["MB143"]),
+        ({"layout": "frames-per-robot", "affix": "prefix", "separators": {"link": "_"}}, ["MB143"]),
+        ({"layout": "tf-per-robot"}, ["MB143"]),
+    ],
+)
+def test_a_frame_with_the_argument_and_its_link_without_it(
+    tmp_path: Path, policy: dict[str, Any], codes: list[str]
+) -> None:
+    body = (
+        '<link name="base_link"/><gazebo>'
+        '<plugin name="drive" filename="libgazebo_ros_diff_drive.so">'
+        "<robot_base_frame>$(arg p)/base_link</robot_base_frame></plugin></gazebo>"
+    )
+    path = made('<xacro:arg name="p" default=""/>', body, tmp_path)
+    given = {"p": "{robot}"}
+    done = rewrite(path, "left", xacro_args=given, **policy)
+    assert [it.code for it in done.findings] == codes
+    # The frame is as it was, also where the rewrite gives the link the same name.
+    back = strip(done.data, "left", xacro=path, xacro_args=given, **policy)
+    assert back == expand(str(path), {"p": "left"})

@@ -257,6 +257,9 @@ def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iter
         kind = params[0].kind
         sure = len(params) > 1 or kind in SAFE_KINDS or path.endswith(_INDEX)
         guessed = guessing.fullmatch(path.rpartition(".")[2])
+        # What is [position] in a known controller may be [elbow/position] in another one.
+        if kind == "keep" and guessed and guessed.lastgroup == "interface":
+            continue
         if (
             kind != "exclusive"
             and len({it.kind for it in params}) == 1

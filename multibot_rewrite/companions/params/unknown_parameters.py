@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.companions.names.by_kind import is_plain
+from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
@@ -60,7 +61,7 @@ UNKNOWN_PARAMETER = declare(
     "name-in-unknown-parameter",
     WARNING,
     what="A parameter that is not known to hold names has the name of a link, joint, frame or topic "
-    "of the robot as its value or in its key.",
+    "of the robot, or an interface of its hardware, as its value or in its key.",
     why="It stays as it is. If it is a name, the node looks for a frame or joint that no longer has "
     "that name, or two robots use the same topic.",
     fix="If it is a name, describe the parameter in a file, and name that file under parameters: in "
@@ -92,10 +93,23 @@ def unclaimed_names(job: ParamsJob, pages: Sequence[SectionNames]) -> Iterator[F
     for names in pages:
         found = [(it, either[it.value]) for it in names.unclaimed if it.value in either]
         found += [(it, declared[it.value]) for it in names.keys if it.value in declared]
+        found += [(it, "interface") for it in names.unclaimed if _is_interface(job, it.value)]
         for scalar, kind in found:
-            message = f"{scalar.value!r} is a {kind} of the robot, but the parameter is not known"
+            article = "an" if kind == "interface" else "a"
+            message = (
+                f"{scalar.value!r} is {article} {kind} of the robot, but the parameter is not known"
+            )
             hint = "if it is a name, describe the parameter in a file under parameters:"
             yield found_at(job.document, scalar, UNKNOWN_PARAMETER, message, hint)
+
+
+def _is_interface(job: ParamsJob, value: str) -> bool:
+    """Is it ``elbow/position``? ``imu/data`` is more likely a topic than an interface of a sensor,
+    ``imu/orientation.x`` can be no topic."""
+    *chain, interface = value.split("/")
+    kinds = ("joint", "gpio", "sensor") if "." in interface else ("joint", "gpio")
+    names = job.context.names
+    return interface != "" and any(is_declared(names, kind, it) for kind in kinds for it in chain)
 
 
 def _is_robots(job: ParamsJob, site: NameSite) -> bool:

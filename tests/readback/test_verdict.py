@@ -1,0 +1,88 @@
+"""What a rewrite is called: proved, or not and why."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from paths import ROBOTS
+from postfix_command import run
+
+from multibot_rewrite import rewrite
+from multibot_rewrite.checks.verdict import REASONS, not_proved
+from multibot_rewrite.findings.finding import Finding
+
+LIDAR = """<robot name="r"><link name="a"/><gazebo reference="a">
+<sensor name="lidar" type="gpu_lidar"><topic>{}</topic></sensor></gazebo></robot>"""
+DRIVE = """<robot name="r"><link name="a"/><gazebo>
+<plugin name="drive" filename="libgazebo_ros_diff_drive.so"><ros><namespace>{}</namespace></ros>
+</plugin></gazebo></robot>"""
+
+
+def of(*codes: str) -> tuple[str, ...]:
+    return not_proved(Finding(code, "warning", "x") for code in codes)
+
+
+@pytest.mark.parametrize(
+    ("codes", "why"),
+    [
+        ((), ()),
+        (("MB405", "MB301"), ()),
+        (("MB901",), ("1 name not understood",)),
+        (("MB430", "MB901", "MB430"), ("1 name not understood", "2 topics shared by all robots")),
+        (("MB431", "MB432"), ("1 node shared by all robots", "1 frame shared by all robots")),
+        (("MB902", "MB903"), ("1 plugin not known", "1 hardware class not known")),
+    ],
+)
+def test_reasons_with_counts(codes: tuple[str, ...], why: tuple[str, ...]) -> None:
+    assert of(*codes) == why
+
+
+def test_every_reason_is_a_warning_of_a_rewrite() -> None:
+    """--strict stops at warnings: a reason below would pass."""
+    from multibot_rewrite.catalogue import rules
+
+    known = rules()
+    assert {code for code in REASONS if known[code].level not in ("warning", "note")} == set()
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        (LIDAR.format("scan"), ()),
+        (LIDAR.format("{name}/scan"), ("1 topic shared by all robots",)),
+        (DRIVE.format("demo"), ()),
+        (DRIVE.format(""), ()),
+        (DRIVE.format("<!-- c -->demo"), ()),
+        (
+            DRIVE.format("{name}"),
+            ("1 topic shared by all robots", "1 node shared by all robots"),
+        ),
+    ],
+)
+def test_a_rewrite_says_why_it_is_not_proved(text: str, why: tuple[str, ...]) -> None:
+    assert rewrite(text, "robot1", layout="tf-per-robot").not_proved == why
+
+
+def test_the_summary_and_strict(tmp_path: Path) -> None:
+    file, out = tmp_path / "r.urdf", tmp_path / "out.urdf"
+    file.write_text(LIDAR.format("{name}/scan"))
+    done = run(tmp_path, "r.urdf", "robot1", "-o", str(out))
+    assert done.code == 0
+    assert done.err.endswith("; rewritten, not proved: 1 topic shared by all robots\n")
+    out.unlink()
+    stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--strict")
+    assert stopped.code == 1
+    assert not out.exists()
+    assert "proved" not in stopped.err
+    healthy = run(tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--strict")
+    assert healthy.code == 0
+    assert healthy.err.endswith("; proved\n")
+
+
+def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
+    file = tmp_path / "r.urdf"
+    file.write_text(LIDAR.format("{name}/scan"))
+    quiet = run(tmp_path, "r.urdf", "robot1", "-o", str(tmp_path / "o"), "--ignore", "MB430")
+    assert "MB430" not in quiet.err
+    assert "not proved: 1 topic" in quiet.err
