@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.checks import audit
@@ -108,6 +108,13 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
             *_, naming, tree, urdf_declarations = prepared
             verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
         yield output
+
+
+def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
+    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    inventory, own = prepared.inventory, prepared.naming.own
+    found = already_rewritten(inventory, robots, False, own, kinds)
+    _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
 
 
 def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:
