@@ -6,7 +6,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple, cast
@@ -126,6 +126,14 @@ def read_fleet(path: str) -> FleetFile:
         robots,
         tuple(filter(None, (*read.files, nodes, parameters, *vocabulary))),
     )
+
+
+def input_files(fleet: FleetFile) -> Iterator[str]:
+    """Every file that it names, itself among them."""
+    yield from fleet.files
+    for robot in fleet.robots:
+        yield from filter(None, (robot.description, robot.srdf))
+        yield from (path for paths in robot.companions.values() for path in paths)
 
 
 def is_fleet(data: bytes) -> bool:

@@ -121,18 +121,21 @@ def wrong_plans(template: Template) -> Iterator[tuple[str, Template]]:
 
 
 def is_same(wrong: bytes, right: bytes) -> bool:
-    """Do two texts say the same, words in comments and white space around texts aside?"""
+    """Do two texts say the same, in whatever order, words in comments and white space aside?"""
     if wrong == right:
         return True
     try:
-        return _said(wrong) == _said(right)
+        return sorted(_said(wrong)) == sorted(_said(right))
     except etree.XMLSyntaxError:
         return False
 
 
-def _said(text: bytes) -> list[tuple[str, dict[str, str], str]]:
+def _said(text: bytes) -> list[tuple[str, list[tuple[str, str]], str]]:
     root = etree.fromstring(text, etree.XMLParser(remove_comments=True))
-    return [(it.tag, dict(it.attrib), " ".join(it.xpath("text()")).strip()) for it in root.iter()]
+    return [
+        (it.tag, sorted(it.attrib.items()), " ".join(it.xpath("text()")).strip())
+        for it in root.iter()
+    ]
 
 
 def texts(template: Template) -> list[bytes]:

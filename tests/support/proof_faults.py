@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import NamedTuple
 
 from paths import FIXTURES
@@ -102,11 +103,11 @@ class Fault(NamedTuple):
         return text.replace(self.old, self.new, 1)
 
 
-def read_faults() -> list[Fault]:
-    """The faults of ``fixtures/proof_faults.txt``, which says how they are written."""
+def read_faults(file: Path = FILE) -> list[Fault]:
+    """The faults of a file, which itself says how they are written."""
     faults = []
     head: list[str] = []
-    for block in FILE.read_text().split("\n\n"):
+    for block in file.read_text().split("\n\n"):
         lines = [line for line in block.split("\n") if line and not line.startswith("#")]
         if not lines:
             continue
