@@ -95,7 +95,11 @@ HOMES: tuple[Home, ...] = (
         ("fleets.consistency", "fleets.value_checks", "fleets.tf_conflicts"),
         BUILT_INTRO,
     ),
-    Home("MF7", "start poses and spawning", ("fleets.start_poses", "fleets.spawn")),
+    Home(
+        "MF7",
+        "start poses and spawning",
+        ("fleets.start_poses", "fleets.spawn", "fleets.controller_files"),
+    ),
     Home(
         "MG1",
         "nodes, topics and services",

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.arguments import missed_by_arguments
-from multibot_rewrite.checks.meeting import shared_by_all, shared_with
+from multibot_rewrite.checks.meeting import shared_by_all, shared_by_both, shared_with
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource, own_names
+from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
@@ -29,6 +30,7 @@ from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
 
 
+@gc_paused()
 def prepare(
     source: bytes,
     file: str,
@@ -67,9 +69,9 @@ def _shared_with_twin(
 ) -> Iterator[Problem]:
     """What a robot whose xacro has arguments of its own would share with all others."""
     document = inventory.document
-    other = collect(read_document(twin, document.file), tree)
-    own = naming._replace(own=own_names(other, [TWIN]))
-    text = fill(cut(twin, make_plan(other, own).edits), TWIN)
+    # What the arguments name gets the twin's name once more: only whether it has it matters.
+    edits = make_plan(collect(read_document(twin, document.file), tree), naming).edits
+    text = fill(cut(twin, edits), TWIN)
     return shared_with(document, text, TWIN, naming, tree.vocabulary)
 
 
@@ -95,7 +97,8 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
         checks.taken_names(inventory, renames, robots),
         already_rewritten(inventory, robots, again, renames.naming.own),
     )
-    whole = checks.meeting(inventory, renames, overlap(prepared.naming, robots))
+    pairs = overlap(prepared.naming, robots)
+    whole = list(checks.meeting(inventory, renames, pairs)) or _meeting(prepared, pairs)
     at_start = to_findings(document, whole, ERROR, of_file=True)
     _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for number, robot in enumerate(robots):
@@ -105,6 +108,21 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
             *_, naming, tree, urdf_declarations = prepared
             verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
         yield output
+
+
+def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
+    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    inventory, own = prepared.inventory, prepared.naming.own
+    found = already_rewritten(inventory, robots, False, own, kinds)
+    _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
+
+
+def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:
+    """What robots whose names overlap would share in the running system."""
+    inventory, _, pieces, _, naming, tree, _ = prepared
+    for robot, other, _ in pairs if inventory.format != SRDF else ():
+        pair = robot, other
+        yield from shared_by_both(inventory.document, pieces, pair, naming, tree.vocabulary)
 
 
 def check_apart(made: Mapping[str, Template]) -> None:

@@ -1,7 +1,8 @@
-"""Names of links and joints in values that no site claims: a rewrite leaves them as they are."""
+"""Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
@@ -18,8 +19,49 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot
 
 # Kinds whose names are looked for in values without a site.
-MENTIONED = ("link", "joint")
-_BETWEEN = lazy_compile(r":=|::|[\s,;/]+")
+MENTIONED = ("link", "joint", "light")
+# What is between names: of lists and paths, of structures, and of what has parts. A name may hold
+# what is between others, so that each is a look of its own.
+_BETWEEN = (
+    lazy_compile(r":=|::|[\s,;/]+"),
+    lazy_compile(r"[\s,;\[\](){}\"']+"),
+    lazy_compile(r":=|::|[\s,;/\[\](){}\"'=|]+"),
+    lazy_compile(r"[\s,;/\[\](){}\"'=|:.]+"),
+)
+_PARTED = lazy_compile(r"[\s,;/\[\](){}\"'=|:.]")
+_SPACED = lazy_compile(r"[\s,;\[\](){}\"'=|]+")
+# A file is found by its name, whatever the links are called.
+_FILES = (
+    *(
+        ".dae",
+        ".stl",
+        ".obj",
+        ".ply",
+        ".glb",
+        ".gltf",
+        ".usd",
+        ".usda",
+        ".usdc",
+        ".mtl",
+        ".material",
+    ),
+    *(".png", ".jpg", ".jpeg", ".tga", ".dds", ".pgm", ".bmp", ".svg", ".urdf", ".xacro", ".srdf"),
+    *(".sdf", ".world", ".rviz", ".yaml", ".yml", ".xml", ".json", ".toml", ".ini", ".csv", ".txt"),
+    *(
+        ".lua",
+        ".py",
+        ".sh",
+        ".so",
+        ".bin",
+        ".pt",
+        ".onnx",
+        ".engine",
+        ".pcd",
+        ".bag",
+        ".db3",
+        ".mcap",
+    ),
+)
 _NUMBERS = lazy_compile(r"[-+0-9.eE\s]*$")
 
 
@@ -79,7 +121,7 @@ def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
     telling = {value: value for value in names & different}
     others = [value for value in different - names if not _NUMBERS.match(value)]
     # One look at all of them: mostly none holds a name.
-    if not names.isdisjoint(_BETWEEN.split(" ".join(others))):
+    if any(not names.isdisjoint(it.split(" ".join(others))) for it in _looks(names)):
         telling |= {value: name for value in others if (name := mentioned(value, names))}
     return telling
 
@@ -90,7 +132,22 @@ def mentioned(value: str, names: frozenset[str]) -> str:
         return value
     if _NUMBERS.match(value):
         return ""
-    return next((word for word in _BETWEEN.split(value) if word in names), "")
+    text = _without_files(value)
+    return next((word for it in _looks(names) for word in it.split(text) if word in names), "")
+
+
+def _looks(names: frozenset[str]) -> tuple[re.Pattern[str], ...]:
+    """The finest look finds every name but those that it would cut itself."""
+    return _BETWEEN if any(map(_PARTED.search, names)) else _BETWEEN[-1:]
+
+
+def _without_files(value: str) -> str:
+    """A value without the words that are names of files or addresses."""
+    if "." not in value and "://" not in value:
+        return value
+    words = _SPACED.split(value)
+    files = {it for it in words if "://" in it or it.lower().endswith(_FILES)}
+    return " ".join(it for it in words if it not in files) if files else value
 
 
 def _unclaimed(

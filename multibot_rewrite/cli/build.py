@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.cli.fleet import words_of
@@ -12,9 +12,10 @@ from multibot_rewrite.cli.folders import change_folder, check_inside, clear_left
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
+from multibot_rewrite.cli.walk import is_same_file
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.manifest import (
     MANIFEST,
@@ -36,11 +37,13 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     check_report(options, printed=False)
     plan = plan_fleet(read_fleet(options.fleet), trust=options.trust)
-    made = make_outputs(plan)
+    made = make_outputs(plan, os.path.abspath(options.output))
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)
         return STOPPED
-    files = [*made.files, manifest(made.files, _read(plan, made.files), options.output)]
+    read = _read(plan, made.files)
+    files = [*made.files, manifest(made.files, read, options.output)]
+    _check_inputs(options.output, files, {*read, *input_files(plan.file)})
     with locked(options.output):
         known = _known(options.output)
         there = _there(options.output, {*known, *(it.path for it in files)})
@@ -62,6 +65,13 @@ def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
     """The files that a build was made from."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
     return {path: read_file(path) for path in paths}
+
+
+def _check_inputs(folder: str, files: Iterable[OutputFile], read: Collection[str]) -> None:
+    """Raise UsageError where a build would write over what it is made from, which no option allows."""
+    for path in (os.path.join(folder, it.path) for it in files):
+        if os.path.exists(path) and any(is_same_file(path, it) for it in read):
+            raise UsageError(f"{path} is a file that is read; choose another folder for --output")
 
 
 def _check_folder(folder: str) -> None:

@@ -31,7 +31,7 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
     _check_use(options)
-    plan = _plan(options.plan, options.trust)
+    plan = _plan(options)
     try:
         return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
     except RosUnusable as error:
@@ -50,10 +50,11 @@ def _check_use(options: argparse.Namespace) -> None:
         check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
 
 
-def _plan(path: str, trust: bool) -> Expectation:
+def _plan(options: argparse.Namespace) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
-    from multibot_rewrite.fleets.fleet_file import is_fleet, read_fleet
+    from multibot_rewrite.fleets.fleet_file import input_files, is_fleet, read_fleet
 
+    path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if not is_fleet(data):
         return from_yaml(data, path)
@@ -61,7 +62,10 @@ def _plan(path: str, trust: bool) -> Expectation:
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    return expected(with_start_pose_nodes(plan_fleet(read_fleet(path), trust=trust)))
+    file = read_fleet(path)
+    if options.output:
+        check_target(options.output, input_files(file))
+    return expected(with_start_pose_nodes(plan_fleet(file, trust=options.trust)))
 
 
 def conclude(

@@ -44,14 +44,20 @@ def build(options: argparse.Namespace) -> Fleet:
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
-    from multibot_rewrite.fleets.fleet_file import read_fleet  # one description needs none of it
+    from multibot_rewrite.fleets.fleet_file import (  # one description needs none of it
+        input_files,
+        read_fleet,
+    )
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    return with_start_pose_nodes(plan_fleet(read_fleet(options.input), trust=options.trust))
+    file = read_fleet(options.input)
+    if options.output:
+        check_target(options.output, input_files(file))
+    return with_start_pose_nodes(plan_fleet(file, trust=options.trust))
 
 
 def _from_words(options: argparse.Namespace) -> Fleet:

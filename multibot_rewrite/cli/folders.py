@@ -226,12 +226,32 @@ def _one_by_one(
 ) -> None:
     path, data = note
     full = os.path.join(folder, path)
-    write_all([(full, data)])
-    write_all(((os.path.join(folder, it), data) for it, data in write.items()))
+    with _put_back(full):
+        write_all([(full, data)])
+        write_all(((os.path.join(folder, it), data) for it, data in write.items()))
     for it in (*remove, path):
         with suppress(FileNotFoundError), explained(os.path.join(folder, it)):
             os.unlink(os.path.join(folder, it))
     _prune(folder, remove)
+
+
+@contextmanager
+def _put_back(path: str) -> Iterator[None]:
+    """After a failure the file is what it was: there was no build that it could tell of."""
+    # Named as what a build clears away that comes after one that was killed.
+    before = os.path.join(os.path.dirname(path), f".urdf-postfix.{os.getpid()}.00.tmp.old")
+    with suppress(OSError):
+        os.link(path, before)
+    try:
+        yield
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(path)
+        with suppress(OSError):
+            os.rename(before, path)
+        raise
+    with suppress(OSError):
+        os.unlink(before)
 
 
 def _prune(folder: str, removed: Iterable[str]) -> None:

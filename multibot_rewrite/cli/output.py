@@ -5,16 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TypeVar
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.terminal import is_coloured
+from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.printable import for_terminal, one_line
 
 MANY = 20
 STANDARD = "-"
+# Options and arguments that name files to read.
+READ = (
+    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes"),
+    *("explained", "suggest", "config", "baseline"),
+)
 _T = TypeVar("_T")
 
 
@@ -23,7 +29,15 @@ def deliver(options: argparse.Namespace, data: bytes) -> None:
     if options.output in (None, STANDARD):
         print_bytes(data)
     else:
+        check_target(options.output, _given(options))
         write_files(options, [(options.output, data)])
+
+
+def _given(options: argparse.Namespace) -> Iterator[str]:
+    """The files that the options name to be read."""
+    for name in READ:
+        value = getattr(options, name, None) or ()
+        yield from [value] if isinstance(value, str) else value
 
 
 def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]]) -> None:

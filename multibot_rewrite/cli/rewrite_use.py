@@ -64,8 +64,11 @@ def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
     for path in [*targets, *changes]:
         if os.path.isfile(path) and _same_file(path, options.input):
             raise UsageError(f"{path} is the input file; choose another name, or --in-place")
-        if os.path.isfile(path) and _same_file(path, options.urdf or ""):
-            raise UsageError(f"{path} is the file of --urdf; choose another name")
+        for option in ("urdf", "xacro", "vocabulary"):
+            given = getattr(options, option) or ()
+            for it in [given] if isinstance(given, str) else given:
+                if os.path.isfile(path) and _same_file(path, it):
+                    raise UsageError(f"{path} is the file of --{option}; choose another name")
     if changes and os.path.realpath(changes[0]) in {os.path.realpath(path) for path in targets}:
         raise UsageError(f"{changes[0]}: the result and --changes need a file each")
 

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NoReturn
 
+from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.cli.files import existing_folder
 from multibot_rewrite.model import InputError, UsageError
 
@@ -63,16 +64,25 @@ def standard_input() -> bytes:
     if sys.stdin is None:
         raise InputError("<stdin>: standard input is closed; name a file instead of -")
     try:
-        return sys.stdin.buffer.read()
+        data = sys.stdin.buffer.read(MAX_BYTES + 1)
     except OSError as error:
         raise InputError(f"<stdin>: cannot be read: {error.strerror}") from None
+    if len(data) > MAX_BYTES:
+        raise InputError(f"<stdin>: cannot be read: it is larger than {MAX_BYTES:,} bytes")
+    return data
 
 
 def check_target(target: str, inputs: Iterable[str], option: str = "--output") -> None:
     """Raise UsageError where writing ``target`` would replace one of the files that are read."""
-    real = os.path.realpath(target)
-    if any(os.path.realpath(path) == real for path in inputs):
+    if any(is_same_file(target, path) for path in inputs):
         raise UsageError(f"{target} is a file that is read; choose another one for {option}")
+
+
+def is_same_file(path: str, other: str) -> bool:
+    """Do two paths lead to one file, by links of either kind or not?"""
+    if os.path.realpath(path) == os.path.realpath(other):
+        return True
+    return os.path.isfile(path) and os.path.isfile(other) and os.path.samefile(path, other)
 
 
 def check_folder(target: str) -> None:

@@ -15,6 +15,7 @@ from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.consistency import consistency
+from multibot_rewrite.fleets.controller_files import with_own_controllers
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
@@ -39,8 +40,8 @@ class Outputs(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def make_outputs(plan: FleetPlan) -> Outputs:
-    """Every file of a fleet.
+def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
+    """Every file of a fleet. ``folder`` is where they will be, if they are written at all.
 
     Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
     would have the same path.
@@ -49,7 +50,7 @@ def make_outputs(plan: FleetPlan) -> Outputs:
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
         made = [
-            *_descriptions(plan),
+            *_descriptions(plan, plan.file.installed or folder),
             *companion_files(plan),
             *rviz_files(configs),
             *bridge_outputs(plan),
@@ -98,10 +99,12 @@ def _at_robot(finding: Finding, robot: str) -> Finding:
     return finding._replace(robot=robot, line=0) if robot else finding
 
 
-def _descriptions(plan: FleetPlan) -> FilesAndFindings:
+def _descriptions(plan: FleetPlan, folder: str) -> FilesAndFindings:
     for robot in plan.robots:
         spec = robot.spec
-        for data, source in ((robot.description, spec.description), (robot.srdf, spec.srdf)):
+        description, findings = with_own_controllers(robot, folder)
+        yield from findings
+        for data, source in ((description, spec.description), (robot.srdf, spec.srdf)):
             if data:
                 text = _without_folder(data, source)
                 yield OutputFile(path_for(robot, _expanded_name(source)), text, (source,))

@@ -6,7 +6,7 @@ import json
 import math
 import os
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any, NamedTuple, cast
@@ -79,12 +79,14 @@ class RobotSpec(NamedTuple):
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary."""
+    parameters, vocabulary. ``installed`` is where the results are when they are used, empty for where
+    they are written."""
 
     file: str
     policy: Policy
     world: str
     distro: str
+    installed: str
     nodes: str
     parameters: str
     vocabulary: tuple[str, ...]
@@ -117,12 +119,21 @@ def read_fleet(path: str) -> FleetFile:
         policy,
         data.get("world", ""),
         data.get("distro", "jazzy"),
+        data.get("installed", ""),
         nodes,
         parameters,
         vocabulary,
         robots,
         tuple(filter(None, (*read.files, nodes, parameters, *vocabulary))),
     )
+
+
+def input_files(fleet: FleetFile) -> Iterator[str]:
+    """Every file that it names, itself among them."""
+    yield from fleet.files
+    for robot in fleet.robots:
+        yield from filter(None, (robot.description, robot.srdf))
+        yield from (path for paths in robot.companions.values() for path in paths)
 
 
 def is_fleet(data: bytes) -> bool:

@@ -37,6 +37,11 @@ from multibot_rewrite.sources.processes import Child, child
 # What a child may ask, and read in all.
 MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES
 _TRIPLE, _QUADRUPLE = 3, 4
+# What reading an answer raises that is not what was agreed on.
+_GARBAGE = (
+    GarbageError, ValueError, LookupError, TypeError, AttributeError, OverflowError, RecursionError,
+    struct.error,
+)  # fmt: skip
 
 
 class Failure(NamedTuple):
@@ -106,7 +111,7 @@ def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Re
             raise InputError(_ended(access.path, signal.SIGALRM, seconds)) from None
         except (EOFError, ConnectionError):
             raise InputError(_ended(access.path, it.end(ended=True), seconds)) from None
-        except (GarbageError, ValueError, KeyError, TypeError, RecursionError, struct.error):
+        except _GARBAGE:
             said = "its process gave a wrong answer; a file that tampers with it is not expanded"
             raise InputError(f"{access.path}: xacro failed: {said}") from None
 

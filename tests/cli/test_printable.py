@@ -64,6 +64,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / f"{EVIL}.xml").write_text("<robot")
     (tmp_path / f"{EVIL}.xacro").write_text(XACRO)
     (tmp_path / f"{EVIL}.lint.urdf").write_text('<robot name="r"><link name="a "/></robot>')
+    head = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
+    argument = f'<xacro:arg name="prefix" default="{IN_XML}"/><link name="$(arg prefix)"/>'
+    (tmp_path / f"{EVIL}.xacro").write_text(f"{head}{argument}</robot>")
     (tmp_path / "cut.urdf").write_text(DESCRIPTION[:-20])
     fleet_folder(tmp_path, SMALL.replace("rover.urdf", json.dumps(f"{EVIL}.urdf")))
     (tmp_path / f"{EVIL}.yaml").write_text(json.dumps({EVIL: [{EVIL: EVIL}]}))
@@ -98,6 +101,9 @@ LINES = (
     *(["urdf-lint", FILE, "--select", EVIL], ["urdf-lint", ".", "--config", EVIL]),
     *(
         ["urdf-lint", f"{EVIL}.lint.urdf", "--fix", "--diff"],
+        ["urdf-lint", f"{EVIL}.xacro"],
+        ["urdf-postfix", f"{EVIL}.xacro", "robot1", f"{EVIL}:={EVIL}"],
+        ["arguments", f"{EVIL}.xacro"],
         ["coverage", "."],
         ["coverage", ".", "--form", "json"],
         ["coverage", FILE, "--explained", f"{EVIL}.yaml"],

@@ -15,6 +15,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -23,6 +24,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from multibot_rewrite.cli import folders
+from multibot_rewrite.cli.files import write_new
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.manifest import MANIFEST, NOTE, read_manifest
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
@@ -360,21 +362,24 @@ def test_no_room_leaves_the_old_files(room: int, out: Path) -> None:
     assert leftovers(out.parent) == []
 
 
-def test_a_full_disk_leaves_the_old_files(out: Path) -> None:
-    """On a file system of 300 kB, where that can be had."""
+@pytest.mark.parametrize("name", ["out", "."])
+def test_a_full_disk_leaves_the_old_files(name: str, out: Path) -> None:
+    """On a file system of 300 kB, where that can be had; the folder may be the file system."""
     disk = out.parent / "disk"
     disk.mkdir()
     mount = ["mount", "-t", "tmpfs", "-o", "size=300k", "tmpfs", str(disk)]
     if os.geteuid() or subprocess.run(mount, capture_output=True, check=False).returncode:
         pytest.skip("no right to mount a small file system here")
     try:
-        arguments = ["build", str(out.parent / "fleet.yaml"), "-o", str(disk / "out"), "--quiet"]
+        arguments = ["build", str(out.parent / "fleet.yaml"), "-o", str(disk / name), "--quiet"]
         assert main(arguments) == 0
-        before = held(disk / "out")
-        (disk / "filler").write_bytes(bytes(os.statvfs(disk).f_bavail * os.statvfs(disk).f_frsize))
+        room = os.statvfs(disk)
+        # One page is left, for the first file.
+        (disk / "filler").write_bytes(bytes((room.f_bavail - 1) * room.f_frsize))
+        before = held(disk / name)
         renamed(out.parent)
         assert main(arguments) == 2
-        assert held(disk / "out") == before
+        assert held(disk / name) == before
         assert leftovers(disk) == []
     finally:
         subprocess.run(["umount", str(disk)], check=True)
@@ -413,6 +418,61 @@ def test_a_build_inside_of_the_folder_does_not_take_it_away(
     assert build(out.parent) == 0
     assert Path.cwd().samefile(out / "robot1")
     assert (out / "robot3").is_dir()
+
+
+@pytest.mark.usefixtures("one_by_one")
+@pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
+@pytest.mark.parametrize("there", [None, b"of a build that was killed"])
+def test_a_failure_without_a_swap_leaves_no_note(
+    error: BaseException, there: bytes | None, out: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = held(out)
+    renamed(out.parent)
+    if there is not None:
+        (out / NOTE).write_bytes(there)
+        monkeypatch.setattr("multibot_rewrite.cli.build.read_manifest", lambda data, *_: {})
+    written = []
+
+    def full(path: str, *more: Any) -> None:
+        written.append(path)
+        # The note is in its place, and some of the files are on the disk.
+        if len(written) > 3:
+            raise error
+        write_new(path, *more)
+
+    monkeypatch.setattr("multibot_rewrite.cli.files.write_new", full)
+    assert build(out.parent, "--force") in (2, 130)
+    assert len(written) >= 4
+    assert held(out) == {**before, **({NOTE: there} if there is not None else {})}
+    assert leftovers(out.parent) == []
+
+
+@pytest.mark.parametrize("force", [[], ["--force"]])
+@pytest.mark.parametrize("link", [os.symlink, os.link, shutil.move])
+def test_a_build_writes_over_nothing_that_it_reads(
+    force: list[str],
+    link: Callable[[str, str], None],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    folder = fleet_folder(tmp_path).parent
+    assert build(folder) == 0
+    target = next((folder / "out" / "robot1").glob("*.urdf"))
+    target.unlink()
+    given = folder / "rover.urdf"
+    if link is shutil.move:
+        text = (folder / "fleet.yaml").read_text()
+        (folder / "fleet.yaml").write_text(text.replace("rover.urdf", str(target)))
+        given.rename(target)
+        given = target
+    else:
+        link(str(given), str(target))
+    before = given.read_bytes()
+    capsys.readouterr()
+    assert build(folder, *force) == 2
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert f"{target} is a file that is read; choose another folder for --output" in said
+    assert given.read_bytes() == before
 
 
 @pytest.mark.usefixtures("one_by_one")

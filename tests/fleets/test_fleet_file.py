@@ -410,3 +410,8 @@ def test_the_page_has_examples_and_the_line_for_editors() -> None:
     named = line[1].rpartition("/")[2]
     assert (ROOT / "multibot_rewrite" / "fleets" / named).exists()
     assert yaml.safe_load(EXAMPLES[0])["robots"]
+
+
+def test_an_empty_text_is_told_in_words(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="write some text"):
+        read(tmp_path, "robots:\n  - {name: a, description: ''}\n")

@@ -213,3 +213,9 @@ def test_the_name_of_a_robot_is_read_from_its_head(tmp_path: Path, text: str, na
 
 def test_a_file_that_is_not_there_has_no_name(tmp_path: Path) -> None:
     assert robot_name(str(tmp_path / "nothing.urdf")) == ""
+
+
+def test_a_joint_that_cannot_move_has_limits_too(tmp_path: Path) -> None:
+    urdf = URDF.format("r").replace('lower="-1" upper="1"', 'lower="0.5" upper="0.5"')
+    assert "MB813" in lint(tmp_path, STATE.format("jl", "0"), urdf)
+    assert "MB813" not in lint(tmp_path, STATE.format("jl", "0.5"), urdf)

@@ -329,3 +329,11 @@ def test_errors_that_docstrings_name_exist() -> None:
         for word in re.findall(r"\b\w+(?:Error|Refused)\b", it.__doc__ or "")
     }
     assert {"InputError", "UsageError", "RewriteRefused"} <= named <= set(multibot_rewrite.__all__)
+
+
+def test_nothing_of_the_library_trusts_a_xacro_by_itself() -> None:
+    trusted = {call.__name__: inspect.signature(call).parameters.get("trust") for call in CALLS}
+    assert {name: it.default for name, it in trusted.items() if it} == {
+        name: False for name, it in trusted.items() if it
+    }
+    assert trusted["explain"] is not None

@@ -326,6 +326,18 @@ def test_yaml_and_json_are_the_same_data() -> None:
     assert yaml.safe_load(FORMS["yaml"](found)) == json.loads(FORMS["json"](found))
 
 
+def test_a_shared_node_keeps_its_namespace_and_name_to_the_letter() -> None:
+    node = NodeFacts("/fleet/x_mux", "twist_mux", (), shared=True)
+    (found, *_) = table("L1", (node,)).nodes
+    assert found == NodeTable("", "/fleet/x_mux", "/fleet", "x_mux", ())
+
+
+def test_the_data_of_a_table_names_its_layout_and_each_robot() -> None:
+    found = as_data(table("L4"))
+    assert found["layout"] == "postfix"
+    assert set(found["robots"]) >= {"robot1", "robot2"}  # type: ignore[call-overload]
+
+
 def test_gazebo_form_is_xml_a_plugin_takes() -> None:
     blocks = etree.fromstring(f"<all>{FORMS['gazebo'](table('L1'))}</all>")
     block = blocks.find("ros")

@@ -368,3 +368,10 @@ def test_a_name_that_leads_nowhere(name: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         resolve_name(name, "topic", "n", "/r", rules("far:=/" + "a" * 250))
     assert message in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "full"), [("{node}/x", "/ns/n/x"), ("{ns}/x", "/ns/x"), ("/a/{node}", "/a/n")]
+)
+def test_words_in_braces_are_filled_in(name: str, full: str) -> None:
+    assert expand(name, "ns", "n") == full

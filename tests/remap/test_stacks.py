@@ -164,6 +164,11 @@ def test_frames_are_reported_with_their_defaults() -> None:
     }
 
 
+def test_a_stack_says_what_it_is_about() -> None:
+    library = extra("stacks:\n  cell:\n    about: a cell of two arms\n    nodes: [rviz2]\n")
+    assert library.stacks["cell"].about == "a cell of two arms"
+
+
 def test_a_node_is_a_stack_of_its_own() -> None:
     assert load_stack("rplidar_node") == (load_nodes()["rplidar_node"],)
 

@@ -40,6 +40,11 @@ def package_folder(name: str, file: str, roots: tuple[str, ...]) -> str:
     return next((it for it in beside if _MANIFEST in entries(it)), "")
 
 
+def package_of(file: str) -> tuple[str, str] | None:
+    """Name and folder of the package that a file is in."""
+    return _own_package(os.path.dirname(os.path.abspath(file)))
+
+
 @lru_cache(maxsize=4096)
 def _candidates(
     name: str, here: str, roots: tuple[str, ...], prefixes: tuple[str, ...]

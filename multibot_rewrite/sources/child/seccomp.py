@@ -12,6 +12,7 @@ import errno
 import os
 import struct
 from collections.abc import Mapping
+from functools import cache
 from typing import NamedTuple
 
 from multibot_rewrite.sources.child.system import control, no_new_privileges
@@ -65,6 +66,7 @@ def enclose() -> bool:
     return control(_SET_SECCOMP, _MODE_FILTER, ctypes.byref(record), 0, 0)
 
 
+@cache
 def filter_program(machine: Machine) -> bytes:
     """The filter as the kernel reads it: eight bytes an instruction."""
     steps = [

@@ -1,0 +1,104 @@
+"""What a description is large in, it may be large in: twice as much costs twice as much."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from counted_steps import growth
+from growing import GROWING, description
+
+from multibot_rewrite import MultibotError, rewrite
+from multibot_rewrite.checks import audit, references
+from multibot_rewrite.findings.place import locate
+from multibot_rewrite.lint.check import lint_data
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.nearest import HINTED, Guesses
+from multibot_rewrite.rewriters.tree import Tree
+
+SMALL, LARGE = 100, 400
+# As much may be made once, and found again by halving.
+SLACK = 1.15
+
+
+def rewritten(data: bytes) -> None:
+    try:
+        rewrite(data, "robot1")
+    except MultibotError:
+        # What is refused is read as far as that.
+        return
+
+
+def linted(data: bytes) -> None:
+    lint_data("robot.urdf", data, Settings())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("work", [rewritten, linted])
+@pytest.mark.parametrize("what", GROWING)
+def test_cost_grows_with_the_number(what: str, work: Callable[[bytes], None]) -> None:
+    def prepared(count: int) -> Callable[[], None]:
+        data = description(what, count)
+        return lambda: work(data)
+
+    assert growth(prepared, SMALL, LARGE) < SLACK
+
+
+def test_the_format_of_a_root_is_asked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[object] = []
+    ask = Tree.format_of
+
+    def noted(*words: object) -> str:
+        asked.append(words)
+        return ask(*words)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Tree, "format_of", noted)
+    rewritten(description("mentions", 3))
+    few = len(asked)
+    rewritten(description("mentions", 99))
+    assert len(asked) == 2 * few
+
+
+@pytest.mark.parametrize(
+    ("what", "module"), [("unknown plugins", audit), ("undeclared references", references)]
+)
+def test_only_the_first_unknown_names_are_compared(
+    what: str, module: object, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    looked: list[str] = []
+    monkeypatch.setattr(
+        "multibot_rewrite.nearest.nearest", lambda name, *_: looked.append(name) or ""
+    )
+    rewritten(description(what, 3 * HINTED))
+    assert len(looked) == HINTED
+
+
+def test_a_name_is_compared_once_and_among_so_many() -> None:
+    guesses = Guesses()
+    assert guesses.hint("basse", ["base"]) == "did you mean 'base'?"
+    assert guesses.hint("basse", []) == "did you mean 'base'?"
+    assert guesses.nearest("z9", (f"z{at}" for at in range(10**9, 10**9 + 10**6))) == ""
+
+
+@pytest.mark.parametrize("text", ["a\nbé\n😀x\n", "x" * 9_000 + "é" * 9_000 + "\nab", "\r\n\n", ""])
+def test_lines_and_columns_count_as_a_person_does(text: str) -> None:
+    source = text.encode()
+    for at in [*range(min(len(text), 40)), len(text) // 2, len(text) - 1, len(text)]:
+        before = text[: max(at, 0)]
+        there = before.count("\n") + 1, len(before.rpartition("\n")[2]) + 1
+        assert locate(source, len(before.encode())) == there
+
+
+@pytest.mark.parametrize("ends", ["\n", " "])
+def test_a_place_is_found_from_the_block_it_is_in(
+    ends: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[int] = []
+    count = "multibot_rewrite.findings.place._characters"
+    monkeypatch.setattr(count, lambda text: read.append(len(text)) or len(text))
+    source = (("x" * 40 + ends) * 20_000).encode()
+    locate(source, 0)
+    read.clear()
+    for at in range(0, len(source), 1_000):
+        locate(source, at)
+    assert max(read) <= 4096
