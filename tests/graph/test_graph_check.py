@@ -77,6 +77,16 @@ def test_a_node_started_without_its_namespace_has_that_cause() -> None:
     )
 
 
+def test_a_node_started_without_its_name_has_that_cause() -> None:
+    graph = without_node(healthy("L4"), "/driver_robot1")
+    graph = graph._replace(nodes=(*graph.nodes, GraphNode("/driver", "x")))
+    (found,) = check(plan("L4"), graph)
+    assert found.hint == (
+        "/driver is running: it was started without the robot's name; "
+        "use --ros-args -r __node:=driver_robot1"
+    )
+
+
 def test_a_silent_robot_is_one_finding() -> None:
     graph = healthy()
     for node in ("/robot1/driver", "/robot1/robot_state_publisher"):

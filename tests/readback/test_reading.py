@@ -180,3 +180,17 @@ def test_a_place_is_the_number_among_elements_of_the_tag() -> None:
     text = plugin("libacme.so") + plugin("libgazebo_ros_diff_drive.so")
     (node,) = (it for it in reading(text).names if it.kind == "node")
     assert (node.tag, node.number, node.path) == ("plugin", 1, "@name")
+
+
+def test_topics_are_below_the_word_that_a_plugin_makes_them_of() -> None:
+    """gazebo_ros_camera.cpp: image_transport topics are <camera_name>/image_raw."""
+    text = plugin("libgazebo_ros_camera.so", "<camera_name>front</camera_name>")
+    assert "/front" in names(text, "topic")
+    within = text.replace("<camera_name>", "<ros><namespace>a</namespace></ros><camera_name>")
+    assert "/a/front" in names(within, "topic")
+
+
+def test_a_particle_emitter_has_a_topic() -> None:
+    emitter = "<particle_emitter name='e'><topic>/smoke</topic></particle_emitter>"
+    assert names(f"<gazebo reference='base'>{emitter}</gazebo>") == ["/smoke"]
+    assert names("<gazebo reference='base'/>") == []

@@ -19,6 +19,7 @@ from multibot_rewrite.naming import (
     Layout,
     Naming,
     affix,
+    is_keyword,
     make_naming,
     overlap,
     removal,
@@ -328,3 +329,12 @@ def test_topics_that_meet_on_the_other_side_are_seen() -> None:
     assert affix(naming, "topic", "x").spell("x", "b_left") == "b_left_x"  # type: ignore[union-attr]
     assert affix(naming, "topic", "left_x").spell("left_x", "b") == "b_left_x"  # type: ignore[union-attr]
     assert ("b_left", "b", "_") in overlap(naming, ["b_left", "b"])
+
+
+@pytest.mark.parametrize(
+    ("name", "keyword"),
+    [("__model__", 1), ("____", 1), ("___", 0), ("__model", 0), ("model__", 0), ("_model_", 0)],
+)
+def test_words_that_sdf_reserves(name: str, keyword: int) -> None:
+    """sdformat Utils.cc, isReservedName."""
+    assert is_keyword(name) == bool(keyword)

@@ -217,3 +217,10 @@ def test_a_pattern_names_no_hidden_file_and_none_that_does_not_fit(repository: P
     access = Access(str(file), BOUNDED, None)
     found = [Path(it).name for it in access.matching(str(folder / "*.xacro"))]
     assert found == ["part.xacro", "robot.xacro"]
+
+
+def test_a_root_that_xacro_does_not_expand_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "part.xacro"
+    file.write_text('<xacro:macro xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"/>')
+    with pytest.raises(InputError, match=r"<xacro:macro>, which xacro does not expand"):
+        expand(str(file), {})
