@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.checks import audit
 from multibot_rewrite.checks import robots as checks
 from multibot_rewrite.checks.arguments import missed_by_arguments
-from multibot_rewrite.checks.meeting import shared_by_all, shared_with
+from multibot_rewrite.checks.meeting import shared_by_all, shared_by_both, shared_with
 from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
@@ -29,6 +30,7 @@ from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
 
 
+@gc_paused()
 def prepare(
     source: bytes,
     file: str,
@@ -95,7 +97,8 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
         checks.taken_names(inventory, renames, robots),
         already_rewritten(inventory, robots, again, renames.naming.own),
     )
-    whole = checks.meeting(inventory, renames, overlap(prepared.naming, robots))
+    pairs = overlap(prepared.naming, robots)
+    whole = list(checks.meeting(inventory, renames, pairs)) or _meeting(prepared, pairs)
     at_start = to_findings(document, whole, ERROR, of_file=True)
     _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
     for number, robot in enumerate(robots):
@@ -105,6 +108,21 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
             *_, naming, tree, urdf_declarations = prepared
             verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
         yield output
+
+
+def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
+    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    inventory, own = prepared.inventory, prepared.naming.own
+    found = already_rewritten(inventory, robots, False, own, kinds)
+    _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
+
+
+def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:
+    """What robots whose names overlap would share in the running system."""
+    inventory, _, pieces, _, naming, tree, _ = prepared
+    for robot, other, _ in pairs if inventory.format != SRDF else ():
+        pair = robot, other
+        yield from shared_by_both(inventory.document, pieces, pair, naming, tree.vocabulary)
 
 
 def check_apart(made: Mapping[str, Template]) -> None:

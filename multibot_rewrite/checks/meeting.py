@@ -8,7 +8,7 @@ from itertools import islice
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.model import InputError, ProofError
 from multibot_rewrite.naming import TOPIC_KINDS, Naming
-from multibot_rewrite.readback.meeting import same_for_all
+from multibot_rewrite.readback.meeting import meetings, same_for_all
 from multibot_rewrite.readback.reading import FRAME, NODE, RuntimeName, read
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.steps.apply import fill
@@ -28,10 +28,34 @@ def shared_by_all(
     ``pieces`` are the text between the robot's names: a name in the running system that does not
     hold the robot's is the same for all. Raises ProofError for a text that is no XML.
     """
+    robot = _unused(document)
+    return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
+
+
+def _unused(document: Document) -> str:
     robot = TWIN
     while robot.encode() in document.source:
         robot += "x"
-    return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
+    return robot
+
+
+def shared_by_both(
+    document: Document,
+    pieces: list[bytes],
+    robots: tuple[str, str],
+    naming: Naming,
+    vocabulary: Vocabulary,
+) -> Iterator[Problem]:
+    """The names that these two robots would have, but not every robot, as ``arm_left`` of ``b`` and
+    ``arm`` of ``left_b``."""
+    twin = _unused(document)
+    readings = {it: read(fill(pieces, it), document.file, vocabulary) for it in (*robots, twin)}
+    every = {(it.kind, it.name) for it in same_for_all(readings.pop(twin), twin, naming)}
+    for robot, other, it in meetings(readings, naming):
+        if (it.kind, it.name) not in every:
+            message = f"{robot} and {other} would both have the {it.kind} {it.name!r}"
+            hint = "rename a robot or choose another separator"
+            yield Problem(document.root, message, None, hint, (), "MB421")
 
 
 def shared_with(

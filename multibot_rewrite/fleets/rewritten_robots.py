@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.checks.meeting import SHARED_CODES
+from multibot_rewrite.checks.twice import CARRYING
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
@@ -88,11 +89,10 @@ def rewrite_robots(
 
 def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
     naming = jobs.description.naming
-    robots = [robot.namespace for robot in group]
-    texts = rewrite_job(jobs.description, robots)
+    texts = _texts(jobs.description, group)
     semantics: Iterable[Rewrite | None] = [None] * len(group)
     if jobs.srdf:
-        semantics = rewrite_job(jobs.srdf, robots)
+        semantics = _texts(jobs.srdf, group)
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _final(text, robot, naming)
         declared = text.template.inventory.declared
@@ -109,6 +109,23 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             # What robots share the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in SHARED_CODES),
         )
+
+
+def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
+    """The text of each robot with its namespace; refused where it carries one of its words."""
+    for number, text in enumerate(rewrite_job(job, [it.namespace for it in group], again=True)):
+        if not number:
+            _check_new(text.template, group)
+        yield text
+
+
+def _check_new(template: Template, group: Sequence[RobotSpec]) -> None:
+    """A robot's namespace and tag may be in names that get the other word."""
+    alike = [it.namespace for it in group if it.tag == it.namespace]
+    apart = [it for it in group if it.tag != it.namespace]
+    pipeline.check_new(template, alike, CARRYING)
+    pipeline.check_new(template, [it.namespace for it in apart], GRAPH_KINDS)
+    pipeline.check_new(template, [it.tag for it in apart], CARRYING - GRAPH_KINDS)
 
 
 def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:

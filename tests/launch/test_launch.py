@@ -307,9 +307,9 @@ def test_a_launch_loads_a_fleet_once(
 ) -> None:
     loads = []
 
-    def counted(path: str) -> Any:
+    def counted(path: str, trust: bool = False) -> Any:
         loads.append(path)
-        return load_fleet(path)
+        return load_fleet(path, trust=trust)
 
     monkeypatch.setattr(launch, "load_fleet", counted)
     first = launch.fleet_of(context, fleet)
@@ -318,6 +318,29 @@ def test_a_launch_loads_a_fleet_once(
     assert loads == [fleet]
     other = importlib.import_module("launch").LaunchContext()
     assert launch.fleet_of(other, fleet) is not first
+
+
+@pytest.mark.parametrize(
+    ("configured", "trusted"), [({}, False), ({"multibot_trust": "true"}, True),
+    ({"multibot_trust": "false"}, False), ({"multibot_trust": "True"}, True)],
+)  # fmt: skip
+def test_a_launch_trusts_xacro_files_where_it_is_told(
+    configured: dict[str, str],
+    trusted: bool,
+    fleet: str,
+    context: Any,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked = []
+
+    def counted(path: str, trust: bool = False) -> Any:
+        asked.append(trust)
+        return load_fleet(path)
+
+    monkeypatch.setattr(launch, "load_fleet", counted)
+    context.launch_configurations.update(configured)
+    launch.fleet_of(context, fleet)
+    assert asked == [trusted]
 
 
 def test_warnings_are_logged_once(

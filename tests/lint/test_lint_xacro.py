@@ -279,14 +279,14 @@ def test_packages_are_found_without_ros(
         monkeypatch.delenv(variable, raising=False)
     packages(tmp_path)
     folders = tuple(str(tmp_path / it) for it in roots)
-    (found,) = linted(tmp_path, f"ws/robot/urdf/{name}.xacro", select=("MB202",), roots=folders)
+    (found,) = linted(tmp_path, f"ws/robot/urdf/{name}.xacro", select=("MB202",), readable=folders)
     assert (found.code, found.file) == ("MB202", expected)
     whole = str(tmp_path / f"ws/robot/urdf/{name}.xacro")
-    (found,) = linted(tmp_path, whole, select=("MB202",), roots=folders)
+    (found,) = linted(tmp_path, whole, select=("MB202",), readable=folders)
     assert found.file == str(tmp_path / expected)
     os.makedirs(tmp_path / "ws" / "here", exist_ok=True)
     (found,) = linted(
-        tmp_path / "ws" / "here", f"../robot/urdf/{name}.xacro", select=("MB202",), roots=folders
+        tmp_path / "ws" / "here", f"../robot/urdf/{name}.xacro", select=("MB202",), readable=folders
     )
     above = str(tmp_path / expected) if roots else os.path.join("..", expected[3:])
     assert found.file == above
@@ -339,3 +339,27 @@ def test_messages_hold_no_path_of_this_machine(tmp_path: Path) -> None:
     write(tmp_path, {"ws/robot/urdf/own.xacro": xacro(body)})
     (found,) = linted(tmp_path, "ws/robot/urdf/own.xacro")
     assert found.message == "xacro failed: No such file or directory: ws/robot/nowhere.xacro"
+
+
+def test_a_configuration_lets_xacro_read_no_folder_but_its_own(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It comes with the files; the command line does not."""
+    for variable in ("AMENT_PREFIX_PATH", "ROS_PACKAGE_PATH"):
+        monkeypatch.delenv(variable, raising=False)
+    packages(tmp_path)
+    (tmp_path / "ws" / "urdf-lint.toml").write_text('roots = ["../elsewhere", "some"]\n')
+    include = f'<xacro:include filename="{tmp_path}/elsewhere/far/p.xacro"/>'
+    write(tmp_path, {"ws/robot/urdf/by_path.xacro": xacro(include)})
+    monkeypatch.chdir(tmp_path / "ws")
+    quiet = ["--quiet", "--select", "MB103,MB202"]
+    for name, said in (
+        ("far", "package 'far' is not found"),
+        ("by_path", "outside of the folders"),
+    ):
+        assert main([f"robot/urdf/{name}.xacro", *quiet]) == 1
+        assert said in capsys.readouterr().out
+        assert main([f"robot/urdf/{name}.xacro", "--roots", "../elsewhere", *quiet]) == 1
+        assert "MB202" in capsys.readouterr().out
+    assert main(["robot/urdf/next.xacro", *quiet]) == 1
+    assert "MB202" in capsys.readouterr().out

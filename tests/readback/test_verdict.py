@@ -8,7 +8,7 @@ import pytest
 from paths import ROBOTS
 from postfix_command import run
 
-from multibot_rewrite import rewrite
+from multibot_rewrite import RewriteRefused, rewrite, rewrite_all
 from multibot_rewrite.checks.verdict import REASONS, not_proved
 from multibot_rewrite.findings.finding import Finding
 
@@ -86,3 +86,21 @@ def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:
     quiet = run(tmp_path, "r.urdf", "robot1", "-o", str(tmp_path / "o"), "--ignore", "MB430")
     assert "MB430" not in quiet.err
     assert "not proved: 1 topic" in quiet.err
+
+
+# odom of left_b and odom_left of b are both odom_left_b; the first is a default that was inserted.
+OVERLAP = """<robot name="r"><link name="a"/>
+<gazebo><plugin name="p" filename="libgazebo_ros_diff_drive.so">
+<publish_odom>true</publish_odom><ros/></plugin></gazebo>
+<gazebo><plugin name="q" filename="libgazebo_ros_planar_move.so">
+<ros><remapping>odom:=odom_left</remapping></ros></plugin></gazebo></robot>"""
+
+
+def test_two_robots_that_meet_in_what_was_inserted_are_refused() -> None:
+    with pytest.raises(RewriteRefused) as refused:
+        list(rewrite_all(OVERLAP, ["left_b", "b"], separators={"topic": "_"}))
+    (finding,) = refused.value.findings
+    assert finding.code == "MB421"
+    assert "left_b and b would both have the topic '/odom_left_b'" in finding.message
+    assert len(list(rewrite_all(OVERLAP, ["left_b", "c"], separators={"topic": "_"}))) == 2
+    assert len(list(rewrite_all(OVERLAP, ["left_b", "b"]))) == 2

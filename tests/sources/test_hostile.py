@@ -14,6 +14,7 @@ import pytest
 from paths import FIXTURES
 
 from multibot_rewrite.model import InputError
+from multibot_rewrite.sources.__main__ import main as tell_fences
 from multibot_rewrite.sources.access import Access, Reach
 from multibot_rewrite.sources.child import landlock, seccomp
 from multibot_rewrite.sources.child.frames import AUDIT, FENCES, LANDLOCK, LIMITS, SECCOMP
@@ -107,6 +108,7 @@ ALONE = (AUDIT, LANDLOCK, SECCOMP)
 # Without a limit on memory these would be a burden for the machine.
 LARGE = {"memory", "memory_list"}
 BRIEF = 0.5
+ENDLESS = {"macro_bomb", "no_alarm", "power", "questions", "sleep"}
 # What Landlock alone does not cover: it is no filter of system calls.
 BESIDE_LANDLOCK = {"udp", "fork_bomb", "threads", "chmod", "stat_secret"}
 
@@ -125,7 +127,7 @@ class Scene(NamedTuple):
     def said(self, name: str, fences: tuple[str, ...] = FENCES) -> str:
         """The message for a file, or its text."""
         try:
-            reach = Reach(seconds=BRIEF, fences=fences)
+            reach = Reach(seconds=BRIEF if name in ENDLESS else 60.0, fences=fences)
             return expand(self.file(name), self.arguments, reach=reach).decode()
         except InputError as error:
             assert "\n" not in str(error)
@@ -243,3 +245,9 @@ def test_each_fence_holds_without_limits(scene: Scene, name: str, fence: str) ->
         pytest.skip("Landlock is not for this")
     check_nothing_told(scene.said(name, (fence,)))
     scene.check_untouched()
+
+
+def test_a_user_can_ask_for_the_fences(capsys: pytest.CaptureFixture[str]) -> None:
+    tell_fences()
+    told = dict(line.split(": ") for line in capsys.readouterr().out.splitlines())
+    assert told == {it: "yes" if have(it) else "no" for it in FENCES}

@@ -107,11 +107,18 @@ def _configured(path: str, table: Mapping[str, object]) -> Configured:
         values[field] = READERS[key](Given(f"{path}: {key}", folder, value))
     naming_options = {name: values.pop(name) for name in NAMING if name in values}
     own = {name: values.pop(name) for name in Configured._fields if name in values}
+    values["readable"] = tuple(it for it in values.get("roots", ()) if _is_below(it, folder))
     result = Configured(Settings(**values), file=path, **own)
     try:
         return _named(result, naming_options)
     except UsageError as error:
         raise UsageError(f"{path}: {error}") from None
+
+
+def _is_below(path: str, folder: str) -> bool:
+    """Is it in the folder, wherever links lead?"""
+    whole = os.path.realpath(folder)
+    return os.path.commonpath((os.path.realpath(path), whole)) == whole
 
 
 def _named(it: Configured, naming_options: Mapping[str, Any]) -> Configured:
@@ -167,7 +174,8 @@ def _selected(settings: Settings, select: tuple[str, ...]) -> Settings:
 def _added(settings: Settings, options: dict[str, Any]) -> Settings:
     if "arguments" in options:
         options["arguments"] = (ArgumentSet(EVERY_FILE, tuple(options["arguments"])),)
-    for name in ("ignore", "vocabulary", "roots", "arguments"):
+    options["readable"] = options.get("roots", ())
+    for name in ("ignore", "vocabulary", "roots", "readable", "arguments"):
         if name in options:
             options[name] = (*getattr(settings, name), *options[name])
     return settings._replace(**options)

@@ -38,7 +38,8 @@ class Settings(NamedTuple):
     is not the one with the same robot name; ``urdfs`` are the names and paths of robots that are
     linted together with them. ``included`` are xacro files that are linted through those which
     include them. ``seconds`` is the time limit for one file. ``trust`` lets xacro
-    files do anything.
+    files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
+    looks in: a configuration gives them no folder outside of its own.
     """
 
     select: tuple[str, ...] = ALL
@@ -56,6 +57,7 @@ class Settings(NamedTuple):
     included: frozenset[str] = frozenset()
     seconds: float = TIME_LIMIT
     trust: bool = False
+    readable: tuple[str, ...] = ()
 
 
 def matches(path: str, pattern: str) -> bool:

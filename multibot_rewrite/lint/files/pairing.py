@@ -136,7 +136,7 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
     from multibot_rewrite.sources.expand import expand
 
     sets = [dict(it.arguments) for it in settings.arguments if matches(path, it.pattern)]
-    find = partial(package_folder, file=path, roots=settings.roots)
+    find = partial(package_folder, file=path, roots=settings.readable)
     name, reach = f"{path} (expanded)", reach_of(settings)
     # xacro prints its warnings when a person runs it.
     with redirect_stderr(StringIO()):
@@ -150,7 +150,7 @@ def _described(path: str, settings: Settings) -> tuple[bytes, str]:
 
 def reach_of(settings: Settings) -> Reach:
     """How far the xacro files of a lint may reach: no longer than it looks at a file."""
-    return Reach(settings.roots, settings.trust, settings.seconds)
+    return Reach(settings.readable, settings.trust, settings.seconds)
 
 
 def _names(srdf: Inventory) -> set[str]:

@@ -73,7 +73,7 @@ def _expansions(path: str, data: bytes, settings: Settings) -> Iterator[Subject 
 def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) -> Subject:
     from multibot_rewrite.sources.expand import expand_traced  # a URDF needs none of it
 
-    find = partial(package_folder, file=path, roots=settings.roots)
+    find = partial(package_folder, file=path, roots=settings.readable)
     # Warnings of xacro are not findings, and would be printed between them.
     with redirect_stderr(StringIO()):
         found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
