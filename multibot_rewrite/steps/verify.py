@@ -141,7 +141,13 @@ def _collisions(inventory: Inventory, naming: Naming) -> dict[tuple[int, str], s
 def same_targets(it: Evidence) -> None:
     """Every name means what it meant: a use finds what it named, and nothing else does."""
     file = it.inventory.document.file
+    # Claims share the names of equal values, so few are different.
+    seen: set[tuple[int, int]] = set()
     for names, (new, now) in zip(it.inventory.names, it.found, strict=True):
+        pair = id(names), id(now)
+        if pair in seen:
+            continue
+        seen.add(pair)
         kept = {at for at, name in enumerate(names) if (name.kind, name.text) in it.naming.own}
         same = _kinds(names, kept) == _kinds(now, kept)
         if not same or any(_left_behind(name, it.inventory) for name in now if not name.kind):
