@@ -19,7 +19,7 @@ from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource, own_names
+from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
@@ -69,9 +69,9 @@ def _shared_with_twin(
 ) -> Iterator[Problem]:
     """What a robot whose xacro has arguments of its own would share with all others."""
     document = inventory.document
-    other = collect(read_document(twin, document.file), tree)
-    own = naming._replace(own=own_names(other, [TWIN]))
-    text = fill(cut(twin, make_plan(other, own).edits), TWIN)
+    # What the arguments name gets the twin's name once more: only whether it has it matters.
+    edits = make_plan(collect(read_document(twin, document.file), tree), naming).edits
+    text = fill(cut(twin, edits), TWIN)
     return shared_with(document, text, TWIN, naming, tree.vocabulary)
 
 
