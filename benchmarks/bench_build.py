@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import gc
 import os
-import platform
 import shutil
-import statistics
 import sys
 import tempfile
 from collections.abc import Callable
@@ -19,7 +17,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import yaml
-from pairs import Row, child, paired, seconds, table
+from pairs import HOW, MACHINE, Row, as_installed, child, least_seconds, paired, seconds, table
 from robots import robot
 
 from multibot_rewrite.companions.context import make_context
@@ -201,14 +199,9 @@ def fresh(fleet: str, out: str) -> None:
 
 
 def each_further(one: Callable[[], object], many: Callable[[], object], runs: int = 7) -> float:
-    """What each robot behind the first costs, as a part of what the first costs; in pairs."""
-    one(), many()
-    found = []
-    for _ in range(runs):
-        gc.collect()
-        first = seconds(one)
-        found.append((seconds(many) - first) / (ROBOTS - 1) / first)
-    return statistics.median(found)
+    """What each robot behind the first costs, as a part of what the first costs."""
+    first, all_ = least_seconds(one, many, runs=runs)
+    return (all_ - first) / (ROBOTS - 1) / first
 
 
 def rows(folder: Path) -> list[Row]:
@@ -255,7 +248,7 @@ def least(folder: Path, runs: int = 100) -> float:
 
 def page() -> str:
     """The page as Markdown."""
-    with tempfile.TemporaryDirectory() as place:
+    with as_installed(), tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         measured = table(rows(folder))
         files = made(str(folder / "many.yaml")).files
@@ -265,10 +258,9 @@ def page() -> str:
     lines = [text.count("\n") for text in (nav2_params(), rviz_config())]
     return f"""# Benchmark of a whole build
 
-Made by `python benchmarks/bench_build.py --write` in one run: {ROBOTS} robots with Nav2's full set
-(parameters of {lines[0]} lines, an RViz config of {lines[1]}, a URDF of {LINKS} links), {len(files)}
-files, {size:.1f} MB. CPython {platform.python_version()}, {os.cpu_count()} cores, a shared machine;
-ratios are medians of pairs measured in turn.
+Made by `python benchmarks/bench_build.py --write` in one run: {HOW}.
+{ROBOTS} robots with Nav2's full set (parameters of {lines[0]} lines, an RViz config of {lines[1]},
+a URDF of {LINKS} links), {len(files)} files, {size:.1f} MB. {MACHINE}.
 
 {measured}
 In memory {whole:.2f} s for {ROBOTS} robots at best, and {best:.1f} ms for the parameter file of the

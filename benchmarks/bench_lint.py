@@ -4,28 +4,28 @@ python benchmarks/bench_lint.py            print the tables
 python benchmarks/bench_lint.py --write    and put them into docs/benchmark-lint.md
 
 check_urdf (liburdfdom-tools), urdf_validate (pip install urdf-validator) and simcheck are measured
-where they are on the PATH. Ratios are of CPU time, which other processes disturb least.
+where they are on the PATH. Public files are those of ``--files FOLDER``, else of the corpus beside the
+repository or the description wheels of the tests.
 """
 
 from __future__ import annotations
 
 import os
-import platform
 import re
 import shutil
-import statistics
 import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
-from resource import RUSAGE_CHILDREN, RUSAGE_SELF, getrusage
 from typing import NamedTuple
-from xml.parsers.expat import ParserCreate
+from xml.parsers.expat import ExpatError, ParserCreate
 
 from lxml import etree
-from pairs import Job, Row, child, table
+from pairs import HOW, MACHINE, Job, Row, as_installed, child, least_seconds, paired, seconds, table
+from public_files import PublicFiles, public_files
 from robots import robot
 
 from multibot_rewrite.gc_pause import gc_paused
@@ -117,29 +117,28 @@ def _loose(source: bytes) -> int:
     return sum(a.get("link") not in links for tag, _, a in tags if tag in ("parent", "child"))
 
 
-def ratio(job: Job, least: Job, runs: int) -> float:
-    """Median of job/least in CPU time over alternating runs."""
-    job(), least()
-    return statistics.median(_cpu(job) / _cpu(least) for _ in range(runs))
-
-
-def _cpu(job: Job) -> float:
-    """CPU seconds of one call and its processes."""
-    before = _used()
-    job()
-    return _used() - before
-
-
-def _used() -> float:
-    both = getrusage(RUSAGE_SELF), getrusage(RUSAGE_CHILDREN)
-    return sum(it.ru_utime + it.ru_stime for it in both)
-
-
 def in_process(source: bytes) -> Row:
     """One file, all rules."""
     what = f"one file of {len(source) / 1000:.0f} kB, in process"
-    job: Job = lambda: lint_data("robot.urdf", source, Settings())  # noqa: E731
-    return Row(what, "expat with line numbers", ratio(job, lambda: floor(source), 41), "3")
+    ratio = paired(partial(linted, source), partial(floor, source), 31)
+    return Row(what, "expat with line numbers", ratio, "3")
+
+
+def linted(source: bytes) -> None:
+    """All rules on one text."""
+    lint_data("robot.urdf", source, Settings())
+
+
+def in_public(public: PublicFiles) -> Row:
+    """Every public file, all rules; one that cannot be read counts for both."""
+
+    def each(job: Callable[[bytes], object]) -> None:
+        for source in public.files:
+            with suppress(ExpatError):
+                job(source)
+
+    ours, least = least_seconds(partial(each, linted), partial(each, floor), runs=3)
+    return Row(f"{public}, in process", "expat with line numbers", ours / least, "3")
 
 
 def command(source: bytes) -> Row:
@@ -148,7 +147,7 @@ def command(source: bytes) -> Row:
         path = os.path.join(folder, "robot.urdf")
         Path(path).write_bytes(source)
         lxml = [sys.executable, "-c", "import lxml.etree"]
-        found = ratio(lambda: child([LINT, path], 1), lambda: child(lxml), 25)
+        found = paired(lambda: child([LINT, path], 1), lambda: child(lxml), 25)
     what = f"urdf-lint, one file of {len(source) / 1000:.0f} kB"
     return Row(what, "python -c 'import lxml.etree'", found, "1.5")
 
@@ -180,36 +179,28 @@ def _peer(peer: Peer, files: list[str]) -> str:
 
 
 def _rate(name: str, files: int, job: Job) -> str:
-    return f"| {name} | {files} | {files / _cpu(job):.3g} |"
+    return f"| {name} | {files} | {files / seconds(job):.3g} |"
 
 
-def report() -> str:
+def report(public: PublicFiles) -> str:
     """All tables."""
     medium, small = robot(78), _TRANSMISSION.sub(b"", robot(20))
-    text = table([in_process(medium), in_process(robot(1000)), command(medium)])
+    large, every = in_process(robot(1000)), in_public(public)
+    text = table([in_process(medium), large, every, command(medium)])
     return f"{text}\nCopies of a file of {len(small) / 1000:.0f} kB:\n\n{throughput(small)}"
 
 
-def main() -> None:
+def main(arguments: list[str]) -> None:
     """Run everything, print the tables, write them where asked."""
-    with tempfile.TemporaryDirectory() as folder:
-        # As installed: compiled once, whatever the environment says.
-        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
-        os.environ["PYTHONPYCACHEPREFIX"] = folder
-        text = report()
+    public = public_files(arguments)
+    with as_installed():
+        text = report(public)
     print(text)
-    if "--write" in sys.argv:
-        where = (
-            f"CPython {platform.python_version()}, lxml {etree.__version__}, {os.cpu_count()} cores"
-        )
-        how = "python benchmarks/bench_lint.py --write"
-        made = (
-            f"Made by `{how}` in one run: medians of pairwise ratios of CPU time, lower is better."
-        )
-        noise = "a shared machine, so a digit more or less is noise"
-        page = f"# Benchmark of the lint\n\n{made}\n{where}; {noise}.\n\n{text}\n{NOTES}"
-        PAGE.write_text(page)
+    if "--write" in arguments:
+        made = f"Made by `python benchmarks/bench_lint.py --write` in one run: {HOW}."
+        where = f"{MACHINE}, lxml {etree.__version__}. Public files: {public.source}."
+        PAGE.write_text(f"# Benchmark of the lint\n\n{made}\n{where}\n\n{text}\n{NOTES}")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -1,18 +1,32 @@
-"""Ratios that hold on a noisy machine: both sides of a pair are measured in turn, in one run."""
+"""Ratios that hold on a busy machine: CPU time, the least of each side, both sides in turn in one run.
+
+CPU time is that of the process and of its ended children, user and system. Other processes can only
+make it more (caches, a lower clock), so the least of several rounds is nearest to the truth.
+"""
 
 from __future__ import annotations
 
-import statistics
+import gc
+import os
+import platform
 import subprocess
+import tempfile
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from resource import RUSAGE_CHILDREN, getrusage
 from typing import NamedTuple
 
 Job = Callable[[], object]
+# A shorter job is repeated: a clock has its own cost.
+LEAST_SECONDS = 0.005
+HOW = """ratios of CPU time, user and system, children included; of each side the least of several
+rounds in which both take turns. Lower is better"""
+MACHINE = f"CPython {platform.python_version()}, {os.cpu_count()} cores, a shared machine"
 
 
 class Row(NamedTuple):
-    """One line of the table; ``ratio`` is the median over pairs."""
+    """One line of the table."""
 
     what: str
     against: str
@@ -21,16 +35,35 @@ class Row(NamedTuple):
 
 
 def paired(job: Job, floor: Job, runs: int = 15) -> float:
-    """Median of job/floor over alternating runs, each side timed alone."""
-    job(), floor()
-    return statistics.median(seconds(job) / seconds(floor) for _ in range(runs))
+    """How much more CPU time ``job`` takes than ``floor``."""
+    ours, least = least_seconds(job, floor, runs=runs)
+    return ours / least
 
 
-def seconds(job: Job) -> float:
-    """Wall time of one call."""
-    start = time.perf_counter()
+def least_seconds(*jobs: Job, runs: int = 15) -> list[float]:
+    """CPU seconds of one call of each job, at best; the jobs take turns."""
+    times = [_times(job) for job in jobs]
+    gc.collect()
+    rounds = [[seconds(job, n) for job, n in zip(jobs, times, strict=True)] for _ in range(runs)]
+    return [min(column) for column in zip(*rounds, strict=True)]
+
+
+def _times(job: Job) -> int:
     job()
-    return time.perf_counter() - start
+    return max(1, int(LEAST_SECONDS / max(seconds(job), 1e-7)))
+
+
+def seconds(job: Job, times: int = 1) -> float:
+    """CPU seconds of one call, its processes included."""
+    before = _used()
+    for _ in range(times):
+        job()
+    return (_used() - before) / times
+
+
+def _used() -> float:
+    ended = getrusage(RUSAGE_CHILDREN)
+    return time.process_time() + ended.ru_utime + ended.ru_stime
 
 
 def child(arguments: list[str], *codes: int) -> None:
@@ -40,6 +73,15 @@ def child(arguments: list[str], *codes: int) -> None:
     )
     if done.returncode not in (0, *codes):
         raise RuntimeError(f"{arguments} ended with {done.returncode}")
+
+
+@contextmanager
+def as_installed() -> Iterator[None]:
+    """Commands find their modules compiled, whatever the environment says."""
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+        os.environ["PYTHONPYCACHEPREFIX"] = folder
+        yield
 
 
 def table(rows: Iterable[Row]) -> str:

@@ -185,7 +185,8 @@ def _separators(given: Mapping[str, str]) -> dict[str, str]:
 
 def _active(layout: Layout, topics: str, separators: dict[str, str]) -> dict[str, str]:
     """The kinds that this layout and topic strategy rename at all."""
-    kinds = {"stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
+    # A light is no frame and in no other file, so it has no reason to be the same in any layout.
+    kinds = {"light", "stem", *TOPIC_KINDS, "namespace" if topics == NAMESPACE else "node"}
     if layout.frames:
         kinds |= set(SEPARATORS) - TOPIC_KINDS - {"stem", "namespace", "node"}
     return {kind: separators[kind] for kind in SEPARATORS if kind in kinds}

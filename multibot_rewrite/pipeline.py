@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
 from multibot_rewrite.checks import audit
@@ -13,12 +13,13 @@ from multibot_rewrite.checks.mentions import MENTIONED, find_mentions
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource, own_names
+from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
@@ -29,6 +30,7 @@ from multibot_rewrite.steps.template import Template
 from multibot_rewrite.steps.verify import verify
 
 
+@gc_paused()
 def prepare(
     source: bytes,
     file: str,
@@ -67,9 +69,9 @@ def _shared_with_twin(
 ) -> Iterator[Problem]:
     """What a robot whose xacro has arguments of its own would share with all others."""
     document = inventory.document
-    other = collect(read_document(twin, document.file), tree)
-    own = naming._replace(own=own_names(other, [TWIN]))
-    text = fill(cut(twin, make_plan(other, own).edits), TWIN)
+    # What the arguments name gets the twin's name once more: only whether it has it matters.
+    edits = make_plan(collect(read_document(twin, document.file), tree), naming).edits
+    text = fill(cut(twin, edits), TWIN)
     return shared_with(document, text, TWIN, naming, tree.vocabulary)
 
 
@@ -106,6 +108,13 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
             *_, naming, tree, urdf_declarations = prepared
             verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
         yield output
+
+
+def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:
+    """Raise RewriteRefused where names of these kinds carry a robot's name already."""
+    inventory, own = prepared.inventory, prepared.naming.own
+    found = already_rewritten(inventory, robots, False, own, kinds)
+    _stop_on_errors([*to_findings(inventory.document, found, ERROR)])
 
 
 def _meeting(prepared: Template, pairs: Iterable[tuple[str, str, str]]) -> Iterator[Problem]:

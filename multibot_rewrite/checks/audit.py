@@ -23,7 +23,7 @@ from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.document import Document
+from multibot_rewrite.steps.document import Document, without_comments
 from multibot_rewrite.steps.renames import RenameMap
 
 __all__ = ["audit", "is_unknown", "other_ros", "unknown_hardware", "unknown_plugins"]
@@ -56,9 +56,17 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
     if element is not None:
         message = f"xacro element <{str(element.tag).rpartition('}')[2]}>"
         yield Problem(element, message, None, hint, (), "MB105")
-    elif b"${" in source or b"$(arg" in source:
+    elif _may_substitute(source):
         for element, value in islice(_substitutions(document), 1):
             yield Problem(element, f"xacro substitution {value!r}", None, hint, (), "MB105")
+
+
+def _may_substitute(source: bytes) -> bool:
+    """A cheap look before the search: in many files comments alone hold a substitution."""
+    if b"${" not in source and b"$(arg" not in source:
+        return False
+    rest = without_comments(source)
+    return b"${" in rest or b"$(arg" in rest
 
 
 def _substitutions(document: Document) -> Iterator[tuple[_Element, str]]:

@@ -155,6 +155,8 @@ def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
         if parent is not None:
             siblings[parent.get("link", "")].append(claim.value)
     for link, names in siblings.items():
+        if len(names) < 2:
+            continue
         old = sorted(names)
         # The order may depend on the robot's name: try one that sorts first and one that sorts last.
         orders = [sorted(names, key=partial(renames.spelled, robot, "joint")) for robot in "\0~"]

@@ -140,6 +140,9 @@ def duplicates(inventory: Inventory) -> Iterator[Problem]:
 
 def _scope(element: _Element) -> _Element | None:
     """The model that a declaration is in: names of nested SDF models are their own."""
+    parent = element.getparent()
+    if parent is not None and parent.tag == "robot":
+        return parent
     return next(element.iterancestors("model", "robot"), None)
 
 

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim
-from multibot_rewrite.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, OwnNames
+from multibot_rewrite.naming import FRAME_KINDS, NO_OWN_NAMES, SEPARATORS, TOPIC_KINDS, OwnNames
 from multibot_rewrite.plural import plural
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.inserted import markers
 
 # What a rewrite may put between a name and the robot's; "__" begins and ends like "_".
-SEPARATORS = ("/", "_", "-", ".")
+BETWEEN = ("/", "_", "-", ".")
+# A model may well be called like its robot without any rewrite.
+CARRYING = frozenset(SEPARATORS) - {"model"}
 # What parts of robots are called: names of most descriptions hold such a word by chance.
 _PARTS = """
 ankle arm arms back base body bottom cam camera caster center centre chassis chest elbow finger flange
@@ -39,30 +41,35 @@ class UsedName(NamedTuple):
 
 
 def already_rewritten(
-    inventory: Inventory, robots: Iterable[str], again: bool, own: OwnNames = NO_OWN_NAMES
+    inventory: Inventory,
+    robots: Iterable[str],
+    again: bool,
+    own: OwnNames = NO_OWN_NAMES,
+    kinds: Collection[str] = CARRYING,
 ) -> Iterator[Problem]:
     """Robots whose name is in names of the document, or in a marker of inserted elements.
 
     ``again`` rewrites it once more, but not where it has inserted elements of the same robot. Names
-    of ``own`` are the robot's by an argument of its xacro: they stay as they are.
+    of ``own`` are the robot's by an argument of its xacro: they stay as they are. ``kinds`` are
+    those that get this word of the robot.
     """
     marked = {mark.robot for mark in markers(inventory.document)}
     text = "\n".join({name.text for names in inventory.names for name in names})
     for robot in robots:
         # Most robots are in no name at all. With ``again`` names alone do not matter.
         looked = robot in text and (not again or robot in marked)
-        found = carrying(_names(inventory), robot, own) if looked else []
+        found = carrying(_names(inventory, kinds), robot, own) if looked else []
         if found or robot in marked:
             yield _problem(inventory, robot, found, robot in marked)
 
 
-def _names(inventory: Inventory) -> list[UsedName]:
-    """Every name that some rewrite changes, once. A model may well be called like its robot."""
+def _names(inventory: Inventory, kinds: Collection[str]) -> list[UsedName]:
+    """Every name of these kinds that some rewrite changes, once."""
     found: dict[tuple[str, str], UsedName] = {}
     for claim, names in zip(inventory.claims, inventory.names, strict=True):
         for name in names if claim.site.role != "keep" else ():
             kind = name.kind or name.kinds[0]
-            if kind != "model" and (kind, name.text) not in found:
+            if kind in kinds and (kind, name.text) not in found:
                 found[kind, name.text] = UsedName(kind, name.text, claim)
     return list(found.values())
 
@@ -88,8 +95,8 @@ def _carries_name(name: UsedName, robot: str) -> bool:
     text = name.text.lstrip("/")
     if text == robot:
         return name.kind == "namespace"
-    return text.startswith(tuple(robot + it for it in SEPARATORS)) or text.endswith(
-        tuple(it + robot for it in SEPARATORS)
+    return text.startswith(tuple(robot + it for it in BETWEEN)) or text.endswith(
+        tuple(it + robot for it in BETWEEN)
     )
 
 

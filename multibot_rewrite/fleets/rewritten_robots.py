@@ -7,15 +7,18 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.checks.meeting import SHARED_CODES
+from multibot_rewrite.checks.twice import CARRYING
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.library import Rewrite, rewrite_job
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.job import Job, read_job
+from multibot_rewrite.sources.own_names import ROBOT
 from multibot_rewrite.steps.collect import NOTHING
 from multibot_rewrite.steps.template import Template
 
@@ -68,7 +71,19 @@ def read_jobs(
             description = read_job(it.description, naming, None, *more)
             srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
             found[it.sources] = Jobs(description, srdf)
+    _check_arguments(robots, found)
     return found
+
+
+def _check_arguments(robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]) -> None:
+    """An argument that makes names of one robot is not for another one."""
+    own = {it.sources[:3]: it for it in robots if jobs[it.sources].description.naming.own}
+    for it in robots:
+        first = own.get(it.sources[:3])
+        if first is None or jobs[it.sources].description.naming.own:
+            continue
+        both = f"{it.name!r} has the arguments of {first.name!r}, which put that name into names"
+        raise InputError(f"{it.file}:{it.line}: {both}; write {ROBOT} in its place")
 
 
 def rewrite_robots(
@@ -88,11 +103,10 @@ def rewrite_robots(
 
 def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobot]:
     naming = jobs.description.naming
-    robots = [robot.namespace for robot in group]
-    texts = rewrite_job(jobs.description, robots)
+    texts = _texts(jobs.description, group)
     semantics: Iterable[Rewrite | None] = [None] * len(group)
     if jobs.srdf:
-        semantics = rewrite_job(jobs.srdf, robots)
+        semantics = _texts(jobs.srdf, group)
     for robot, text, semantic in zip(group, texts, semantics, strict=True):
         data = _final(text, robot, naming)
         declared = text.template.inventory.declared
@@ -109,6 +123,23 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             # What robots share the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in SHARED_CODES),
         )
+
+
+def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
+    """The text of each robot with its namespace; refused where it carries one of its words."""
+    for number, text in enumerate(rewrite_job(job, [it.namespace for it in group], again=True)):
+        if not number:
+            _check_new(text.template, group)
+        yield text
+
+
+def _check_new(template: Template, group: Sequence[RobotSpec]) -> None:
+    """A robot's namespace and tag may be in names that get the other word."""
+    alike = [it.namespace for it in group if it.tag == it.namespace]
+    apart = [it for it in group if it.tag != it.namespace]
+    pipeline.check_new(template, alike, CARRYING)
+    pipeline.check_new(template, [it.namespace for it in apart], GRAPH_KINDS)
+    pipeline.check_new(template, [it.tag for it in apart], CARRYING - GRAPH_KINDS)
 
 
 def _final(text: Rewrite, robot: RobotSpec, naming: Naming) -> bytes:

@@ -153,5 +153,6 @@ def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[Ru
     (every,) = vocabulary.find("element", tag)
     for site in (*every.sites, *host.section.sites):
         if site.role != "keep" and kind in site.kinds:
-            for value in there.intersection(values_of(host.element, site)):
-                yield RuntimeName(kind, str(value), tag, host.number, site.path)
+            for value in dict.fromkeys(values_of(host.element, site)):
+                if value in there:
+                    yield RuntimeName(kind, value, tag, host.number, site.path)

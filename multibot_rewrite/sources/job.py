@@ -14,7 +14,6 @@ from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.own_names import (
     OF_ALL,
-    ROBOT,
     Arguments,
     NameTexts,
     OwnSource,
@@ -27,10 +26,13 @@ from multibot_rewrite.sources.own_names import (
     own_affixes,
     own_names,
     own_texts,
+    templates,
 )
 from multibot_rewrite.sources.read import Source, args_for, read_source
+from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.steps.document import read_document
+from multibot_rewrite.steps.plan import make_plan
 
 
 class Job(NamedTuple):
@@ -107,11 +109,10 @@ def read_jobs(
 def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
     """An argument that makes names of one robot is not for another one."""
     for robot in own:
-        values = [
-            f"{name}:={text}" for name, text in given.items() if name_robot({name: text}, [robot])
-        ]
-        hint = " ".join(values).replace(robot, ROBOT)
-        what = f"{' '.join(values)} puts {robot} into names"
+        named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
+        values = " ".join(f"{name}:={text}" for name, text in named.items())
+        hint = " ".join(f"{name}:={text}" for name, text in templates(named, robot).items())
+        what = f"{values} puts {robot} into names"
         raise UsageError(f"{what}, and {others[0]} gets it, too; write {hint}")
 
 
@@ -154,9 +155,11 @@ def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
         return job
     texts = _marked_texts(plain, other)
     job = job._replace(own=OwnSource(words[0], own_texts(texts, words), twin))
-    beside_plain = job.urdf and len(set(words)) == 1 and not twin
-    affixes = own_affixes(texts) if beside_plain else None
-    return _of_plain(job, plain, affixes) if affixes else job
+    affixes = own_affixes(texts) if job.urdf and not twin else None
+    if not affixes:
+        return job
+    follow = _of_plain if len(set(words)) == 1 else _followed
+    return follow(job, plain, affixes)
 
 
 def _marked(read: Reader, given: Arguments, words: Sequence[str]) -> Job:
@@ -181,3 +184,11 @@ def _of_plain(job: Job, plain: Job, affixes: OwnNames) -> Job:
     """An SRDF that knows nothing of the arguments: its names are those of the URDF without them, and
     become what the arguments make of these."""
     return job._replace(urdf=plain.urdf, naming=job.naming._replace(own=affixes))
+
+
+def _followed(job: Job, plain: Job, affixes: OwnNames) -> Job:
+    """The same where a robot has several words: its SRDF as the arguments would have made it."""
+    inventory = collect(read_document(job.data, job.file), job.tree, plain.urdf_declarations)
+    own = job.naming._replace(separators={}, own=affixes)
+    edits = make_plan(inventory, own).edits
+    return job._replace(data=fill(cut(job.data, edits), job.own.robot))

@@ -61,11 +61,16 @@ def marked(arguments: Arguments, words: Sequence[str]) -> dict[str, str]:
 
 
 def _marked(text: str, words: Sequence[str]) -> str:
-    pairs = sorted(zip(words, MARKS, strict=False), key=lambda it: -len(it[0]))
-    for word, mark in pairs:
+    for word, mark in zip(words, MARKS, strict=False):
         token = rf"(?<![A-Za-z0-9]){re.escape(word)}(?![A-Za-z0-9])"
         text = re.sub(token, mark, text)
     return _PLACEHOLDER.sub(MARKS[0], text)
+
+
+def templates(arguments: Arguments, robot: str) -> dict[str, str]:
+    """The arguments with ``{robot}`` where they name the robot."""
+    texts = marked(arguments, [robot])
+    return {name: text.replace(MARKS[0], ROBOT) for name, text in texts.items()}
 
 
 def name_robot(arguments: Arguments, words: Sequence[str]) -> bool:

@@ -116,6 +116,11 @@ def start_offsets(source: bytes) -> list[int]:
     return [found.start() for found in _OPENING.finditer(source)]
 
 
+def without_comments(source: bytes) -> bytes:
+    """A well-formed text without its comments and processing instructions."""
+    return _SILENT.sub(lambda found: found[0] if found[0].startswith(b"<![") else b"", source)
+
+
 def slot_values(root: etree._Element) -> list[str]:
     """The value of every attribute and of every text that is more than white space."""
     texts: list[str] = _TEXTS(root)  # type: ignore[assignment]
@@ -146,6 +151,10 @@ def value_places(
     slot = value_slot(source, start, attribute, value)
     if slot is None:
         return None
+    begin, end = slot
+    # As many bytes as characters: nothing is escaped.
+    if end - begin == len(value):
+        return [begin + at for at in characters]
     places = [_place(source, slot, value, at) for at in characters]
     found = [place for place in places if place is not None]
     return found if len(found) == len(places) else None
@@ -154,9 +163,6 @@ def value_places(
 def _place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
     """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
     begin, end = slot
-    # As many bytes as characters: nothing is escaped.
-    if end - begin == len(value):
-        return begin + at
     raw = source[begin:end]
     head, tail = value[:at].encode(), value[at:].encode()
     if raw.endswith(tail) and b";" not in tail:

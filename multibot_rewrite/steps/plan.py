@@ -113,14 +113,14 @@ def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[F
         if not value and not claim.element.text:
             edits.append(_filled(inventory, claim, spelling[0].affix))
             continue
-        affixes = [name.affix for name in spelling]
         # White space alone would be a part of the prefix: nothing takes it off (component_parser.cpp).
-        at = [it.at for it in affixes]
+        at = [name.affix.at for name in spelling]
         places = value_places(source, start, attribute, value, at) if value else None
         if places is None:
             findings.append(_not_editable(inventory, claim))
             continue
-        for place, (_, before, after) in zip(places, affixes, strict=True):
+        for place, name in zip(places, spelling, strict=True):
+            _, before, after = name.affix
             edits.append(Edit(place, place, before.encode(), after.encode()))
     return edits, findings
 

@@ -43,19 +43,18 @@ class RenameMap(NamedTuple):
 
 def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
     """Ask the naming once for every distinct name of a description."""
+    # Claims share the names of equal values, so few are different.
+    pairs = zip(inventory.claims, inventory.names, strict=True)
+    at = [(id(names), claim.site.namespaced) for claim, names in pairs]
+    different = dict(zip(at, inventory.names, strict=True))
     declared = inventory.declared.items()
     keys: set[NameKey] = {(kind, name, False) for kind, names in declared for name in names}
-    pairs = list(zip(inventory.claims, inventory.names, strict=True))
-    keys |= {(n.kind, n.text, claim.site.namespaced) for claim, names in pairs for n in names}
+    keys |= {(n.kind, n.text, reach) for (_, reach), names in different.items() for n in names}
     asked = ((key, affix(naming, *key)) for key in keys)
     affixes = {key: there for key, there in asked if there is not None}
-    known: dict[tuple[tuple[ResolvedName, ...], bool], Spelling] = {}
-    values = []
-    for claim, names in pairs:
-        at = names, claim.site.namespaced
-        if at not in known:
-            known[at] = _spelling(*at, affixes)
-        values.append(known[at] if is_reached(claim, naming) else ())
+    known = {key: _spelling(names, key[1], affixes) for key, names in different.items()}
+    reached = (is_reached(claim, naming) for claim in inventory.claims)
+    values = [known[key] if it else () for key, it in zip(at, reached, strict=True)]
     return RenameMap(naming, affixes, values)
 
 

@@ -41,14 +41,16 @@ def strip_edits(
     edits = removals(document, robot)
     claims = not_inserted(inventory.claims, edits)
     is_inserted = inside_of(edits)
-    known: dict[tuple[tuple[ResolvedName, ...], bool], list[tuple[int, int]]] = {}
+    # Claims share the names of equal values, so few are different.
+    known: dict[tuple[int, bool], list[tuple[int, int]]] = {}
     kept_out = _without(inventory, own, is_inserted) if own else inventory.names
     for claim, names in zip(inventory.claims, kept_out, strict=True):
-        key = names, claim.site.namespaced
-        if key not in known:
-            known[key] = _spans(*key, naming, robot)
-        if known[key] and is_reached(claim, naming) and not is_inserted(claim):
-            edits += _claim_edits(document.source, claim, known[key])
+        key = id(names), claim.site.namespaced
+        spans = known.get(key)
+        if spans is None:
+            spans = known[key] = _spans(names, claim.site.namespaced, naming, robot)
+        if spans and is_reached(claim, naming) and not is_inserted(claim):
+            edits += _claim_edits(document.source, claim, spans)
 
     def unspell(kind: str, name: str) -> str:
         return unspelled(naming, kind, name, robot)
@@ -58,6 +60,15 @@ def strip_edits(
         if slot is not None:
             edits.append(Edit(*slot, old.encode(), None))
     return sorted(edits, key=lambda edit: edit.start)
+
+
+def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robot: str) -> str:
+    """A claimed value without its affixes."""
+    value = claim.value
+    if is_reached(claim, naming):
+        for start, end in reversed(_spans(names, claim.site.namespaced, naming, robot)):
+            value = value[:start] + value[end:]
+    return value
 
 
 def _without(

@@ -482,7 +482,9 @@ def test_interfaces_of_an_unknown_controller_are_renamed(key: str) -> None:
     assert f"{key}: [position]" in made(section("own_controller", f"{key}: [position]"))[0]
 
 
-@pytest.mark.parametrize("value", ["wrist/position", "elbow/", "elbow_x/position", "/scan/elbow"])
+@pytest.mark.parametrize(
+    "value", ["wrist/position", "elbow/", "elbow_x/position", "/scan/elbow", "imu_sensor/data"]
+)
 def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
     assert made(section("other", f"what: [{value}]"))[1] == ()
 
@@ -498,6 +500,7 @@ def test_what_is_no_interface_of_the_robot_is_not_reported(value: str) -> None:
         ("other", "what: [1st, base_link]", "MF123", "is a link of the robot"),
         ("other", "what: [elbow/position]", "MF123", "is an interface of the robot"),
         ("other", "what: chained/elbow/velocity", "MF123", "is an interface of the robot"),
+        ("other", "what: imu_sensor/orientation.x", "MF123", "is an interface of the robot"),
         ("other", "x_topic: /x", "MF114", "guessed: x_topic"),
         ("foxglove_bridge", 'topic_whitelist: ["/scan.*"]', "MF122", "not rewritten"),
         ("robot_state_publisher", "frame_prefix: a/", "MF115", "a second time"),

@@ -141,4 +141,6 @@ def test_a_second_build_finds_nothing_to_do(package: Path, monkeypatch: pytest.M
 def test_what_is_not_written_is_not_loaded(package: Path) -> None:
     (package / "urdf" / "arm.urdf").write_text(ARM.format("../config/arm.yaml"))
     fleet = load_fleet(os.fspath(package / "fleet.yaml"))
-    assert "<parameters>../config/arm.yaml</parameters>" in fleet.robot("robot1").description
+    there = "<parameters>../config/arm.yaml</parameters>"
+    assert there in fleet.robot("robot1").description
+    assert there in fleet.text("robot1/arm.urdf")

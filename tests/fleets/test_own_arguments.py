@@ -94,8 +94,7 @@ def test_robots_with_and_without_the_argument(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("key", ["prefix", "namespace"])
 def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, key: str) -> None:
-    text = FLEET.replace("srdf: arm.srdf\n", "") + BY_PLACEHOLDER
-    text = text.replace("name: left", f"name: left, {key}: l1")
+    text = (FLEET + BY_PLACEHOLDER).replace("name: left", f"name: left, {key}: l1")
     made = load_fleet(fleet(tmp_path, text))
     camera = "l1_camera_link" if key == "prefix" else "left_camera_link"
     assert links(made.robot("left").description) == [
@@ -105,6 +104,10 @@ def test_a_name_of_its_own_beside_another_prefix_or_namespace(tmp_path: Path, ke
         camera,
     ]
     assert "joints: [left_elbow]" in made.text("left/controllers.yaml")
+    srdf = made.text("left/arm.srdf")
+    assert 'base_link="left_base_link" tip_link="left_tool0"' in srdf
+    assert f'link2="{camera}"' in srdf
+    assert [it.code for it in (*made.findings, *made.made.findings)] == []
 
 
 def test_a_namespace_argument(tmp_path: Path) -> None:
@@ -118,6 +121,31 @@ robots: [{{name: robot1, pose: {{x: 1}}}}, {{name: robot2, pose: {{x: 2}}}}]
     root = etree.fromstring(made.robot("robot2").description.encode())
     assert [it.text for it in root.iter("namespace")] == ["robot2", "/robot2"]
     assert [it.code for it in made.made.findings] == []
+
+
+def test_an_argument_with_the_namespace_of_a_robot(tmp_path: Path) -> None:
+    text = f"""\
+layout: tf-per-robot
+description: {XACROS / "base.urdf.xacro"}
+robots:
+  - {{name: one, namespace: fleet_a, arguments: {{namespace: fleet_a}}, pose: {{x: 1}}}}
+  - {{name: two, namespace: fleet_b, arguments: {{namespace: fleet_b}}, pose: {{x: 2}}}}
+"""
+    made = load_fleet(fleet(tmp_path, text))
+    root = etree.fromstring(made.robot("two").description.encode())
+    assert [it.text for it in root.iter("namespace")] == ["fleet_b", "/fleet_b"]
+    assert [it.code for it in (*made.findings, *made.made.findings)] == []
+    assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
+
+
+def test_one_value_for_several_robots_is_refused(tmp_path: Path) -> None:
+    text = FLEET + BY_PLACEHOLDER.replace("{robot}_", "left_")
+    with pytest.raises(InputError) as refused:
+        load_fleet(fleet(tmp_path, text))
+    assert str(refused.value).endswith(
+        "fleet.yaml:10: 'right' has the arguments of 'left', which put that name into names;"
+        " write {robot} in its place"
+    )
 
 
 def test_an_unknown_placeholder_has_its_line(tmp_path: Path) -> None:

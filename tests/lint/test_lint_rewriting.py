@@ -32,6 +32,7 @@ LINK = '<link name="gripper"/>\n'
         (LINK + '<gazebo reference="gripper"/>', []),
         (LINK + '<joint name="j" type="gripper"/>', []),
         ("<x>gripper</x>", []),
+        ('<gazebo><light name="eye"/></gazebo><x>eye</x>', [("MB901", "warning", 2, 40)]),
         ("", []),
         (
             '<gazebo><plugin name="p" filename="libunheard_of.so"/></gazebo>',
@@ -52,3 +53,13 @@ def test_what_nothing_knows(
     text: str, expected: list[tuple[str, str, int, int]], tmp_path: Path
 ) -> None:
     assert linted(tmp_path, text) == expected
+
+
+def test_only_what_ros_2_does_not_read_is_named(tmp_path: Path) -> None:
+    """bodyName is followed by libsdformat itself, frame_name is read by both versions."""
+    file = tmp_path / "a.urdf"
+    tags = "<ros/><topicName>t</topicName><bodyName>a</bodyName><frame_name>a</frame_name>"
+    plugin = f'<plugin name="i" filename="libgazebo_ros_imu_sensor.so">{tags}</plugin>'
+    file.write_text(f'<robot name="r"><link name="a"/><gazebo>{plugin}</gazebo></robot>')
+    (found,) = lint_file(str(file), Settings(select=("MB904",)))
+    assert "does not read <topicName> in ROS 2" in found.message

@@ -163,10 +163,21 @@ def test_one_value_for_several_robots_is_refused() -> None:
     )
 
 
+def test_the_advice_leaves_the_name_of_the_argument_alone(tmp_path: Path) -> None:
+    path = made('<xacro:arg name="arm_p" default=""/>', '<link name="$(arg arm_p)a"/>', tmp_path)
+    with pytest.raises(UsageError, match=r"; write arm_p:=\{robot\}_x_$"):
+        list(rewrite_all(path, ["arm", "cart"], xacro_args={"arm_p": "arm_x_"}))
+
+
 def test_a_value_that_names_a_robot_by_accident_is_for_all() -> None:
     given = {"meshes": "package://left/meshes"}
-    made = list(rewrite_all(ARM, ["left", "right"], xacro_args=given))
-    assert [names(it.text, "link")[0] for it in made] == ["base_link/left", "base_link/right"]
+    made = list(rewrite_all(ARM, ["a", "left", "b"], xacro_args=given))
+    assert [it.robot for it in made] == ["a", "left", "b"]
+    assert [names(it.text, "link")[0] for it in made] == [
+        "base_link/a",
+        "base_link/left",
+        "base_link/b",
+    ]
 
 
 def test_names_of_two_robots_do_not_meet(tmp_path: Path) -> None:
@@ -326,3 +337,28 @@ def test_a_frame_with_the_argument_and_its_link_without_it(
     # The frame is as it was, also where the rewrite gives the link the same name.
     back = strip(done.data, "left", xacro=path, xacro_args=given, **policy)
     assert back == expand(str(path), {"p": "left"})
+
+
+def test_an_srdf_for_a_default_that_is_replaced_is_not_followed(tmp_path: Path) -> None:
+    body = '<link name="$(arg p)base"/><link name="$(arg p)tip"/>'
+    path = made('<xacro:arg name="p" default="arm_"/>', body, tmp_path)
+    srdf = '<robot name="made"><disable_collisions link1="arm_base" link2="arm_tip"/></robot>'
+    done = rewrite(srdf, "left", urdf=path, xacro_args={"p": "{robot}_"})
+    # What is not an insertion cannot be taken out again: the names are reported, and stay.
+    assert done.findings != ()
+    assert '"arm_base"' in done.text
+
+
+def test_an_srdf_of_an_argument_behind_names(tmp_path: Path) -> None:
+    body = '<link name="base$(arg p)"/><link name="tip"/><joint name="base" type="fixed">'
+    body += '<parent link="base$(arg p)"/><child link="tip"/></joint>'
+    path = made('<xacro:arg name="p" default=""/>', body, tmp_path)
+    srdf = '<robot name="made"><disable_collisions link1="base" link2="tip"/>'
+    srdf += '<passive_joint name="base"/></robot>'
+    given = {"p": "_{robot}"}
+    done = rewrite(srdf, "left", urdf=path, xacro_args=given)
+    assert 'link1="base_left" link2="tip/left"' in done.text
+    assert 'passive_joint name="base_left"' in done.text
+    urdf = rewrite(path, "left", xacro_args=given).data
+    back = strip(done.data, "left", urdf=urdf, xacro=path, xacro_args=given)
+    assert back.decode() == srdf

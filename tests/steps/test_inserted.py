@@ -122,3 +122,12 @@ def test_a_filled_element_that_was_edited_is_refused(old: str, new: str) -> None
     made = rewrite(EMPTY.format("<namespace/>"), "r1", layout="L1").text.replace(old, new)
     with pytest.raises(InputError, match="edited by hand"):
         strip(made, "r1", layout="L1")
+
+
+def test_gz_ros2_control_reads_no_settings_beside_ros() -> None:
+    """gz_ros2_control_plugin.cpp: only what is in <ros> counts."""
+    source = """<robot name="a"><link name="l"/><gazebo>
+<plugin filename="gz_ros2_control-system" name="c"><namespace/></plugin></gazebo></robot>"""
+    made = etree.fromstring(rewrite(source, "r1", layout="L1").data)
+    assert made.findtext(".//ros/namespace") == "/r1"
+    assert made.findtext(".//plugin/namespace") == ""

@@ -91,7 +91,12 @@ ONLY = {
     "nothing_to_add": ["an insertion forgotten", "a rule for another topic"],
     "added_once": ["an insertion of what is there", "a rule twice"],
     "a_slot_each": ["an edit with the robot's name as it is"],
-    "strips_to_source": ["an edit of a line end", "nothing is stripped"],
+    "strips_to_source": [
+        "an edit of a line end",
+        "nothing is stripped",
+        "a blank added",
+        "no value is stripped",
+    ],
     "as_decided": ["an insertion that is written otherwise"],
     "as_planned": ["a marker says something else", "an inserted element has another indentation"],
 }

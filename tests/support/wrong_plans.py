@@ -67,9 +67,9 @@ def at(text: bytes, change: Callable[[Edit], list[Edit]], source: str = "rover")
     )
 
 
-def more(text: bytes, before: bytes, after: bytes | None) -> Wrong:
+def more(text: bytes, before: bytes, after: bytes | None, source: str = "rover") -> Wrong:
     """A plan with one more edit right behind a text of the source."""
-    place = behind(text)
+    place = behind(text, SOURCES[source])
     return edits(lambda all_: [*all_, Edit(place, place, before, after)])
 
 
@@ -145,6 +145,13 @@ EDITS = (
     ),
     ("no edits at all", "same_names", edits(lambda all_: [])),
     ("the first edits", "same_names", edits(lambda all_: all_[:9])),
+)
+
+
+# Plans that only add: their texts are stripped value by value.
+ADDED = (
+    ("a blank added", more(b'<link name="base"', b" ", None, "model")),
+    ("a word added to a value that is no name", more(b'type="fixed', b"_r", None, "model")),
 )
 
 
@@ -357,6 +364,10 @@ COLLISIONS = (
 
 PLANS = [
     *(Fault(about, by, pipeline, "make_plan", wrong) for about, by, wrong in EDITS),
+    *(
+        Fault(about, "strips_to_source", pipeline, "make_plan", wrong, "model")
+        for about, wrong in ADDED
+    ),
     *(Fault(about, by, planning, "make_renames", wrong) for about, by, wrong in RENAMES),
     *(
         Fault(about, "same_names", planning, "make_renames", wrong, instead=True)

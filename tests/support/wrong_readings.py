@@ -162,8 +162,18 @@ STRIPS = (
     ),
 )
 
+# As values without their affixes, where a text is stripped value by value.
+VALUES = (
+    ("no value is stripped", lambda value: f"{value}/robot1"),
+    ("a value loses too much", lambda value: value[:-1]),
+)
+
 READINGS = [
     *(Fault(about, by, pipeline, "collect", wrong) for about, by, wrong in INPUTS),
     *(Fault(about, by, proof, "collect", wrong) for about, by, wrong in OUTPUTS),
     *(Fault(about, "strips_to_source", proof, "strip_edits", wrong) for about, wrong in STRIPS),
+    *(
+        Fault(about, "strips_to_source", proof, "stripped", wrong, "model")
+        for about, wrong in VALUES
+    ),
 ]

@@ -24,7 +24,8 @@ from multibot_rewrite.graph.wording import shorten
     why="All its topics, services and actions are missing. Where it runs under another name, it"
     " works for the wrong robot, or for all of them.",
     fix="Start it, with its namespace. The hint has the node that runs in its place, or the line"
-    " of the description that starts it.",
+    " of the description that starts it. Where something else than robot_state_publisher sends the"
+    " tf of the description, plan with the stack `no_robot_state_publisher`.",
     bad="""\
 planned: /robot1/driver
 as planned: /robot1/planner

@@ -124,6 +124,7 @@ class Vocabulary:
     def __init__(self, texts: Mapping[str, str], extended: bool = False) -> None:
         self.extended = extended
         self._raw: dict[tuple[str, str], list[Raw]] = {}
+        self._names: dict[str, dict[str, None]] = {type_: {} for type_ in TYPES}
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
         for file, text in texts.items():
             self._index(file, text)
@@ -139,6 +140,7 @@ class Vocabulary:
             type_, *names = read_header(f"{file}:{line}", chunk.partition("\n")[0])
             for name in names:
                 self._raw.setdefault((type_, name), []).append((file, line, chunk))
+                self._names[type_][name] = None
             line += chunk.count("\n")
 
     def find(self, type_: str, name: str) -> tuple[VocabularySection, ...]:
@@ -167,7 +169,7 @@ class Vocabulary:
 
     def names(self, type_: str) -> list[str]:
         """Every name and alias of that type."""
-        return [name for kind, name in self._raw if kind == type_]
+        return list(self._names[type_])
 
     def places(self) -> dict[str, list[str]]:
         """Each element with a section and the elements it may be in, without reading more."""

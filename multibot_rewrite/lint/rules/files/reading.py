@@ -95,7 +95,9 @@ def leftover(subject: Subject) -> Iterator[Problem]:
 )
 def already(subject: Subject) -> Iterator[Problem]:
     """One finding per file, for the first robot whose name is in it."""
-    found = already_rewritten(subject.inventory, subject.settings.robots, False)
+    # What has a robot's name by an argument has it by its author.
+    robots = [it for it in subject.settings.robots if it not in subject.arguments]
+    found = already_rewritten(subject.inventory, robots, False)
     for it in islice(found, 1):
         yield it._replace(hint="lint the source it was made from")
 
