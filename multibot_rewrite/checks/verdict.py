@@ -12,6 +12,7 @@ SHARED = "shared by all robots"
 # Code -> what is counted and what is said of it. A rewrite with one of these findings is not proved.
 REASONS = {
     "MB901": ("name", "not understood"),
+    "MB219": ("model", "not known"),
     "MB902": ("plugin", "not known"),
     "MB903": ("hardware class", "not known"),
     "MB430": ("topic", SHARED),

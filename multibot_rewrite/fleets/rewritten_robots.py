@@ -14,9 +14,11 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.library import Rewrite, rewrite_job
+from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.job import Job, read_job
+from multibot_rewrite.sources.own_names import ROBOT
 from multibot_rewrite.steps.collect import NOTHING
 from multibot_rewrite.steps.template import Template
 
@@ -69,7 +71,19 @@ def read_jobs(
             description = read_job(it.description, naming, None, *more)
             srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
             found[it.sources] = Jobs(description, srdf)
+    _check_arguments(robots, found)
     return found
+
+
+def _check_arguments(robots: Sequence[RobotSpec], jobs: Mapping[Sources, Jobs]) -> None:
+    """An argument that makes names of one robot is not for another one."""
+    own = {it.sources[:3]: it for it in robots if jobs[it.sources].description.naming.own}
+    for it in robots:
+        first = own.get(it.sources[:3])
+        if first is None or jobs[it.sources].description.naming.own:
+            continue
+        both = f"{it.name!r} has the arguments of {first.name!r}, which put that name into names"
+        raise InputError(f"{it.file}:{it.line}: {both}; write {ROBOT} in its place")
 
 
 def rewrite_robots(

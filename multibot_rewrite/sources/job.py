@@ -14,7 +14,6 @@ from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.own_names import (
     OF_ALL,
-    ROBOT,
     Arguments,
     NameTexts,
     OwnSource,
@@ -27,6 +26,7 @@ from multibot_rewrite.sources.own_names import (
     own_affixes,
     own_names,
     own_texts,
+    templates,
 )
 from multibot_rewrite.sources.read import Source, args_for, read_source
 from multibot_rewrite.steps.apply import cut, fill
@@ -109,11 +109,10 @@ def read_jobs(
 def _check_meant(given: Arguments, own: Iterable[str], others: Sequence[str]) -> None:
     """An argument that makes names of one robot is not for another one."""
     for robot in own:
-        values = [
-            f"{name}:={text}" for name, text in given.items() if name_robot({name: text}, [robot])
-        ]
-        hint = " ".join(values).replace(robot, ROBOT)
-        what = f"{' '.join(values)} puts {robot} into names"
+        named = {name: text for name, text in given.items() if name_robot({name: text}, [robot])}
+        values = " ".join(f"{name}:={text}" for name, text in named.items())
+        hint = " ".join(f"{name}:={text}" for name, text in templates(named, robot).items())
+        what = f"{values} puts {robot} into names"
         raise UsageError(f"{what}, and {others[0]} gets it, too; write {hint}")
 
 

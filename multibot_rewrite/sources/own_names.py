@@ -67,6 +67,12 @@ def _marked(text: str, words: Sequence[str]) -> str:
     return _PLACEHOLDER.sub(MARKS[0], text)
 
 
+def templates(arguments: Arguments, robot: str) -> dict[str, str]:
+    """The arguments with ``{robot}`` where they name the robot."""
+    texts = marked(arguments, [robot])
+    return {name: text.replace(MARKS[0], ROBOT) for name, text in texts.items()}
+
+
 def name_robot(arguments: Arguments, words: Sequence[str]) -> bool:
     """Does any of the arguments hold a word of the robot?"""
     return marked(arguments, words) != dict(arguments)

@@ -138,6 +138,16 @@ robots:
     assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
 
 
+def test_one_value_for_several_robots_is_refused(tmp_path: Path) -> None:
+    text = FLEET + BY_PLACEHOLDER.replace("{robot}_", "left_")
+    with pytest.raises(InputError) as refused:
+        load_fleet(fleet(tmp_path, text))
+    assert str(refused.value).endswith(
+        "fleet.yaml:10: 'right' has the arguments of 'left', which put that name into names;"
+        " write {robot} in its place"
+    )
+
+
 def test_an_unknown_placeholder_has_its_line(tmp_path: Path) -> None:
     path = fleet(tmp_path, FLEET + BY_PLACEHOLDER.replace("{robot}", "{tf}"))
     with pytest.raises(InputError, match=r"fleet\.yaml:9: 'left': tf_prefix:=\{tf\}_: unknown"):

@@ -211,7 +211,7 @@ def test_pre_commit_runs_the_hook(clone: Path, tmp_path: Path) -> None:
     git(here, "add", ".")
     failed = run(command, here, env)
     assert failed.returncode == 1, failed.stdout + failed.stderr
-    assert re.search(rf"bad\.urdf:1:\d+: {FOUND} link 'lost'", failed.stdout)
+    assert re.search(rf"bad\.urdf:1:\d+: error: {FOUND} link 'lost'", failed.stdout)
     assert "rover.urdf" not in failed.stdout
 
     (here / "urdf" / "bad.urdf").write_text(GOOD)

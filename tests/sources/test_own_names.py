@@ -163,6 +163,12 @@ def test_one_value_for_several_robots_is_refused() -> None:
     )
 
 
+def test_the_advice_leaves_the_name_of_the_argument_alone(tmp_path: Path) -> None:
+    path = made('<xacro:arg name="arm_p" default=""/>', '<link name="$(arg arm_p)a"/>', tmp_path)
+    with pytest.raises(UsageError, match=r"; write arm_p:=\{robot\}_x_$"):
+        list(rewrite_all(path, ["arm", "cart"], xacro_args={"arm_p": "arm_x_"}))
+
+
 def test_a_value_that_names_a_robot_by_accident_is_for_all() -> None:
     given = {"meshes": "package://left/meshes"}
     made = list(rewrite_all(ARM, ["a", "left", "b"], xacro_args=given))
