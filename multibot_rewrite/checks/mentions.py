@@ -1,4 +1,4 @@
-"""Names of links and joints in values that no site claims: a rewrite leaves them as they are."""
+"""Names of links, joints and lights in values that no site claims: a rewrite leaves them so."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import finding, value_slot
 
 # Kinds whose names are looked for in values without a site.
-MENTIONED = ("link", "joint")
+MENTIONED = ("link", "joint", "light")
 # What is between names: of lists and paths, of structures, and of what has parts. A name may hold
 # what is between others, so that each is a look of its own.
 _BETWEEN = (

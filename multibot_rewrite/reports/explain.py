@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from multibot_rewrite.checks.mentions import kept, mentioned
+from multibot_rewrite.checks.mentions import MENTIONED, kept, mentioned
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
@@ -118,7 +118,7 @@ def _others(inventory: Inventory, tree: Tree, line: int) -> Iterator[Explanation
 
 
 def _unclaimed(inventory: Inventory, value: str) -> str:
-    names = frozenset([*inventory.declared["link"], *inventory.declared["joint"]])
+    names = frozenset(name for kind in MENTIONED for name in inventory.declared[kind])
     name = mentioned(value, names)
     return f"it holds the name {name!r}" if name else "it holds no declared name"
 

@@ -32,6 +32,7 @@ LINK = '<link name="gripper"/>\n'
         (LINK + '<gazebo reference="gripper"/>', []),
         (LINK + '<joint name="j" type="gripper"/>', []),
         ("<x>gripper</x>", []),
+        ('<gazebo><light name="eye"/></gazebo><x>eye</x>', [("MB901", "warning", 2, 40)]),
         ("", []),
         (
             '<gazebo><plugin name="p" filename="libunheard_of.so"/></gazebo>',

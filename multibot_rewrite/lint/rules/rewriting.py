@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from functools import partial
 
 from multibot_rewrite.checks.audit import other_ros, unknown_hardware, unknown_plugins
-from multibot_rewrite.checks.mentions import as_problem, unclaimed_mentions
+from multibot_rewrite.checks.mentions import MENTIONED, as_problem, unclaimed_mentions
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import SRDF, URDF, rule
@@ -20,10 +20,10 @@ from multibot_rewrite.steps.document import slot_values
     "MB901",
     "unclaimed-mention",
     WARNING,
-    what="A value holds the name of a link or joint, and the vocabulary does not say what the "
+    what="A value holds the name of a link, joint or light, and the vocabulary does not say what the "
     "value means.",
-    why="Where links and joints are renamed for each robot, this value keeps the old name: the "
-    "plugin that reads it looks for a link or joint that no longer exists.",
+    why="Where these are renamed for each robot, this value keeps the old name: the plugin that "
+    "reads it looks for a link, joint or light that no longer exists.",
     fix="Add a line to a vocabulary file that says it is a name, or that it must stay as it is.",
     bad='<link name="gripper_left"/><custom><grasp part="gripper_left"/></custom>',
     good='<link name="gripper_left"/><custom><grasp part="left"/></custom>',
@@ -32,7 +32,7 @@ from multibot_rewrite.steps.document import slot_values
 def unclaimed_mention(subject: Subject) -> Iterator[Problem]:
     """Values that no site claims and that hold a declared name."""
     inventory = subject.inventory
-    names = inventory.declared["link"].keys() | inventory.declared["joint"].keys()
+    names = {name for kind in MENTIONED for name in inventory.declared[kind]}
     if not names:
         return
     values = slot_values(subject.document.root)
