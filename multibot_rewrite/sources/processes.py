@@ -46,6 +46,7 @@ class Server:
             process = subprocess.Popen(
                 command, stdin=theirs.fileno(), stdout=nothing, stderr=nothing, env=kept, cwd=os.sep
             )
+        self.pid = process.pid
         weakref.finalize(self, _close, self.control, process)
 
     def start(self, theirs: socket.socket) -> int:
