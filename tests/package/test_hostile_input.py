@@ -9,6 +9,10 @@ import sys
 from pathlib import Path
 
 import pytest
+from graph_cases import healthy
+from paths import FIXTURES
+
+from multibot_rewrite.graph.snapshot import to_json
 
 pytestmark = pytest.mark.slow
 
@@ -227,3 +231,19 @@ def test_links_in_a_circle_pipes_and_folders_are_told_or_left_out(tmp_path: Path
     found = {line.partition(":")[0] for line in run.stdout.decode().splitlines()}
     assert {Path(it).name for it in found} >= {"loop.urdf"}
     assert b"Traceback" not in run.stderr
+
+
+def test_a_plan_and_a_snapshot_may_be_as_large_as_a_fleet(tmp_path: Path) -> None:
+    """Both hold some ten kB a robot; what is added here is what their readers skip."""
+    room = 17 * 2**20
+    plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
+    plan.write_text((FIXTURES / "graphs" / "plan.yaml").read_text() + f"#{'x' * room}\n")
+    graph.write_bytes(to_json(healthy("frames-per-robot")) + b" " * room)
+    command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check", str(plan)]
+    run = subprocess.run(
+        [*command, "--snapshot", str(graph)], capture_output=True, timeout=PATIENCE, check=False
+    )
+    assert (run.returncode, run.stderr.decode()) == (
+        0,
+        "multibot: 2 robots, 0 findings: as planned\n",
+    )
