@@ -134,18 +134,18 @@ CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
         2,
         "nested deeper",
     ),
-    "large-snapshot": (b"", (MULTIBOT, "learn", "--snapshot", "/dev/zero"), 2, "is larger than"),
+    "large-snapshot": (b"", (MULTIBOT, "learn", "--snapshot", "/dev/zero"), 2, "over the limit of"),
     "endless-vocabulary": (
         b"",
         (POSTFIX, "good.urdf", "r1", "--vocabulary", "/dev/zero"),
         2,
-        "it is larger than",
+        "it is over the limit of",
     ),
     "endless-nodes": (
         b"",
         (MULTIBOT, "remap", "good.urdf", "r1", "--stack", "nav2", "--nodes", "/dev/zero"),
         2,
-        "it is larger than",
+        "it is over the limit of",
     ),
     "bomb-of-nodes": (
         "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n"
@@ -215,7 +215,7 @@ def test_standard_input_without_an_end(program: str, tmp_path: Path) -> None:
             command, stdin=endless, capture_output=True, timeout=PATIENCE, check=False
         )
     assert run.returncode in (1, 2)
-    assert "it is larger than 16,777,216 bytes" in (run.stderr + run.stdout).decode()
+    assert "it is over the limit of 16,777,216 bytes" in (run.stderr + run.stdout).decode()
 
 
 def test_links_in_a_circle_pipes_and_folders_are_told_or_left_out(tmp_path: Path) -> None:
