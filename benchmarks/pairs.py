@@ -20,8 +20,9 @@ from typing import NamedTuple
 Job = Callable[[], object]
 # A shorter job is repeated: a clock has its own cost.
 LEAST_SECONDS = 0.005
-HOW = """ratios of CPU time, user and system, children included; of each side the least of several
-rounds in which both take turns. Lower is better"""
+HOW = """ratios of
+CPU time, user and system, children included; of each side the least of several rounds in which both
+take turns. Lower is better"""
 MACHINE = f"CPython {platform.python_version()}, {os.cpu_count()} cores, a shared machine"
 
 

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests" / "support"))
-from real_robots import corpus_files, wheel_files  # the files of the tests
+from real_robots import corpus_files, spread, wheel_files  # the files of the tests
 
 VARIABLE = "MULTIBOT_PUBLIC_FILES"
 OPTION = "--files"
+# So many of those beside the repository: all of them take minutes.
+MOST = 150
 
 
 class PublicFiles(NamedTuple):
@@ -33,9 +35,9 @@ def public_files(arguments: Sequence[str]) -> PublicFiles:
     folder = folder or os.environ.get(VARIABLE, "")
     if folder:
         return _read("a folder of one's own", sorted(Path(folder).rglob("*.urdf")))
-    corpus = list(corpus_files().values())
+    corpus = corpus_files()
     if corpus:
-        return _read("the corpus beside the repository", corpus)
+        return _read("the corpus beside the repository", list(spread(corpus, MOST).values()))
     return _read("the description wheels of the tests", list(wheel_files().values()))
 
 

@@ -40,7 +40,7 @@ def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
     with open(path, "rb") as file:
         data = file.read(limit + 1)
     if len(data) > limit:
-        raise OSError(errno.EFBIG, f"it is larger than {limit:,} bytes", path)
+        raise OSError(errno.EFBIG, f"it is over the limit of {limit:,} bytes", path)
     return data
 
 

@@ -18,6 +18,7 @@ TABLE = "multibot-rewrite"
 KEYS = ("vocabulary",)
 # Parsing costs more than the rest of a start: most projects hold neither spelling of the table.
 MARKS = (b"multibot-rewrite", b"tool.multibot_rewrite")
+_PARTS = 1000
 _PLACE = lazy_compile(r" \(at line (\d+), column (\d+)\)$")
 
 
@@ -81,7 +82,9 @@ def parse(path: str, data: bytes) -> dict[str, object]:
     else:
         import tomli as tomllib
     try:
-        return tomllib.loads(data.decode())
+        text = data.decode()
+        _check_keys(path, text)
+        return tomllib.loads(text)
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise UsageError(f"{path}:{line}: it is not UTF-8; save it as UTF-8") from None
@@ -93,6 +96,13 @@ def parse(path: str, data: bytes) -> dict[str, object]:
     except (RecursionError, ValueError) as error:
         # Brackets in thousands, a number of thousands of digits: no parser's own error.
         raise UsageError(f"{path}: TOML that cannot be read: {error}") from None
+
+
+def _check_keys(path: str, text: str) -> None:
+    """Python's parser takes the square of a key's parts."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if line.count(".") > _PARTS:
+            raise UsageError(f"{path}:{number}: a line with more than {_PARTS} dots; write several")
 
 
 def listed_files(where: str, folder: str, listed: object) -> tuple[str, ...]:

@@ -167,7 +167,8 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
     prepared = Prepared(job)
     findings = tuple(prepared.template.findings)
     texts = pipeline.render(prepared.template, robots, again)
-    return (Rewrite(r, t, findings, prepared) for r, t in zip(robots, texts, strict=True))
+    # Nothing here holds a text while the next one is made: it may take the same memory.
+    return (Rewrite(robot, next(texts), findings, prepared) for robot in robots)
 
 
 def rewrite_jobs(jobs: Mapping[str, Job], again: bool = False) -> Iterator[Rewrite]:

@@ -101,13 +101,17 @@ def render(prepared: Template, robots: Sequence[str], again: bool = False) -> It
     whole = list(checks.meeting(inventory, renames, pairs)) or _meeting(prepared, pairs)
     at_start = to_findings(document, whole, ERROR, of_file=True)
     _stop_on_errors([*to_findings(document, at_values, ERROR), *at_start])
-    for number, robot in enumerate(robots):
-        output = fill(prepared.pieces, robot)
-        if number == 0:
-            slots = len(prepared.pieces) - 1
-            *_, naming, tree, urdf_declarations = prepared
-            verify(inventory, plan, slots, output, robot, naming, tree, urdf_declarations)
-        yield output
+    for robot in robots[:1]:
+        yield _proved(prepared, robot)
+    for robot in robots[1:]:
+        yield fill(prepared.pieces, robot)
+
+
+def _proved(prepared: Template, robot: str) -> bytes:
+    inventory, plan, pieces, _, naming, tree, urdf_declarations = prepared
+    output = fill(pieces, robot)
+    verify(inventory, plan, len(pieces) - 1, output, robot, naming, tree, urdf_declarations)
+    return output
 
 
 def check_new(prepared: Template, robots: Sequence[str], kinds: Collection[str]) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 
+# A value that a message repeats may be a whole file.
+LONGEST = 1_000
 # What ends a line or steers a terminal; what turns the direction of reading; what stands in no XML or
 # UTF-8: lone surrogates are bytes of a file's name that are no UTF-8.
 _STEERING = "\x00-\x08\x0b-\x1a\x1c-\x1f\x7f-\x9f\u2028\u2029"
@@ -16,7 +18,10 @@ _IN_A_TEXT = f"[{_ODD}]|\x1b(?!\\[[0-9;]*m)"
 
 
 def one_line(text: str) -> str:
-    r"""The text with every odd character as Python writes it: ``\n``, ``\x1b``, ``\udcff``."""
+    r"""The text with every odd character as Python writes it: ``\n``, ``\x1b``, ``\udcff``. Of a very
+    long one the middle is left out."""
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST // 2]} … {text[-LONGEST // 2 :]}"
     return re.sub(_IN_A_LINE, _escaped, text)
 
 

@@ -113,9 +113,10 @@ def _problem(inventory: Inventory, robot: str, found: list[UsedName], marked: bo
     added = "elements were added for it" if marked else ""
     why = " and ".join(filter(None, (carried, added)))
     message = f"the description is already rewritten for {robot}: {why}"
-    hint = "undo the rewrite with --strip and the options it was made with, or name the robot otherwise"
     # Two layers of added elements could not be told apart.
-    hint += "" if marked else ", or add its name once more with --again"
+    again = "" if marked else ", or add its name once more with urdf-postfix --again"
+    way = "undo the rewrite with urdf-postfix --strip and the options it was made with"
+    hint = f"{way}, or name the robot otherwise{again}"
     if found:
         return about(found[0].claim, "MB106", message, hint)
     return Problem(inventory.document.root, message, None, hint, (), "MB106")

@@ -50,7 +50,9 @@ def run(options: argparse.Namespace) -> int:
         found = output_changes(files, known, there)
         if options.check:
             return _stale(options, found)
-        return _written(options, files, found, not_proved(made.findings))
+        return _written(
+            options, files, found, not_proved({*made.findings, *plan.fleet.table.problems})
+        )
 
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:

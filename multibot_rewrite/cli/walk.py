@@ -68,7 +68,7 @@ def standard_input() -> bytes:
     except OSError as error:
         raise InputError(f"<stdin>: cannot be read: {error.strerror}") from None
     if len(data) > MAX_BYTES:
-        raise InputError(f"<stdin>: cannot be read: it is larger than {MAX_BYTES:,} bytes")
+        raise InputError(f"<stdin>: cannot be read: it is over the limit of {MAX_BYTES:,} bytes")
     return data
 
 

@@ -72,13 +72,16 @@ def _lines(node: yaml.Node, file: str, path: Path) -> Iterator[tuple[Path, int]]
 
 def _first_error(data: Any, schema: Mapping[str, Any]) -> Any:
     try:
-        from jsonschema import Draft202012Validator
+        import jsonschema
         from jsonschema.exceptions import best_match
-    except ImportError as error:
-        what = "jsonschema 4.0 or newer is needed to read a fleet file"
-        hint = "install it: pip install 'jsonschema>=4.0'"
+
+        # Ubuntu 22.04 has 3.2; the schema says nothing that its draft reads differently.
+        newest = getattr(jsonschema, "Draft202012Validator", None) or jsonschema.Draft7Validator
+    except (ImportError, AttributeError) as error:
+        what = "jsonschema 3.2 or newer is needed to read a fleet file"
+        hint = "install it: pip install 'jsonschema>=3.2'"
         raise UsageError(f"{what}; {hint} ({error})") from None
-    return best_match(Draft202012Validator(schema).iter_errors(data))
+    return best_match(newest(schema).iter_errors(data))
 
 
 def _validate(data: Any, schema: Mapping[str, Any], file: str, lines: Mapping[Path, int]) -> None:

@@ -270,8 +270,9 @@ def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...]) -> None:
     try:
         facts_of(stacks, read.data.get("nodes") or None)
     except UsageError as error:
-        own = ("robots", at, "stack")
-        file, line = read.places[own if own in read.places else ("stack",)]
+        own: Path = ("robots", at, "stack")
+        found = (it for it in (own, ("stack",), ("nodes",)) if it in read.places)
+        file, line = read.places[next(found)]
         raise InputError(f"{file}:{line}: {error}") from None
 
 

@@ -36,9 +36,7 @@ class OutputValue(NamedTuple):
 def values_in(file: OutputText) -> Iterator[OutputValue]:
     """Every scalar of YAML, every attribute and text of XML, else every line."""
     if file.path.endswith(_LINES):
-        yield from (
-            OutputValue(it, "", False, at) for at, it in enumerate(file.text.splitlines(), 1)
-        )
+        yield from _of_lines(file)
     elif file.text.lstrip("\ufeff \t\r\n").startswith("<"):
         yield from _of_xml(file)
     else:
@@ -46,9 +44,20 @@ def values_in(file: OutputText) -> Iterator[OutputValue]:
         yield from _of_yaml(root, "") if root else ()
 
 
+def _of_lines(file: OutputText) -> Iterator[OutputValue]:
+    for at, it in enumerate(file.text.splitlines(), 1):
+        yield OutputValue(it, "", False, at)
+
+
 def _of_xml(file: OutputText) -> Iterator[OutputValue]:
     parser = etree.XMLParser(resolve_entities=False, huge_tree=True)
-    for element in etree.fromstring(file.text.encode(), parser).iter(etree.Element):
+    try:
+        root = etree.fromstring(file.text.encode(), parser)
+    except etree.XMLSyntaxError:
+        # A text of Lua or YAML may begin as XML does.
+        yield from _of_lines(file)
+        return
+    for element in root.iter(etree.Element):
         line = int(str(element.sourceline or 1))
         for key, text in element.attrib.items():
             yield OutputValue(str(text), str(key), False, line)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
@@ -17,7 +18,7 @@ from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.sources.job import Job, read_job
+from multibot_rewrite.sources.job import Job, Reader, job_for, reader
 from multibot_rewrite.sources.own_names import ROBOT
 from multibot_rewrite.steps.collect import NOTHING
 from multibot_rewrite.steps.template import Template
@@ -64,12 +65,17 @@ def read_jobs(
 ) -> dict[Sources, Jobs]:
     """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
     anything."""
+
+    @cache
+    def read(source: str, urdf: str | None) -> Reader:
+        return reader(source, naming, urdf, tuple(vocabulary), "", trust)
+
     found: dict[Sources, Jobs] = {}
     for it in robots:
         if it.sources not in found:
-            more = it.arguments, vocabulary, "", it.words, trust
-            description = read_job(it.description, naming, None, *more)
-            srdf = read_job(it.srdf, naming, it.description, *more) if it.srdf else None
+            given = it.arguments, it.words
+            description = job_for(read(it.description, None), *given)
+            srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
             found[it.sources] = Jobs(description, srdf)
     _check_arguments(robots, found)
     return found

@@ -19,7 +19,8 @@ TF = tuple(f"/{it}" for it in TF_TOPICS)
 # Parameters and properties that make nodes put a prefix before frames.
 PREFIXES = frozenset({"frame_prefix", "tf_prefix", "TF Prefix"})
 ENABLES = "tf_frame_prefix_enable"
-TOKEN = re.compile(r"[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
+# Only where such letters begin, or a line of dashes would be looked at from each of them.
+TOKEN = re.compile(r"(?<![A-Za-z0-9_~/.-])[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
 # Keys that name one frame.
 _FRAME_KEY = re.compile(r"(?:^|_)(?:frame|frame_id|link)$")
 _BETWEEN = "/_-."

@@ -46,7 +46,7 @@ def among(paths: Sequence[str], settings: Settings) -> Settings:
 def _linted(
     paths: Sequence[str], settings: Settings, jobs: int, watch: Watch
 ) -> Iterable[list[Finding]]:
-    # xacro evaluates expressions of the file; only the end of the process stops these for certain.
+    # What a few lines of xacro expand to may be more than a process survives.
     in_this_process = not any(path.endswith(".xacro") for path in paths)
     if in_this_process and (jobs == 1 or len(paths) <= FEW):
         return list(watch(lint_file(path, settings) for path in paths))

@@ -19,6 +19,7 @@ from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, expand, parse_remap, resolve_bound
 
 TOPIC, SERVICE = "topic", "service"
+REMAP_FLAGS = ("-r", "--remap")
 ROLES = ("publishes", "subscribes", "serves")
 
 
@@ -108,11 +109,25 @@ def _node_name(plugin: _Element, section: VocabularySection) -> str:
 
 
 def _rules(home: _Element) -> Iterator[ReadRule]:
-    for element in home.iterfind("remapping"):
+    """The rules in <argument>, which come first, and those in <remapping>."""
+    texts = [*_remap_arguments(home), *home.iterfind("remapping")]
+    for element in texts:
         rule = parse_remap(text_of(element))
         if rule is not None:
             line: int = element.sourceline or 0  # type: ignore[assignment]
             yield ReadRule(rule, line)
+
+
+def _remap_arguments(home: _Element) -> Iterator[_Element]:
+    """What follows -r or --remap, as rcl reads it: between --ros-args and --."""
+    ros, flag = False, ""
+    for element in home.iterfind("argument"):
+        text = text_of(element)
+        if ros and flag in REMAP_FLAGS:
+            yield element
+            text = ""
+        ros = text == "--ros-args" or (ros and text != "--")
+        flag = text
 
 
 def _bound(name: str, namespace: str, rules: Iterable[RemapRule]) -> BoundNode:
@@ -206,6 +221,8 @@ def resolved(host: _Element, section: VocabularySection) -> Iterator[tuple[str, 
         for name in values_of(host, site):
             if name.startswith("/"):
                 yield kind, name, site.path
+            elif name.startswith("~"):
+                continue  # below a node that the simulator names
             elif below is not None:
                 yield kind, _joined(below, name), site.path
 

@@ -77,7 +77,8 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
 
 def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
-        yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
+        if node.name:
+            yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
         for it in node.endpoints:
             if not it.off:
                 yield RuntimeName(it.kind, it.full, "plugin", node.number, it.parameter or it.name)

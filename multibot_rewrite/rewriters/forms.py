@@ -17,6 +17,8 @@ from multibot_rewrite.rosnames import split_remap
 Declared = Mapping[str, Mapping[str, Claim]]
 Kinds = tuple[str, ...]
 _WORD = re.compile(r"[^\s(),;\"]+")
+# Of a path through nested models, or a pattern; looking for names in it costs its length squared.
+LONGEST = 4096
 _OWNED = re.compile(r"::|/")
 # Not a letter of it means more than itself.
 _LITERAL = re.compile(r"[\w /:-]*")
@@ -210,6 +212,17 @@ def remap(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     return tuple(parts)
 
 
+def of_names(form: Form) -> Form:
+    """The form for values as long as names are; a longer one is one name, which nothing declares."""
+
+    def bounded(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+        if len(value) > LONGEST:
+            return tuple(it._replace(closed=True) for it in whole(value, kinds, declared))
+        return form(value, kinds, declared)
+
+    return bounded
+
+
 def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
     """Handled by code of its own (contact collisions)."""
     return ()
@@ -218,12 +231,12 @@ def nothing(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...
 FORMS: dict[str, Form] = {
     "whole": whole,
     "list": listed,
-    "scoped": scoped,
+    "scoped": of_names(scoped),
     "words": words,
-    "suffixed": suffixed,
-    "member": member,
+    "suffixed": of_names(suffixed),
+    "member": of_names(member),
     "transport": transport,
-    "regex": regex,
+    "regex": of_names(regex),
     "prefix": prefixed,
     "remap": remap,
     "argument": remap,

@@ -27,6 +27,7 @@ _HINTS = (
     ("not permitted", "a xacro file may compute, no more; give --trust if you trust it"),
     ("new thread", "a xacro file may compute, no more; give --trust if you trust it"),
     ("open files", "a xacro file may compute, no more; give --trust if you trust it"),
+    ("MemoryError", "does a macro call itself? it has 2 GiB, --trust lifts the limit"),
     ("Undefined substitution argument", "give it as {}:=VALUE"),
     ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),
     ("No such file", "check the path"),

@@ -25,7 +25,8 @@ _MODULE = "multibot_rewrite.sources.child.serve"
 _RUN = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {} import main; main()"
 # For the start of a process that is to answer within a time.
 SLACK_SECONDS = 5.0
-_KEPT_VARIABLES = ("LD_LIBRARY_PATH", "SYSTEMROOT")
+# The libraries of an installation; without the other, wheels of rclpy would start Python twice.
+_KEPT_VARIABLES = ("LD_LIBRARY_PATH", "_ROS_WHEELS_BOOTSTRAP_COMPLETE")
 
 
 class ServerGoneError(Exception):
@@ -46,6 +47,7 @@ class Server:
             process = subprocess.Popen(
                 command, stdin=theirs.fileno(), stdout=nothing, stderr=nothing, env=kept, cwd=os.sep
             )
+        self.pid = process.pid
         weakref.finalize(self, _close, self.control, process)
 
     def start(self, theirs: socket.socket) -> int:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import lru_cache
+from operator import sub
 from typing import NamedTuple
 
 from lxml import etree
@@ -20,6 +21,8 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Edit, InputError
 
+# No element of a robot has fifty.
+MAX_ATTRIBUTES = 1000
 # Entities are never resolved, nothing is loaded: the input may come from anywhere. (collect_ids
 # stays on: without it lxml makes libxml2 load external DTDs.) Blanks between elements are most of a
 # tree, and mean nothing.
@@ -70,6 +73,7 @@ def read_document(source: bytes, file: str) -> Document:
         raise InputError(_syntax_message(error, file)) from None
     document = Document(source, file, root, list(root.iter("*")), start_offsets(source))
     _refuse_tree(document)
+    _refuse_wide(document)
     return document
 
 
@@ -105,6 +109,22 @@ def _refuse_tree(document: Document) -> None:
         raise InputError(
             f"{file}: the encoding is {encoding}; convert it: iconv -f {encoding} -t UTF-8"
         )
+
+
+def _refuse_wide(document: Document) -> None:
+    """lxml looks through all attributes of an element for each of them."""
+    source, file, _, elements, starts = document
+    # ` a=""`
+    least = 5 * MAX_ATTRIBUTES
+    for at, length in enumerate(map(sub, (*starts[1:], len(source)), starts)):
+        if length <= least:
+            continue
+        start = starts[at]
+        count = len(elements[at].attrib) + source.count(b" xmlns:", start, tag_end(source, start))
+        if count > MAX_ATTRIBUTES:
+            line, column = locate(source, start)
+            what = f"an element has {count:,} attributes, over the limit of {MAX_ATTRIBUTES:,}"
+            raise InputError(f"{file}:{line}:{column}: {what}")
 
 
 def start_offsets(source: bytes) -> list[int]:

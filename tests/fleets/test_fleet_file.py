@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 import re
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import jsonschema
 import pytest
 import yaml
 from fleet_folder import fleet_folder
@@ -361,16 +363,47 @@ def test_the_schema_for_editors_lists_the_layouts() -> None:
     assert json.loads(text) == schema(), f'write "layout": {wanted} into {SCHEMA}'
 
 
+def test_the_jsonschema_of_ubuntu_22_04_will_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is 3.2.0, which has no Draft202012Validator."""
+    old = ModuleType("jsonschema")
+    old.__dict__.update(
+        Draft7Validator=jsonschema.Draft7Validator, exceptions=jsonschema.exceptions
+    )
+    monkeypatch.setitem(sys.modules, "jsonschema", old)
+    assert read(tmp_path, ONE).robots[0].name == "a"
+    with pytest.raises(InputError, match=r"fleet\.yaml:1: unknown key 'robot'; did you mean"):
+        read(tmp_path, "robot:\n  - {name: a}\n")
+
+
+def test_the_schema_says_nothing_that_an_older_draft_reads_differently() -> None:
+    """Beside $ref draft 7 ignores everything; the newer drafts have keywords of their own."""
+    newer = {"prefixItems", "unevaluatedItems", "unevaluatedProperties", "dependentSchemas"}
+    newer |= {"dependentRequired", "minContains", "maxContains", "$dynamicRef", "$anchor"}
+
+    def parts(value: object) -> Iterator[dict[str, Any]]:
+        if isinstance(value, dict):
+            yield value
+        for it in value.values() if isinstance(value, dict) else ():
+            yield from parts(it)
+        for it in value if isinstance(value, list) else ():
+            yield from parts(it)
+
+    for part in parts(schema()):
+        assert newer.isdisjoint(part)
+        assert "$ref" not in part or part.keys() <= {"$ref", "description"}
+
+
 def test_an_old_jsonschema_is_one_line(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Ubuntu 22.04 has 3.2.0, which has no Draft202012Validator."""
     monkeypatch.setitem(sys.modules, "jsonschema", ModuleType("jsonschema"))
     fleet = fleet_folder(tmp_path, ONE)
     assert main(["build", str(fleet), "-o", str(tmp_path / "out")]) == 2
     out, err = capsys.readouterr()
     assert err.startswith(
-        "multibot: jsonschema 4.0 or newer is needed to read a fleet file; install"
+        "multibot: jsonschema 3.2 or newer is needed to read a fleet file; install"
     )
     assert (out, err.count("\n")) == ("", 1)
     assert not (tmp_path / "out").exists()

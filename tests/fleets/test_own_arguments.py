@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pickle
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -12,6 +13,10 @@ from paths import FIXTURES
 
 from multibot_rewrite import InputError, load_fleet
 from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.rewritten_robots import read_jobs
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.sources import job
+from multibot_rewrite.sources.read import read_source
 
 XACROS = FIXTURES / "xacros"
 SRDF = """\
@@ -136,6 +141,23 @@ robots:
     assert [it.text for it in root.iter("namespace")] == ["fleet_b", "/fleet_b"]
     assert [it.code for it in (*made.findings, *made.made.findings)] == []
     assert [it.shared for robot in made.plan.robots for it in [robot.member]] == [(), ()]
+
+
+def test_a_further_robot_is_one_more_expansion(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[str] = []
+
+    def counted(source: str, args: Any, trust: bool) -> tuple[bytes, str]:
+        read.append(str(source))
+        return read_source(source, args, trust)
+
+    monkeypatch.setattr(job, "read_source", counted)
+    text = FLEET.replace("srdf: arm.srdf\n", "") + "arguments: {tf_prefix: '{robot}_'}\nrobots:\n"
+    robots = [f"  - {{name: r{at}, pose: {{y: {at}}}}}\n" for at in range(5)]
+    read_jobs(read_fleet(str(fleet(tmp_path, text + "".join(robots)))).robots, make_naming(), ())
+    # One for each robot, one for a robot of another name, one without the argument.
+    assert len(read) == 5 + 2
 
 
 def test_one_value_for_several_robots_is_refused(tmp_path: Path) -> None:

@@ -176,7 +176,7 @@ def test_a_file_without_an_end_is_too_large(file: str, reader: str, tmp_path: Pa
     given = file if file.startswith("/") else str(path)
     with pytest.raises(MultibotError) as caught:
         READ_TEXT[reader](given)
-    assert "it is larger than 16,777,216 bytes" in str(caught.value)
+    assert "it is over the limit of 16,777,216 bytes" in str(caught.value)
 
 
 def calls(file: Path) -> set[str]:

@@ -13,6 +13,7 @@ from case_files import Case, CaseError, load_cases
 from lxml import etree
 
 from multibot_rewrite import Rewrite, RewriteRefused, pipeline, rewrite, strip
+from multibot_rewrite.checks.meeting import SHARED_CODES, SHARED_LOOKUP
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import Site
@@ -91,7 +92,11 @@ def test_no_case_was_lost() -> None:
 def the_output_is_byte_exact(case: Case) -> None:
     result = run(case)
     assert result.data == case.output
-    assert places(result.findings) == sorted(case.finds)
+    # What stays the same, or holds a placeholder, is shared by all robots: tests/readback has these.
+    stays = case.expect == "same" or b"{robot}" in case.source
+    skipped = SHARED_CODES - {SHARED_LOOKUP} if stays else frozenset()
+    found = tuple(it for it in result.findings if it.code not in skipped)
+    assert places(found) == sorted(case.finds)
 
 
 @pytest.mark.parametrize("case", REFUSED, ids=lambda case: case.name)

@@ -30,9 +30,6 @@ GROWING: dict[str, Callable[[int], str]] = {
     "links in a chain": _chain,
     "mentions": lambda count: _links(count) + _each(count, "<gazebo><own>l#</own></gazebo>"),
     "mentions in one line": lambda count: GROWING["mentions"](count).replace("\n", " "),
-    "mentions in attributes of one element": lambda count: (
-        _links(count) + "<gazebo><own " + _each(count, 'a#="l#"') + "/></gazebo>"
-    ),
     "plugins with insertions": lambda count: (
         _ONE
         + _each(
@@ -69,7 +66,6 @@ GROWING: dict[str, Callable[[int], str]] = {
         _each(count, '<material name="n#"><color rgba="1 1 1 1"/></material>')
         + _each(count, f"{_MESH}</visual></link>")
     ),
-    "unknown attributes": lambda count: '<link name="base" ' + _each(count, 'a#="b"') + "/>",
     "remap rules": lambda count: (
         _ONE
         + '<gazebo><plugin name="x" filename="libgazebo_ros_diff_drive.so"><ros>'

@@ -131,7 +131,7 @@ def is_same(wrong: bytes, right: bytes) -> bool:
 
 
 def _said(text: bytes) -> list[tuple[str, list[tuple[str, str]], str]]:
-    root = etree.fromstring(text, etree.XMLParser(remove_comments=True))
+    root = etree.fromstring(text, etree.XMLParser(remove_comments=True, remove_pis=True))
     return [
         (it.tag, sorted(it.attrib.items()), " ".join(it.xpath("text()")).strip())
         for it in root.iter()

@@ -131,8 +131,9 @@ def _package_name(folder: str) -> str:
 def find_in(folder: str, path: str) -> str:
     """The path below a folder as it is written on the disk, whatever the case; empty if absent."""
     found: list[str] = []
+    here = folder
     for step in os.path.normpath(path).split(os.sep):
-        here = os.path.join(folder, *found)
+        here = os.path.join(here, *found[-1:])
         if step == os.pardir or step in entries(here):
             found.append(step)
             continue

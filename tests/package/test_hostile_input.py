@@ -1,0 +1,249 @@
+"""Input that was made to hurt ends, in one clear line, with the documented exit code; as processes,
+because that is where a hang, a crash or a traceback would show."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from graph_cases import healthy
+from paths import FIXTURES
+
+from multibot_rewrite.graph.snapshot import to_json
+
+pytestmark = pytest.mark.slow
+
+# More than any of these takes on a busy machine, and less than what had no end took.
+PATIENCE = 60
+MANY = 450_000
+LINT, POSTFIX, MULTIBOT = "urdf_lint", "urdf_postfix", "multibot"
+
+
+def robot(inner: str) -> str:
+    return f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{inner}</robot>'
+
+
+def joint(name: str) -> str:
+    ends = '<parent link="a"/><child link="b"/>'
+    return f'<link name="a"/><link name="b"/><joint name="{name}" type="fixed">{ends}</joint>'
+
+
+def pattern(text: str) -> str:
+    inner = f'<controller type="force"><joint>{text}</joint></controller>'
+    library = "libJointControlPlugin.so"
+    return f'<gazebo><plugin name="c" filename="{library}">{inner}</plugin></gazebo>'
+
+
+def fleet(more: str) -> str:
+    return f"{more}robots:\n  - {{name: robot1, description: good.urdf}}\n"
+
+
+GOOD = robot('<link name="a"/>')
+DIFF_DRIVE = "libgazebo_ros_diff_drive.so"
+SCOPES = "m::" * 100_000
+NAMESPACES = " ".join(f'xmlns:n{at}="u{at}"' for at in range(50_000))
+ATTRIBUTES = " ".join(f'x{at}="a"' for at in range(300_000))
+MESHES = "".join(
+    f'<link name="l{at}"><visual><geometry><mesh filename="{"../" * 500}x"/></geometry></visual></link>'
+    for at in range(200)
+)
+
+# File -> its text, the command, how it ends, words of its last line.
+CASES: dict[str, tuple[str | bytes, tuple[str, ...], int, str]] = {
+    "includes": ("<xacro:include " * (MANY // 15), (LINT, "in.urdf.xacro"), 1, "1 error"),
+    "includes-in-quotes": (
+        '<xacro:include filename="' * (MANY // 25),
+        (LINT, "in.urdf.xacro"),
+        1,
+        "1 error",
+    ),
+    "includes-unchanged": (
+        "<xacro:include 'a' " * (MANY // 15),
+        (LINT, "in.urdf.xacro", "good.urdf"),
+        1,
+        "2 files",
+    ),
+    "pattern": (
+        robot(joint("a" * 36) + pattern("(a+)+c")),
+        (POSTFIX, "in.urdf", "r1"),
+        0,
+        "1 joint",
+    ),
+    "brackets": (
+        robot(joint("a") + pattern("[" * 100_000)),
+        (POSTFIX, "in.urdf", "r1"),
+        0,
+        "1 joint",
+    ),
+    "attributes": (
+        robot(f'<link name="a" {ATTRIBUTES}/>'),
+        (POSTFIX, "in.urdf", "r1"),
+        2,
+        "an element has 300,001 attributes, over the limit of 1,000",
+    ),
+    "namespaces": (f"<robot {NAMESPACES}/>", (LINT, "in.urdf"), 1, "1 error"),
+    "scopes": (
+        '<sdf version="1.9"><model name="m"><link name="l"/><joint name="j" type="fixed">'
+        f"<parent>{SCOPES}l</parent><child>l</child></joint></model></sdf>",
+        (POSTFIX, "in.sdf", "r1"),
+        0,
+        "1 joint",
+    ),
+    "long-values": (
+        robot(
+            f'<link name="a"/><gazebo><plugin name="p" filename="{DIFF_DRIVE}">'
+            f"<left_joint>{'a,' * 100_000}</left_joint></plugin></gazebo>"
+        ),
+        (POSTFIX, "in.urdf", "r1"),
+        0,
+        "1 link",
+    ),
+    "paths": (robot(MESHES), (LINT, "in.urdf"), 1, "1 file"),
+    "deep-elements": (
+        robot("<a>" * 100_000 + "</a>" * 100_000),
+        (LINT, "in.urdf"),
+        1,
+        "1 error",
+    ),
+    "null-bytes": (b"\0" * MANY, (POSTFIX, "in.urdf", "r1"), 2, "the file holds no XML"),
+    "two-marks": (
+        b"\xef\xbb\xbf" * 2 + GOOD.encode(),
+        (POSTFIX, "in.urdf", "r1"),
+        2,
+        "the file is not XML",
+    ),
+    "half-a-character": (
+        GOOD.replace("a", "&#xd800;", 1),
+        (POSTFIX, "in.urdf", "r1"),
+        2,
+        "correct the XML",
+    ),
+    "deep-fleet": ("[" * 100_000, (MULTIBOT, "build", "in.yaml", "-o", "out"), 2, "nested deeper"),
+    "deep-plan": (
+        "- " * 50_000 + "a",
+        (MULTIBOT, "check", "in.yaml", "--snapshot", "good.urdf"),
+        2,
+        "nested deeper",
+    ),
+    "deep-snapshot": (
+        "[" * 100_000,
+        (MULTIBOT, "learn", "--snapshot", "in.json"),
+        2,
+        "nested deeper",
+    ),
+    "large-snapshot": (b"", (MULTIBOT, "learn", "--snapshot", "/dev/zero"), 2, "over the limit of"),
+    "endless-vocabulary": (
+        b"",
+        (POSTFIX, "good.urdf", "r1", "--vocabulary", "/dev/zero"),
+        2,
+        "it is over the limit of",
+    ),
+    "endless-nodes": (
+        b"",
+        (MULTIBOT, "remap", "good.urdf", "r1", "--stack", "nav2", "--nodes", "/dev/zero"),
+        2,
+        "it is over the limit of",
+    ),
+    "bomb-of-nodes": (
+        "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n"
+        + "".join(f"a{at}: &a{at} [{', '.join([f'*a{at - 1}'] * 10)}]\n" for at in range(1, 10)),
+        (MULTIBOT, "remap", "good.urdf", "r1", "--stack", "nav2", "--nodes", "in.yaml"),
+        2,
+        "the aliases stand for more than",
+    ),
+    "digits": (
+        fleet("").replace("}", f", pose: {{x: {'9' * 5_000}}}}}"),
+        (MULTIBOT, "build", "in.yaml", "-o", "out"),
+        2,
+        "a number of 5,000 characters",
+    ),
+    "no-nodes": (
+        fleet("nodes: good.urdf\n"),
+        (MULTIBOT, "build", "in.yaml", "-o", "out"),
+        2,
+        "in.yaml:1: good.urdf:",
+    ),
+    "lua-like-xml": (
+        "<<: 1\n",
+        (MULTIBOT, "build", "fleet.yaml", "-o", "out"),
+        0,
+        "1 robot",
+    ),
+    "dotted-keys": (
+        f"a{'.a' * 100_000} = 1\n",
+        (LINT, "good.urdf", "--config", "in.toml"),
+        2,
+        "a line with more than 1000 dots",
+    ),
+    "deep-settings": (
+        f"a = {'[' * 100_000}\n",
+        (LINT, "good.urdf", "--config", "in.toml"),
+        2,
+        "TOML that cannot be read",
+    ),
+}
+ENDINGS = (".urdf.xacro", ".urdf", ".sdf", ".yaml", ".json", ".toml")
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_it_ends_with_one_clear_line(name: str, tmp_path: Path) -> None:
+    text, (program, *words), code, said = CASES[name]
+    (tmp_path / "good.urdf").write_text(GOOD)
+    (tmp_path / "fleet.yaml").write_text(fleet("companions: {lua: in.yaml}\n"))
+    for ending in ENDINGS:
+        data = text if isinstance(text, bytes) else text.encode()
+        (tmp_path / f"in{ending}").write_bytes(data)
+    command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *words]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=PATIENCE, check=False)
+    lines = run.stderr.decode().splitlines()
+    assert (run.returncode, "Traceback" in run.stderr.decode()) == (code, False), lines[-1:]
+    assert said in lines[-1]
+    # A value that a message repeats may be a whole file.
+    assert max(map(len, lines)) < 1_200
+    assert code != 2 or len(lines) == 1
+
+
+@pytest.mark.parametrize("program", [POSTFIX, LINT])
+def test_standard_input_without_an_end(program: str, tmp_path: Path) -> None:
+    words = ["-", "robot1"] if program == POSTFIX else ["-"]
+    command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *words]
+    with open("/dev/zero", "rb") as endless:
+        run = subprocess.run(
+            command, stdin=endless, capture_output=True, timeout=PATIENCE, check=False
+        )
+    assert run.returncode in (1, 2)
+    assert "it is over the limit of 16,777,216 bytes" in (run.stderr + run.stdout).decode()
+
+
+def test_links_in_a_circle_pipes_and_folders_are_told_or_left_out(tmp_path: Path) -> None:
+    (tmp_path / "good.urdf").write_text(GOOD)
+    os.mkfifo(tmp_path / "pipe.urdf")
+    os.symlink("loop.urdf", tmp_path / "loop.urdf")
+    os.symlink("..", tmp_path / "above")
+    os.symlink("/dev/zero", tmp_path / "zero.urdf")
+    (tmp_path / "folder.urdf").mkdir()
+    command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_lint", "."]
+    run = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=PATIENCE, check=False)
+    assert run.returncode == 1
+    found = {line.partition(":")[0] for line in run.stdout.decode().splitlines()}
+    assert {Path(it).name for it in found} >= {"loop.urdf"}
+    assert b"Traceback" not in run.stderr
+
+
+def test_a_plan_and_a_snapshot_may_be_as_large_as_a_fleet(tmp_path: Path) -> None:
+    """Both hold some ten kB a robot; what is added here is what their readers skip."""
+    room = 17 * 2**20
+    plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
+    plan.write_text((FIXTURES / "graphs" / "plan.yaml").read_text() + f"#{'x' * room}\n")
+    graph.write_bytes(to_json(healthy("frames-per-robot")) + b" " * room)
+    command = [sys.executable, "-m", "multibot_rewrite.cli.multibot", "check", str(plan)]
+    run = subprocess.run(
+        [*command, "--snapshot", str(graph)], capture_output=True, timeout=PATIENCE, check=False
+    )
+    assert (run.returncode, run.stderr.decode()) == (
+        0,
+        "multibot: 2 robots, 0 findings: as planned\n",
+    )
