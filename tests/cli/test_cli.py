@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 from lxml import etree
-from paths import ROBOTS
+from paths import FIXTURES, ROBOTS
 from postfix_command import (
     COMMAND,
     PATIENCE,
@@ -227,6 +227,7 @@ def test_the_examples_of_the_help_work(folder: Path) -> None:
     lines = [line for line in text.splitlines() if re.match("  (urdf-postfix|cat) ", line)]
     assert len(lines) >= 6
     (folder / "out").mkdir()
+    shutil.copytree(FIXTURES / "xacros", folder, dirs_exist_ok=True)
     shim = folder / "urdf-postfix"
     shim.write_text(f'#!/bin/sh\nexec {" ".join(COMMAND)} "$@"\n')
     shim.chmod(0o755)
@@ -237,7 +238,8 @@ def test_the_examples_of_the_help_work(folder: Path) -> None:
             ["sh", "-c", command], cwd=folder, env=path, capture_output=True, check=False
         )
         assert done.returncode == 0, (command, done.stderr)
-    assert sorted(contents(folder / "out")) == ["robot1.urdf", "robot2.urdf"]
+    names = ["left.urdf", "right.urdf", "robot1.urdf", "robot2.urdf"]
+    assert sorted(contents(folder / "out")) == names
 
 
 def test_a_vocabulary_file_teaches_a_plugin(folder: Path) -> None:

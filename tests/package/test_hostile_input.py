@@ -219,14 +219,17 @@ def test_standard_input_without_an_end(program: str, tmp_path: Path) -> None:
 
 
 def test_links_in_a_circle_pipes_and_folders_are_told_or_left_out(tmp_path: Path) -> None:
-    (tmp_path / "good.urdf").write_text(GOOD)
-    os.mkfifo(tmp_path / "pipe.urdf")
-    os.symlink("loop.urdf", tmp_path / "loop.urdf")
-    os.symlink("..", tmp_path / "above")
-    os.symlink("/dev/zero", tmp_path / "zero.urdf")
-    (tmp_path / "folder.urdf").mkdir()
+    # Beside it are the folders of all other tests.
+    here = tmp_path / "here"
+    here.mkdir()
+    (here / "good.urdf").write_text(GOOD)
+    os.mkfifo(here / "pipe.urdf")
+    os.symlink("loop.urdf", here / "loop.urdf")
+    os.symlink("..", here / "above")
+    os.symlink("/dev/zero", here / "zero.urdf")
+    (here / "folder.urdf").mkdir()
     command = [sys.executable, "-m", "multibot_rewrite.cli.urdf_lint", "."]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=PATIENCE, check=False)
+    run = subprocess.run(command, cwd=here, capture_output=True, timeout=PATIENCE, check=False)
     assert run.returncode == 1
     found = {line.partition(":")[0] for line in run.stdout.decode().splitlines()}
     assert {Path(it).name for it in found} >= {"loop.urdf"}
