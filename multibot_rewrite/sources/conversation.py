@@ -32,7 +32,7 @@ from multibot_rewrite.sources.child.frames import (
     framed,
     received,
 )
-from multibot_rewrite.sources.processes import Child, child
+from multibot_rewrite.sources.processes import XacroChild, child
 
 # What a child may ask, and read in all.
 MOST_QUESTIONS, MOST_READ = 20_000, 16 * MAX_BYTES
@@ -116,7 +116,7 @@ def converse(arguments: Mapping[str, str], sources: Sources, traced: bool) -> Re
             raise InputError(f"{access.path}: xacro failed: {said}") from None
 
 
-def _answered(it: Child, sources: Sources) -> bytes:
+def _answered(it: XacroChild, sources: Sources) -> bytes:
     """Answer questions until there is a report."""
     for _ in range(MOST_QUESTIONS):
         kind, data = received(it.read, LONGEST)
@@ -150,7 +150,7 @@ def _answer(data: bytes, sources: Sources) -> bytes:
     return framed(REFUSAL, json.dumps(said).encode())
 
 
-def _result(it: Child, data: bytes) -> Result:
+def _result(it: XacroChild, data: bytes) -> Result:
     """The rest of what a child tells; raises what converse catches."""
     report = load_json(data)
     if "missing" in report:
@@ -171,7 +171,7 @@ def _result(it: Child, data: bytes) -> Result:
     )
 
 
-def _expected(it: Child, kind: bytes) -> bytes:
+def _expected(it: XacroChild, kind: bytes) -> bytes:
     return received(it.read, {kind: LONGEST[kind]})[1]
 
 

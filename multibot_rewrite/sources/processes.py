@@ -74,7 +74,7 @@ class Server:
         return int(REPLY.unpack(answer)[0])
 
 
-class Child:
+class XacroChild:
     """A process that expands one file, and the socket that leads to it."""
 
     def __init__(self, server: Server, pid: int, ours: socket.socket, deadline: float) -> None:
@@ -114,12 +114,12 @@ class Child:
 
 
 @contextmanager
-def child(seconds: float) -> Iterator[Child]:
+def child(seconds: float) -> Iterator[XacroChild]:
     """A child that has that long; it has ended when the block has. Raises InputError."""
     ours, theirs = socket.socketpair()
     with theirs:
         server, pid = _started(theirs)
-    found = Child(server, pid, ours, monotonic() + seconds + SLACK_SECONDS)
+    found = XacroChild(server, pid, ours, monotonic() + seconds + SLACK_SECONDS)
     try:
         yield found
     finally:
