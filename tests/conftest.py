@@ -26,16 +26,10 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``.
-
-    With ``-n 2`` the tests of a file stay together, for its fixtures, and so do all live ones: they
-    wait more than they work, and two of them would disturb each other.
-    """
+    """What is deep is slow: ``-m "not slow"`` takes the place of the usual ``-m "not deep"``."""
     for item in items:
         if item.get_closest_marker("deep"):
             item.add_marker("slow")
-        group = "live" if item.get_closest_marker("live") else item.nodeid.partition("::")[0]
-        item.add_marker(pytest.mark.xdist_group(group))
 
 
 @pytest.fixture(scope="session")
