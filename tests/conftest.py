@@ -32,6 +32,24 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("slow")
 
 
+# Files whose tests start nodes.
+LIVE_FILES = ("test_live_", "rcl", "test_docs", "test_examples", "test_recipes", "test_scripts")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
+    """With ``-n 2`` the tests of a file stay together, and all files with nodes: two of them at once
+    would meet in a domain."""
+    from xdist.scheduler import LoadFileScheduling
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            file = nodeid.partition("::")[0]
+            return "live" if any(word in file for word in LIVE_FILES) else file
+
+    return Scheduling(config, log)
+
+
 @pytest.fixture(scope="session")
 def corpus() -> dict[str, Path]:
     """The real files beside the repository, by their relative path."""
