@@ -65,7 +65,7 @@ is in the figures: it is a seventh of a thousand robots in memory (tmpfs).
   are the rest.
 - **{FLEET} robots in memory.** A robot is one `bytes.join`, which copies as fast as memory allows
   and takes some 4 ns for each place of the robot's name, and there is one in less than 200 bytes.
-  Other ways (`replace` of a placeholder, `str.join`, `translate`) measured no faster.
+  Other ways (`replace` of a placeholder, `str.join`) measured no faster.
 
 The proof reads and walks the output anew, so it costs more than the rewrite. It is not optional.
 """
