@@ -37,6 +37,7 @@ def test_a_fifth_layout_rewrites(word: str, tmp_path: Path) -> None:
     assert python(FIFTH.replace('"bare"', '"bear"'), *arguments[:-1], "bare").returncode == 2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", ["bare", "L5"])
 def test_a_fifth_layout_builds(word: str, tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(SMALL)

@@ -73,6 +73,7 @@ def test_a_wrong_text_of_a_case_is_refused(case: Case) -> None:
     assert proved_texts(template(case), case.name, 3) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", SOME, ids=lambda case: case.name)
 def test_a_wrong_plan_of_a_case_is_refused(case: Case) -> None:
     assert proved_plans(template(case)) == []

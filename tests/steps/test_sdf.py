@@ -157,6 +157,7 @@ def outcome(data: bytes, options: Options) -> refusal_reasons.Outcome:
     return refusal_reasons.Outcome("", "; ".join(wrong))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("options", OPTIONS, ids=str)
 def test_every_model_is_rewritten_or_refused(models: dict[str, Path], options: Options) -> None:
     found = {name: outcome(path.read_bytes(), options) for name, path in models.items()}

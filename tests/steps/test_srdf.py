@@ -222,6 +222,7 @@ def judge(pairs: dict[str, Pair], options: Options) -> None:
     assert not wrong, f"{len(wrong)} of {len(pairs)} files:\n" + "\n".join(wrong[:20])
 
 
+@pytest.mark.slow
 def test_every_srdf_follows_its_urdf(pairs: dict[str, Pair]) -> None:
     judge(pairs, {})
     assert len(pairs) >= LEAST_FILES
