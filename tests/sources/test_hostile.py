@@ -8,6 +8,7 @@ import shutil
 import socket
 import subprocess
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -175,9 +176,7 @@ def scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Scene]:
 
 def listening(name: str) -> list[socket.socket]:
     """Sockets of TCP, UDP on the same port, and an abstract one."""
-    tcp, udp = socket.socket(), socket.socket(type=socket.SOCK_DGRAM)
-    tcp.bind(("127.0.0.1", 0))
-    udp.bind(tcp.getsockname())
+    tcp, udp = one_port()
     abstract = socket.socket(socket.AF_UNIX)
     abstract.bind(f"\0{name}")
     for it in (tcp, abstract):
@@ -185,6 +184,19 @@ def listening(name: str) -> list[socket.socket]:
     for it in (tcp, udp, abstract):
         it.setblocking(False)
     return [tcp, udp, abstract]
+
+
+def one_port() -> tuple[socket.socket, socket.socket]:
+    """A socket of TCP and one of UDP on the same port; nodes of other tests may have the second."""
+    for _ in range(50):
+        tcp, udp = socket.socket(), socket.socket(type=socket.SOCK_DGRAM)
+        tcp.bind(("127.0.0.1", 0))
+        with suppress(OSError):
+            udp.bind(tcp.getsockname())
+            return tcp, udp
+        tcp.close()
+        udp.close()
+    raise AssertionError("no port is free for both")
 
 
 def check_nothing_told(said: str) -> None:
