@@ -85,7 +85,7 @@ def node_of(
     namespace = "/" + ("" if home is None else child_text(home, "namespace") or "").strip("/")
     rules = tuple(() if home is None else _rules(home))
     bound = _bound(name, namespace, [it.rule for it in rules])
-    frames = tuple(_frames(plugin, section))
+    frames = tuple(frames_of(plugin, section))
     return ReadNode(
         section,
         number,
@@ -173,7 +173,8 @@ def _holds_topic(site: Site) -> bool:
     return whole and site.kinds[0] in TOPIC_KINDS and "qos" not in site.path
 
 
-def _frames(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+def frames_of(plugin: _Element, section: VocabularySection) -> Iterator[tuple[str, str]]:
+    """The frames in its parameters, each with the parameter."""
     for site in section.sites:
         if site.form == "whole" and site.kinds[:1] == ("frame",):
             for value in values_of(plugin, site):

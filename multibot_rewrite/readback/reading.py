@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
-from multibot_rewrite.readback.nodes import TOPIC, ReadNode, node_of, resolved
+from multibot_rewrite.readback.nodes import TOPIC, ReadNode, frames_of, node_of, resolved
 from multibot_rewrite.readback.parameters import values_of
 from multibot_rewrite.readback.sections import hardware_section, plugin_section, sensor_sections
 from multibot_rewrite.readback.xml import read_xml
 from multibot_rewrite.rewriters.vocabulary import Vocabulary, VocabularySection
 
-NODE, FRAME, NAMESPACE = "node", "frame", "namespace"
+NODE, FRAME = "node", "frame"
 # Elements besides plugins and sensors that have a topic, by what holds it.
 WITH_TOPICS = (
     ("gazebo", "particle_emitter"),
@@ -137,10 +137,8 @@ def _topics(
 
 
 def _frames(host: _Host, tag: str) -> Iterator[RuntimeName]:
-    for site in host.section.sites:
-        if site.role != "keep" and site.form == "whole" and site.kinds[0] == FRAME:
-            for value in values_of(host.element, site):
-                yield RuntimeName(FRAME, value, tag, host.number, site.path)
+    for path, value in frames_of(host.element, host.section):
+        yield RuntimeName(FRAME, value, tag, host.number, path)
 
 
 def _lookups(root: _Element, host: _Host, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
