@@ -57,8 +57,8 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
     hosts: list[_Host] = []
     unknown: list[tuple[int, str]] = []
     for number, plugin in enumerate(root.iter("plugin")):
-        # The class of a ros2_control system, not a plugin of the simulator.
-        if not plugin.attrib:
+        # The class of a ros2_control system, or a plugin of Webots: none of Gazebo's.
+        if "filename" not in plugin.attrib and "name" not in plugin.attrib:
             continue
         section, known = plugin_section(plugin, vocabulary)
         if not known:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite import rewrite_all
+from multibot_rewrite import rewrite, rewrite_all
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet import make_fleet
@@ -18,6 +18,8 @@ from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import MultibotError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.readback.reading import read
+from multibot_rewrite.rewriters.builtin import builtin_tree
 
 pytestmark = pytest.mark.slow
 
@@ -75,3 +77,19 @@ def test_five_judges_agree(corpus: dict[str, Path], tmp_path: Path) -> None:
 @pytest.mark.deep
 def test_five_judges_agree_about_every_file(corpus: dict[str, Path], tmp_path: Path) -> None:
     assert disagreements(corpus.values(), tmp_path) == {}
+
+
+def test_both_readings_know_the_same_plugins(corpus: dict[str, Path]) -> None:
+    vocabulary = builtin_tree().vocabulary
+    wrong = {}
+    for name, path in corpus.items():
+        data = path.read_bytes()
+        try:
+            findings = rewrite(data, "robot_7q").findings if b"<plugin" in data else ()
+        except MultibotError:
+            continue
+        first = sum(it.code == "MB902" for it in findings)
+        second = len(read(data, name, vocabulary).unknown) if b"<plugin" in data else 0
+        if first != second:
+            wrong[name] = first, second
+    assert wrong == {}
