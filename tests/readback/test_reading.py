@@ -194,3 +194,21 @@ def test_a_particle_emitter_has_a_topic() -> None:
     emitter = "<particle_emitter name='e'><topic>/smoke</topic></particle_emitter>"
     assert names(f"<gazebo reference='base'>{emitter}</gazebo>") == ["/smoke"]
     assert names("<gazebo reference='base'/>") == []
+
+
+# rcl arguments.c: rules follow -r or --remap between --ros-args and --; node.cpp puts <argument> first.
+@pytest.mark.parametrize(
+    ("arguments", "topic"),
+    [
+        (("--ros-args", "-r", "cmd_vel:=b"), "/b"),
+        (("--ros-args", "--remap", "cmd_vel:=b"), "/b"),
+        (("--ros-args", "--", "--ros-args", "-r", "cmd_vel:=b"), "/b"),
+        (("cmd_vel:=b",), "/cmd_vel"),
+        (("-r", "cmd_vel:=b"), "/cmd_vel"),
+        (("--ros-args", "cmd_vel:=b"), "/cmd_vel"),
+        (("--ros-args", "--", "-r", "cmd_vel:=b"), "/cmd_vel"),
+    ],
+)
+def test_rules_in_arguments(arguments: tuple[str, ...], topic: str) -> None:
+    inside = "".join(f"<argument>{it}</argument>" for it in arguments)
+    assert topic in names(plugin("libgazebo_ros_diff_drive.so", f"<ros>{inside}</ros>"))

@@ -104,3 +104,10 @@ def test_two_robots_that_meet_in_what_was_inserted_are_refused() -> None:
     assert "left_b and b would both have the topic '/odom_left_b'" in finding.message
     assert len(list(rewrite_all(OVERLAP, ["left_b", "c"], separators={"topic": "_"}))) == 2
     assert len(list(rewrite_all(OVERLAP, ["left_b", "b"]))) == 2
+
+
+def test_what_all_robots_share_is_no_refusal_of_two() -> None:
+    """It is a warning however the robots are called."""
+    text = LIDAR.format("{name}/scan")
+    first, second = rewrite_all(text, ["left_b", "b"], separators={"topic": "_"})
+    assert first.not_proved == second.not_proved == ("1 topic shared by all robots",)
