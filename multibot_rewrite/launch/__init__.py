@@ -2,9 +2,7 @@
 
 ``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values
 that are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers
-it to XML and YAML launch files. The only module that imports launch and launch_ros, when needed.
-
-A robot or fleet that is not given is that of the enclosing group (``each_robot``). Files for nodes are
+it to XML and YAML launch files. The only module that imports launch and launch_ros, when needed. A robot or fleet that is not given is that of the enclosing group (``each_robot``). Files for nodes are
 in a folder that is removed at the end of the launch. Source: launch, launch_ros jazzy.
 """
 
@@ -31,10 +29,8 @@ Action = Any
 Context = Any
 Substitution = Any
 Make = Callable[[LoadedRobot], Iterable[Action]]
-# The launch configurations that hold the fleet and the robot of a group.
-FLEET, ROBOT = "multibot_fleet", "multibot_robot"
-# The launch configuration that lets xacro files do anything: "true".
-TRUST = "multibot_trust"
+# Launch configurations: fleet and robot of a group; whether xacro files may do anything ("true").
+FLEET, ROBOT, TRUST = "multibot_fleet", "multibot_robot", "multibot_trust"
 # What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
 _FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
 FILE = "file"

@@ -56,7 +56,7 @@ def expand(path: str, arguments: Mapping[str, str], traced: bool, ask: Ask) -> E
         text = document.toprettyxml(indent="  ").encode()
         origins = marks.origins(document) if traced else origins
         _check_length(text)
-    except Exception as error:
+    except Exception as error:  # an expression of the file may raise anything
         failed = _failure(error, (xacro.filestack or [path])[-1], marks)
     report = {"notes": notes.getvalue()[:MOST_NOTES], "files": marks.files, "macros": marks.macros}
     result = {"error": failed} if failed else {"root": root}
