@@ -2,7 +2,8 @@
 
 ``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values
 that are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers
-it to XML and YAML launch files. The only module that imports launch and launch_ros, when needed. A robot or fleet that is not given is that of the enclosing group (``each_robot``). Files for nodes are
+it to XML and YAML launch files. The only module that imports launch and launch_ros, when needed.
+A robot or fleet that is not given is that of the enclosing group (``each_robot``). Files for nodes are
 in a folder that is removed at the end of the launch. Source: launch, launch_ros jazzy.
 """
 
