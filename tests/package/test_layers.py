@@ -21,8 +21,18 @@ from multibot_rewrite.findings import finding
 PACKAGE = Path(multibot_rewrite.__file__).parent
 # The order of the floors: a module imports from floors below its own, or from its own folder.
 FLOORS = (
-    ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
-    ("findings", "rosnames", "naming", "config", "arguments"),
+    (
+        "bounded",
+        "gc_pause",
+        "lazy",
+        "model",
+        "nearest",
+        "plural",
+        "printable",
+        "releases",
+        "version",
+    ),
+    ("findings", "rosnames", "naming", "config", "arguments", "releases"),
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),

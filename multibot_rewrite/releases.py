@@ -1,0 +1,75 @@
+"""ROS 2 releases: which are known, which one is meant, and which of them have a fact.
+
+Release words are terms with commas between: ``jazzy``, ``kilted+`` (it and all later), ``<=jazzy``
+(it and all earlier), ``jazzy 1.3.9+`` (jazzy since that version of the fact's package).
+Sources: REP 2000; https://docs.ros.org/en/rolling/Releases.html.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.nearest import did_you_mean_one_of
+
+RELEASES = ("humble", "jazzy", "kilted", "lyrical", "rolling")
+NEWEST_LTS = "lyrical"
+VARIABLE = "ROS_DISTRO"
+_TERM = re.compile(r"(?P<until><=)?(?P<release>[a-z]+)(?: (?P<version>[0-9][0-9.]*))?(?P<on>\+)?")
+
+
+def chosen_release(given: str, environment: Mapping[str, str]) -> str:
+    """The release that is asked for, else that of ROS_DISTRO, else the newest LTS.
+
+    Raises UsageError for a release that is not known.
+    """
+    found = given or environment.get(VARIABLE, "") or NEWEST_LTS
+    if found in RELEASES:
+        return found
+    where = "" if given else f" (in {VARIABLE})"
+    hint = did_you_mean_one_of(found, RELEASES)
+    known = f"known are {', '.join(RELEASES)}"
+    raise UsageError(f"release {found!r}{where} is not known; {hint or known}")
+
+
+def has_release(words: str, release: str) -> bool:
+    """Does a fact with these release words hold in ``release``? No words stand for all releases."""
+    return not words or any(_holds(it, release) for it in _terms(words))
+
+
+def since_version(words: str, release: str) -> str:
+    """The version of its package with which a fact came into ``release``; "" if it always had it."""
+    found = [it["version"] or "" for it in _terms(words) if _holds(it, release)]
+    return min(found, default="")
+
+
+def is_release_words(words: str) -> bool:
+    """Are these release words? See above."""
+    try:
+        found = list(_terms(words))
+    except UsageError:
+        return False
+    return bool(found) and all(_is_term(it) for it in found)
+
+
+def _is_term(term: re.Match[str]) -> bool:
+    """``<=`` and ``+`` exclude each other; a version is always ``VERSION+``."""
+    if term["release"] not in RELEASES or (term["until"] and term["on"]):
+        return False
+    return not term["version"] or bool(term["on"])
+
+
+def _terms(words: str) -> Iterator[re.Match[str]]:
+    for term in words.split(","):
+        found = _TERM.fullmatch(term.strip())
+        if found is None:
+            raise UsageError(f"{words!r} names no releases; write jazzy, kilted+ or <=jazzy")
+        yield found
+
+
+def _holds(term: re.Match[str], release: str) -> bool:
+    at, bound = RELEASES.index(release), RELEASES.index(term["release"])
+    if term["until"]:
+        return at <= bound
+    return at >= bound if term["on"] and not term["version"] else at == bound
