@@ -27,7 +27,7 @@ ID = "<id>"
 _UNKNOWN = re.compile(r"<([^<>]*)>")
 # What declares or asks for a parameter; those below put the plugin's name before the parameter's.
 _DECLARES = re.compile(r"(auto_)?declare\w*|searchAndGetParam|get_parameter_or|getParam|declareParam")
-_READS = re.compile(r"get_parameter|has_parameter|getParam\w*")
+_READS = re.compile(r"get_parameter|has_parameter|getParam\w*|lookupParam")
 _PREFIXING = ("declareParameter", "getParam", "declareParam")
 _NAME = re.compile(rf"(?:{ID}|\w)(?:[\w.]|{ID})*")
 _NUMBER = re.compile(r"-?\d+(\.\d*)?f?|-?\.\d+|-?\d+\.?\d*e-?\d+")
@@ -94,7 +94,7 @@ def _name_and_default(call: Call, known: Mapping[str, str]) -> tuple[str, _Defau
     if at is None:
         return "", _NONE
     name = _path(given[at], known)
-    if call.name in _PREFIXING and not name.startswith(ID):
+    if call.name in _PREFIXING:
         name = f"{ID}.{name}"
     rest = given[at + 1 :]
     if call.name == "get_parameter_or":

@@ -9,14 +9,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.interfaces.parameter_facts import EMPTY, NO_DEFAULT, ParameterFact
+from multibot_rewrite.interfaces.parameter_facts import EMPTY, NO_DEFAULT, YAML, ParameterFact
 from multibot_rewrite.releases import has_release
 
+ID = "<id>"
+# What a node puts before the names of a YAML file's parameters.
+_PREFIX = "<prefix>"
 MISSING, DEFAULT, UNKNOWN = "missing", "default", "unknown"
 _STRINGS = ("string", "string_array", "")
 _WORDS = frozenset(
@@ -90,8 +94,8 @@ def differences(
     ours = tuple(ours)
     by_package: dict[str, dict[str, list[ParameterFact]]] = {}
     for fact in facts:
-        path = _full(fact, known)
-        by_package.setdefault(fact.package, {}).setdefault(path, []).append(fact)
+        for path in _full(fact, known):
+            by_package.setdefault(fact.package, {}).setdefault(path, []).append(fact)
     for row in ours:
         there = [by_package[it] for it in row.packages if it in by_package]
         if row.packages[0] in by_package and row.kind != "keep":
@@ -101,19 +105,21 @@ def differences(
         yield from _unknown(package, paths, claimed.get(package, ()), release)
 
 
-def _full(fact: ParameterFact, known: Owners) -> str:
-    """The path on the node: in some packages the first ``<id>`` is a fixed word, or it is left out."""
+def _full(fact: ParameterFact, known: Owners) -> tuple[str, ...]:
+    """The paths on the node that it may have. In some packages the first ``<id>`` is a fixed word, or
+    is left out; what a YAML file has may be below a prefix."""
     above = known.below.get(fact.package, "")
     if not above or fact.path.startswith(f"{above}."):
-        return fact.path
-    return f"{above}.{fact.path.removeprefix('<id>.')}"
+        return (fact.path, f"{_PREFIX}.{fact.path}") if fact.how == YAML else (fact.path,)
+    return (f"{above}.{fact.path.removeprefix(f'{ID}.')}",)
 
 
 def _of_row(
     row: OurParameter, there: Sequence[Mapping[str, list[ParameterFact]]], release: str
 ) -> Iterator[Difference]:
-    matches = pattern(row.path).fullmatch
-    found = [fact for paths in there for path, it in paths.items() if matches(path) for fact in it]
+    found = [
+        fact for paths in there for path, it in paths.items() if same(row.path, path) for fact in it
+    ]
     if not has_release(row.releases, release):
         return
     if not found:
@@ -129,6 +135,17 @@ def _default(row: OurParameter) -> str:
     return row.default or EMPTY
 
 
+def same(ours: str, theirs: str) -> bool:
+    """May both paths be one parameter? ``<id>`` of a source may stand for several segments."""
+    if pattern(ours).fullmatch(theirs):
+        return True
+    if ID not in theirs:
+        return False
+    words = (re.escape(it) for it in theirs.split(ID))
+    return bool(re.fullmatch(r"[\w<>.]+".join(words), ours))
+
+
+@lru_cache(4096)
 def pattern(path: str) -> re.Pattern[str]:
     """An expression for the paths of sources that a path of ours stands for."""
     words = re.split(r"(<index>|<\w+>|\*)", path)
@@ -139,23 +156,24 @@ def pattern(path: str) -> re.Pattern[str]:
     return re.compile("".join(texts))
 
 
-def _claimed(ours: Iterable[OurParameter]) -> dict[str, list[re.Pattern[str]]]:
-    found: dict[str, list[re.Pattern[str]]] = {}
+def _claimed(ours: Iterable[OurParameter]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
     for row in ours:
         for package in row.packages:
-            found.setdefault(package, []).append(pattern(row.path))
+            found.setdefault(package, []).append(row.path)
     return found
 
 
 def _unknown(
     package: str,
     paths: Mapping[str, list[ParameterFact]],
-    claimed: Sequence[re.Pattern[str]],
+    claimed: Sequence[str],
     release: str,
 ) -> Iterator[Difference]:
+    known = {fact for path, it in paths.items() for fact in it if any(same(own, path) for own in claimed)}
     for path, found in paths.items():
-        fact = next((it for it in found if looks_like_a_name(it)), None)
-        if fact and not any(it.fullmatch(path) for it in claimed):
+        fact = next((it for it in found if looks_like_a_name(it) and it not in known), None)
+        if fact and not (fact.how == YAML and path.startswith(f"{_PREFIX}.")):
             words = f"{fact.type or 'untyped'} {fact.default} in {fact.place.path}".replace("  ", " ")
             yield Difference(UNKNOWN, package, path, release, words)
 
