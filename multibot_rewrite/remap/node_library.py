@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.conditions import parse_condition
 from multibot_rewrite.remap.records import (
     ACTION,
     PUBLISHES,
@@ -17,6 +18,7 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     FrameParameter,
     NodeFacts,
+    SentTransform,
 )
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
@@ -34,9 +36,10 @@ from multibot_rewrite.remap.yaml_with_lines import (
 )
 from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
 
-NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "sends", "fixed", *ROLES)
+NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "sends", "ids", "fixed", *ROLES)
+SENT_KEYS = ("child", "if")
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
-ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
+ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", "if")
 STACK_KEYS = ("about", "include", "nodes")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps")
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
@@ -142,18 +145,35 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
     )
 
 
 def _sends(
     keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
-) -> Iterator[tuple[str, str]]:
+) -> Iterator[SentTransform]:
     """The transforms that a node publishes, as the parameters that hold their frames."""
     known = {frame.parameter: frame.parameter for frame in frames}
     for parent, item in table_of(keys, "sends").items():
         if parent not in known:
             wrong(item, unknown("frame", parent, known))
-        yield parent, _known(item, "frame", known)
+        if isinstance(item.value, str):
+            yield SentTransform(parent, _known(item, "frame", known))
+            continue
+        sent = table(item, f"sends {parent}", SENT_KEYS)
+        if "child" not in sent:
+            wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
+        yield SentTransform(parent, _known(sent["child"], "frame", known), _condition(sent))
+
+
+def _condition(keys: Mapping[str, YamlItem]) -> str:
+    """What ``if`` says; a text that is no condition is an error at its line."""
+    text = word_of(keys, "if")
+    try:
+        parse_condition(text)
+    except UsageError as error:
+        wrong(keys["if"], str(error))
+    return text
 
 
 def _taken_over(
@@ -185,6 +205,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         also=words_of(keys, "also"),
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper"),
+        condition=_condition(keys),
     )
     return _checked(item, endpoint)
 

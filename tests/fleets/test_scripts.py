@@ -18,8 +18,8 @@ from paths import FIXTURES, SUPPORT
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.companions.params.rcl_parameters import node_parameters, typed
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.rcl_parameters import node_parameters, typed
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
