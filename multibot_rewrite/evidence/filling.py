@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from itertools import chain
 
 from multibot_rewrite.evidence.records import Given, GivenNode
 from multibot_rewrite.remap.conditions import Values, holds
@@ -20,18 +19,29 @@ _NUMBER = "N"
 Ids = Mapping[str, str]
 
 
-def filled(node: NodeFacts, given: GivenNode) -> NodeFacts:
-    """``node`` with the names that its parameters set, under the name that it has there."""
+def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) -> NodeFacts:
+    """``node`` with the names that its parameters set, under the name that it has there.
+
+    ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
+    the stack says stays.
+    """
     values = given.values
-    endpoints = chain.from_iterable(_endpoint(node, it, values) for it in node.endpoints)
-    frames = tuple(_frame(it, values) for it in node.frames)
-    with_frames = node._replace(frames=frames)
+    whole = known or node
+    made = [it for raw in whole.endpoints for it in _endpoint(node, raw, values)]
+    made += [it for it in node.endpoints if _of_stack_alone(it, whole)]
+    with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
     return with_frames._replace(
         name=given.name,
-        endpoints=tuple(dict.fromkeys(endpoints)),
+        endpoints=tuple(dict.fromkeys(made)),
         sends=tuple(_sent(with_frames, values)),
         origin=str(given.place),
     )
+
+
+def _of_stack_alone(endpoint: Endpoint, known: NodeFacts) -> bool:
+    """Does a part that the stack adds have it?"""
+    key = endpoint.role, endpoint.named_from or endpoint.name
+    return all((it.role, it.name) != key for it in known.endpoints)
 
 
 def _sent(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
@@ -52,17 +62,40 @@ def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter
     return frame._replace(default=str(given.value), given=True)
 
 
-def _endpoint(
-    node: NodeFacts, endpoint: Endpoint, values: Mapping[str, Given]
-) -> Iterator[Endpoint]:
+def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
     """The endpoint once for each binding of its ids, with the names that are set."""
-    named = (endpoint.name, endpoint.parameter, endpoint.condition)
-    ids = dict.fromkeys(it for text in named for it in _ID.findall(text))
-    wanted = [it for it in ids if it in dict(node.ids)]
-    for binding in _bindings(dict(node.ids), wanted, values):
-        bound = _bound(endpoint, binding)
+    ids = dict(node.ids)
+    texts = (raw.name, raw.parameter, raw.condition)
+    wanted = [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
+    of_stack = [it for it in node.endpoints if _is_from(it, raw)]
+    remapped = next((it.remapped for it in of_stack), "")
+    if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
+        yield from of_stack
+        return
+    for binding in _bindings(ids, wanted, values):
+        bound = _bound(raw._replace(remapped=remapped), binding)
         if holds(bound.condition, _lookup(node, values)):
-            yield from _named(bound, values)
+            decided = bool(binding or bound.condition)
+            yield from _named(bound._replace(when="" if decided else bound.when), values)
+
+
+def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
+    return endpoint.role == raw.role and (endpoint.named_from or endpoint.name) == raw.name
+
+
+def _is_decided(
+    raw: Endpoint,
+    lists: Iterable[str],
+    values: Mapping[str, Given],
+    of_stack: Iterable[Endpoint],
+) -> bool:
+    """Do the parameters say whether it exists, or how it is called?"""
+    needed = [_pattern(it) for it in lists]
+    if needed:
+        return all(any(it.fullmatch(name) for name in values) for it in needed)
+    if raw.condition or any(_set_names(raw.parameter, values)):
+        return True
+    return "<" in raw.name and all("<" in it.name for it in of_stack)
 
 
 def _bindings(
@@ -112,22 +145,22 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
 
 def _named(endpoint: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
     """The endpoint under the names that its parameter sets; under its own where none is set."""
-    decided = "" if endpoint.condition else endpoint.when
-    names = list(_set_names(endpoint.parameter, values)) if endpoint.parameter else []
-    for name in names:
-        if name and not check_topic_name(name):
-            yield endpoint._replace(name=name, fixed="", when="", condition="")
+    names = list(_set_names(endpoint.parameter, values))
+    for name in filter(None, names):
+        yield endpoint._replace(name=name, fixed="", when="", condition="")
     if not names and "<" not in endpoint.name:
         fixed = endpoint.fixed if endpoint.fixed and not endpoint.parameter else ""
-        yield endpoint._replace(when=decided, condition="", fixed=fixed)
+        yield endpoint._replace(condition="", fixed=fixed)
 
 
 def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[str]:
-    """The names in a parameter: of all that match where it is a pattern, of a list each."""
+    """The topics in a parameter: of all that match where it is a pattern, of a list each. An empty
+    text is one, too: it stands for no topic."""
     pattern = _pattern(parameter)
     for name, given in values.items():
         if pattern.fullmatch(name):
-            yield from _words(given) if isinstance(given.value, list) else (str(given.value),)
+            words = _words(given) if isinstance(given.value, list) else [str(given.value)]
+            yield from (it for it in words if not it or not check_topic_name(it))
 
 
 def _pattern(parameter: str) -> re.Pattern[str]:

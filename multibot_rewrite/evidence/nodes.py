@@ -99,7 +99,9 @@ def nodes_of(
     sections = {it.name: _section_of(it, given) for it in stack}
     left, kept = _left_out(stack, given, sections)
     nodes = [
-        filled(it, section)._replace(name=it.name) if (section := sections[it.name]) else it
+        filled(it, section, known.get(it.known))._replace(name=it.name)
+        if (section := sections[it.name])
+        else it
         for it in kept
     ]
     names = {it.name for it in filter(None, sections.values())}

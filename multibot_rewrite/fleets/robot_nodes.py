@@ -24,15 +24,15 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 
 def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotNodes:
     """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
-    known = load_known_nodes(file.parameters)
+    known = load_known_nodes(file.parameters, file.distro)
     documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    library = user_stack(file.nodes) if file.nodes else built_in()
+    library = user_stack(file.nodes, file.distro) if file.nodes else built_in(file.distro)
     return nodes_of(stack_nodes(spec, file), given_nodes(documents, known), library.nodes)
 
 
 def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
     """The nodes of a robot's stacks, as their usual files have them."""
-    return facts_of(spec.stacks, file.nodes or None)
+    return facts_of(spec.stacks, file.nodes or None, file.distro)
 
 
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:

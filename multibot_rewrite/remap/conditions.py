@@ -7,16 +7,14 @@ value of another parameter. The class of a plugin may be written without its nam
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
+from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import UsageError
 
 Values = Callable[[str], object]
-_CONDITION = re.compile(
-    r"(?P<parameter>[^\s=!]+)(?:\s*(?P<how>!=|=|\bhas\b)\s*(?P<value>.+?))?", re.DOTALL
-)
+_CONDITION = lazy_compile(r"(?P<parameter>[^\s=!]+)(?:\s*(?P<how>!=|=|\bhas\b)\s*(?P<value>.+?))?")
 AND, OR = " and ", "|"
 
 
@@ -68,7 +66,7 @@ def _spellings(given: object) -> set[str]:
     if given is None:
         return set()
     word = _word(given)
-    return {word, re.split(r"::|/", word)[-1]} if "::" in word or "/" in word else {word}
+    return {word, word.rpartition("::")[2], word.rpartition("/")[2]}
 
 
 def _word(value: object) -> str:
