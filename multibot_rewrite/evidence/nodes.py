@@ -15,19 +15,8 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.remap.records import NodeFacts
 
 MANAGER = "controller_manager"
-# The nodes that a robot of the examples runs: a stack of ros2_control, and its controllers' file.
-_BESIDE = {
-    "controllers.yaml": """\
-controller_manager:
-  ros__parameters:
-    update_rate: 100
-    base: {type: diff_drive_controller/DiffDriveController}
-base:
-  ros__parameters: {left_wheel_names: [left], right_wheel_names: [right]}
-""",
-}
 NOT_DECLARED = declare(
-    "MF650",
+    "MF801",
     "controller-not-declared",
     NOTE,
     what="A stack has a controller that none of the robot's parameter files declares, though they "
@@ -36,22 +25,25 @@ NOT_DECLARED = declare(
     "report it as missing.",
     fix="Nothing, if the files are right. Else declare the controller below controller_manager.",
     bad="""\
-stack: ros2_control
-robots:
-  - {name: robot1, description: robot.urdf, companions: {params: controllers.yaml}}
-  - {name: robot2, description: robot.urdf, companions: {params: controllers.yaml}}
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    base: {type: diff_drive_controller/DiffDriveController}
+base:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
 """,
     good="""\
-robots:
-  - {name: robot1, description: robot.urdf, companions: {params: controllers.yaml}}
-  - {name: robot2, description: robot.urdf, companions: {params: controllers.yaml}}
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
 """,
-    line=3,
-    formats=("fleet",),
-    beside=_BESIDE,
+    line=4,
+    formats=("params",),
+    options={"stack": "ros2_control"},
 )
 UNKNOWN_TYPE = declare(
-    "MF651",
+    "MF802",
     "controller-type-not-known",
     WARNING,
     what="A controller is of a type that is not known, so its topics, frames and interfaces are not "
@@ -59,26 +51,21 @@ UNKNOWN_TYPE = declare(
     why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
     fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
     bad="""\
-robots:
-  - {name: robot1, description: robot.urdf, companions: {params: controllers.yaml}}
-  - {name: robot2, description: robot.urdf, companions: {params: controllers.yaml}}
-""",
-    good="""\
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "controllers.yaml": """\
 controller_manager:
   ros__parameters:
     arm: {type: acme_controllers/ArmController}
 arm:
-  ros__parameters: {joints: [elbow]}
+  ros__parameters: {rate: 50}
 """,
-    },
+    good="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+arm:
+  ros__parameters: {rate: 50}
+""",
+    line=3,
+    formats=("params",),
 )
 
 

@@ -132,7 +132,7 @@ def test_controllers_are_those_that_the_files_declare() -> None:
     assert (drive.host, drive.origin, drive.sends) == ("controller_manager", "c.yaml:6", ())
     assert "~/odom" in names(drive, "publishes")
     assert by_name["arm"].package == "acme"
-    assert [(it.code, it.line) for it in found.findings] == [("MF651", 7)]
+    assert [(it.code, it.line) for it in found.findings] == [("MF802", 7)]
 
 
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
