@@ -200,7 +200,11 @@ def _wrong_separator(place: ValueInFile) -> Iterator[Finding]:
         for rest in _without(token, word):
             name = rest.strip(_BETWEEN)
             right = bare.get(name, frozenset())
-            if right and not _is_a_new_frame(place, token, name) and not _is_its_topic(place, token, name):
+            if (
+                right
+                and not _is_a_new_frame(place, token, name)
+                and not _is_its_topic(place, token, name)
+            ):
                 message = f"{token} should be {' or '.join(sorted(right))}"
                 hint = "remove the robot name from the source; the build adds it"
                 yield OTHER_SEPARATOR.finding(message, hint)

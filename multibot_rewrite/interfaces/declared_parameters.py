@@ -26,7 +26,9 @@ from multibot_rewrite.interfaces.records import Call, Place, Source, Value
 ID = "<id>"
 _UNKNOWN = re.compile(r"<([^<>]*)>")
 # What declares or asks for a parameter; those below put the plugin's name before the parameter's.
-_DECLARES = re.compile(r"(auto_)?declare\w*|searchAndGetParam|get_parameter_or|getParam|declareParam")
+_DECLARES = re.compile(
+    r"(auto_)?declare\w*|add_parameter|searchAndGetParam|get_parameter_or|getParam|declareParam"
+)
 _READS = re.compile(r"get_parameter|has_parameter|getParam\w*|lookupParam")
 _PREFIXING = ("declareParameter", "getParam", "declareParam")
 _NAME = re.compile(rf"(?:{ID}|\w)(?:[\w.]|{ID})*")
@@ -42,6 +44,8 @@ _TYPES = {
     "vector<string>": "string_array",
     "vector<double>": "double_array",
 }
+# joint_state_publisher has a method of its own.
+_ONE_OF_PYTHON = ("declare_parameter", "_declare_ros_parameter", "declare_ros_parameter")
 _OF_PYTHON = {bool: "bool", int: "int", float: "double", str: "string", list: "array"}
 
 
@@ -66,9 +70,7 @@ def cpp_parameters(
         if name:
             owner = call.owner or call.place.path.rpartition("/")[2].partition(".")[0]
             type_ = default.type or _template_type(call.types)
-            yield ParameterFact(
-                package, owner, name, type_, default.text, "", "", how, call.place
-            )
+            yield ParameterFact(package, owner, name, type_, default.text, "", "", how, call.place)
 
 
 def shared_constants(values: Iterable[Value]) -> dict[str, str]:
@@ -152,7 +154,7 @@ def python_parameters(text: str, place: Place, package: str) -> Iterator[Paramet
 
 def _declared(verb: str, call: ast.Call) -> Iterator[tuple[str, ast.expr | None, int]]:
     given = [*call.args, *(it.value for it in call.keywords if it.arg in ("name", "value"))]
-    if verb == "declare_parameter" and given and (name := _python_name(given[0])):
+    if verb in _ONE_OF_PYTHON and given and (name := _python_name(given[0])):
         yield name, given[1] if len(given) > 1 else None, call.lineno
     if verb != "declare_parameters":
         return

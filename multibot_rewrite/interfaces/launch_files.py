@@ -7,11 +7,11 @@ Sources: launch_ros/actions/node.py, launch_ros/descriptions/composable_node.py 
 from __future__ import annotations
 
 import ast
-import xml.etree.ElementTree as tree
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 import yaml
+from lxml import etree
 
 NODE, LIFECYCLE, CONTAINER, COMPONENT = "node", "lifecycle_node", "container", "component"
 # Actions of Python files, and elements of XML and YAML files.
@@ -48,7 +48,7 @@ def launched_nodes(file: str, text: str) -> tuple[LaunchedNode, ...]:
         if file.endswith((".xml", ".launch")):
             return tuple(_of_xml(text))
         return tuple(_of_yaml(yaml.compose(text, Loader=yaml.SafeLoader)))
-    except (SyntaxError, ValueError, tree.ParseError, yaml.YAMLError):
+    except (SyntaxError, ValueError, etree.XMLSyntaxError, yaml.YAMLError):
         return ()
 
 
@@ -123,22 +123,12 @@ def _rules(node: ast.expr, names: Mapping[str, ast.expr], depth: int = 0) -> tup
 
 
 def _of_xml(text: str) -> Iterator[LaunchedNode]:
-    parser = tree.XMLPullParser(("start", "end"))
-    parser.feed(text)
-    lines = _line_numbers(text)
-    for event, element in parser.read_events():
-        if event == "end" and element.tag in _ELEMENTS and element.get("pkg"):
-            rules = ((it.get("from", ""), it.get("to", "")) for it in element.findall("remap"))
-            yield _described(element.tag, element.attrib, rules, next(lines[element.tag], 0))
-
-
-def _line_numbers(text: str) -> dict[str, Iterator[int]]:
-    """The lines in which elements end, in their order."""
-    rows = list(enumerate(text.splitlines(), 1))
-    return {
-        tag: iter([at for at, row in rows if f"<{tag} " in row or row.rstrip().endswith(f"<{tag}")])
-        for tag in _ELEMENTS
-    }
+    parser = etree.XMLParser(resolve_entities=False)
+    for element in etree.fromstring(text.encode(), parser).iter(*_ELEMENTS):
+        given = {str(key): str(value) for key, value in element.attrib.items()}
+        if "pkg" in given:
+            rules = [(it.get("from", ""), it.get("to", "")) for it in element.iterfind("remap")]
+            yield _described(str(element.tag), given, rules, int(str(element.sourceline or 0)))
 
 
 def _of_yaml(node: yaml.Node | None) -> Iterator[LaunchedNode]:
@@ -176,6 +166,4 @@ def _described(
     remaps = " ".join(f"{old}:={new}" for old, new in rules)
     executable = given.get("plugin") or given.get("exec", "")
     name, namespace = given.get("name", ""), given.get("namespace", "")
-    return LaunchedNode(
-        _ELEMENTS[tag], given["pkg"], executable, name, namespace, remaps, line
-    )
+    return LaunchedNode(_ELEMENTS[tag], given["pkg"], executable, name, namespace, remaps, line)

@@ -23,9 +23,8 @@ ID = "<id>"
 _PREFIX = "<prefix>"
 MISSING, DEFAULT, UNKNOWN = "missing", "default", "unknown"
 _STRINGS = ("string", "string_array", "")
-_WORDS = frozenset(
-    "frame frames topic topics joint joints link links node nodes namespace ns interface interfaces "
-    "service services sensor sensors group prefix gpios batteries dof".split()
+_WORDS = re.compile(
+    r"(frame|topic|joint|link|node|interface|service|sensor|gpio|batterie)s?|namespace|ns|group|prefix|dof"
 )
 _FRAME = re.compile(r"odom|map|world|base_\w+")
 _PATH = re.compile(r"[/~]?\w+(/\w+)+|/\w+")
@@ -150,7 +149,9 @@ def pattern(path: str) -> re.Pattern[str]:
     """An expression for the paths of sources that a path of ours stands for."""
     words = re.split(r"(<index>|<\w+>|\*)", path)
     texts = (
-        _SEGMENTS.get(it if it in _SEGMENTS else "<>", "") if it[:1] in ("<", "*") else re.escape(it)
+        _SEGMENTS.get(it if it in _SEGMENTS else "<>", "")
+        if it[:1] in ("<", "*")
+        else re.escape(it)
         for it in words
     )
     return re.compile("".join(texts))
@@ -170,11 +171,15 @@ def _unknown(
     claimed: Sequence[str],
     release: str,
 ) -> Iterator[Difference]:
-    known = {fact for path, it in paths.items() for fact in it if any(same(own, path) for own in claimed)}
+    known = {
+        fact for path, it in paths.items() for fact in it if any(same(own, path) for own in claimed)
+    }
     for path, found in paths.items():
         fact = next((it for it in found if looks_like_a_name(it) and it not in known), None)
         if fact and not (fact.how == YAML and path.startswith(f"{_PREFIX}.")):
-            words = f"{fact.type or 'untyped'} {fact.default} in {fact.place.path}".replace("  ", " ")
+            words = f"{fact.type or 'untyped'} {fact.default} in {fact.place.path}".replace(
+                "  ", " "
+            )
             yield Difference(UNKNOWN, package, path, release, words)
 
 
@@ -184,6 +189,6 @@ def looks_like_a_name(fact: ParameterFact) -> bool:
     if fact.type not in _STRINGS or not fact.package:
         return False
     words = re.split(r"[._]", fact.path)
-    if _WORDS.intersection(words if fact.type else words[-1:]):
+    if any(_WORDS.fullmatch(it) for it in (words if fact.type else words[-1:])):
         return True
     return bool(_FRAME.fullmatch(fact.default) or _PATH.fullmatch(fact.default))

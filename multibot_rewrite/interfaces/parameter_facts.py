@@ -59,5 +59,7 @@ def read_parameters(text: str) -> tuple[ParameterFact, ...]:
 
 
 def _fact(cells: list[str]) -> ParameterFact:
-    *words, repository, version, path, line = cells
-    return ParameterFact(*words, place=Place(repository, version, path, int(line)))
+    package, owner, path, type_, default, bounds, read_only, how, *where = cells
+    repository, version, file, line = where
+    place = Place(repository, version, file, int(line))
+    return ParameterFact(package, owner, path, type_, default, bounds, read_only, how, place)

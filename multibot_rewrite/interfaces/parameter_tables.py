@@ -1,4 +1,4 @@
-"""``python -m multibot_rewrite.interfaces.parameter_tables TABLES RELEASE FOLDER...``: what sources say.
+"""``python -m multibot_rewrite.interfaces.parameter_tables TABLES RELEASE FOLDER...``
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION, with + for a slash in
 REPOSITORY. The tables ``parameters_RELEASE.tsv`` and ``launch_RELEASE.tsv`` are written to TABLES.
@@ -102,7 +102,9 @@ def _of_cpp(checkout: Checkout, paths: Iterable[Path]) -> Iterator[ParameterFact
     for package, group in groupby(paths, lambda it: _package(checkout.folder, it)):
         texts = ((path, _text(path)) for path in group)
         sources = [
-            read_cpp(text, _place(checkout, path)) for path, text in texts if "param" in text.lower()
+            read_cpp(text, _place(checkout, path))
+            for path, text in texts
+            if "param" in text.lower()
         ]
         shared = shared_constants(value for it in sources for value in it.values)
         for source in sources:
@@ -115,9 +117,11 @@ def _of_data(checkout: Checkout, path: Path) -> Iterator[ParameterFact]:
     if path.suffix == ".py" and "launch" not in path.name:
         yield from python_parameters(_text(path), place, package)
     if path.suffix in (".yaml", ".yml"):
-        for owner, *words, line in file_parameters(_text(path)):
-            at = place._replace(line=line)
-            yield ParameterFact(package, owner, *words, how=YAML, place=at)  # type: ignore[call-arg,arg-type]
+        for it in file_parameters(_text(path)):
+            at = place._replace(line=it.line)
+            yield ParameterFact(
+                package, it.owner, it.path, it.type, it.default, it.bounds, it.read_only, YAML, at
+            )
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -52,9 +52,9 @@ UNDECLARED = declare(
     "parameter-names-unknown-joint",
     WARNING,
     what="A parameter names a joint, link or sensor that is not in the description.",
-    why="A joint stays as it is, a link or sensor gets the robot's name all the same. A controller with "
-    "a joint that no hardware has fails to start (no such interface), and a plugin waits for a link that "
-    "never comes.",
+    why="A joint stays as it is, a link or sensor gets the robot's name all the same. A controller "
+    "with a joint that no hardware has fails to start (no such interface), and a plugin waits for a "
+    "link that never comes.",
     fix="Correct the name; the nearest one is in the message.",
     bad="""\
 joint_trajectory_controller:

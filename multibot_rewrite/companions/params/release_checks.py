@@ -1,4 +1,4 @@
-"""What a release makes of a section: deprecated parameters and types, and topics that it no longer sends."""
+"""What is deprecated in a release, and what a broadcaster no longer sends in it."""
 
 from __future__ import annotations
 
@@ -14,16 +14,15 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.releases import has_release
 
 _BROADCASTER = "joint_state_broadcaster"
-_SWITCH = "publish_dynamic_joint_states"
 # What sensor_msgs/JointState has a field for.
 _IN_JOINT_STATES = frozenset(("position", "velocity", "effort"))
-_OFF_SINCE = "lyrical+"
+_GONE_SINCE = "lyrical+"
 
 DEPRECATED = declare(
     "MF129",
     "deprecated-in-release",
     NOTE,
-    what="A parameter or controller type is deprecated in the release.",
+    what="A parameter or controller type is deprecated in the release, or gone.",
     why="The node warns at each start, and a later release removes it: a controller of that type is "
     "then not loaded, and the parameter has no effect.",
     fix="Do what the hint says. A JointGroup controller becomes a "
@@ -48,12 +47,12 @@ NOT_SENT = declare(
     "MF130",
     "interfaces-not-published",
     WARNING,
-    what="joint_state_broadcaster has interfaces that only dynamic_joint_states holds, which it does "
-    "not publish unless it is told to.",
-    why="joint_states has positions, velocities and efforts alone. From Lyrical on "
-    "publish_dynamic_joint_states is false by default, so nobody sees the others.",
-    fix="Use a state_interfaces_broadcaster for them, or set publish_dynamic_joint_states: true, which "
-    "is deprecated.",
+    what="joint_state_broadcaster has interfaces that only dynamic_joint_states had, which it no longer "
+    "publishes.",
+    why="joint_states has positions, velocities and efforts alone. dynamic_joint_states was off by "
+    "default from ros2_controllers 6.5 on and is gone since 6.8, which is in Lyrical: nobody sees the "
+    "others.",
+    fix="Use a state_interfaces_broadcaster or gpio_controllers for them.",
     bad="""\
 joint_state_broadcaster:
   ros__parameters:
@@ -84,12 +83,18 @@ def _deprecated_parameters(job: ParamsJob, section: ParamSection) -> Iterator[Fi
     for name, key in flattened(section.body):
         param = section.node.params.get(name) if section.node else None
         if param and param.deprecated and has_release(param.deprecated, job.context.distro):
-            message = f"{name} is deprecated in {job.context.distro}"
+            there = has_release(param.releases, job.context.distro)
+            state = "is deprecated" if there else "is gone and has no effect"
+            message = f"{name} {state} in {job.context.distro}"
             yield found_at(job.document, key, DEPRECATED, message, param.note)
 
 
 def _deprecated_types(job: ParamsJob, body: yaml.Node) -> Iterator[Finding]:
-    types = {type_: it for node in job.known.nodes.values() for type_, it in node.deprecated_types.items()}
+    types = {
+        type_: it
+        for node in job.known.nodes.values()
+        for type_, it in node.deprecated_types.items()
+    }
     for key, value in _scalars(body):
         words = types.get(value.value, "") if key.value.rpartition(".")[2] == "type" else ""
         if words and has_release(words, job.context.distro):
@@ -101,15 +106,16 @@ def _deprecated_types(job: ParamsJob, body: yaml.Node) -> Iterator[Finding]:
 def _not_sent(job: ParamsJob, body: yaml.MappingNode) -> Iterator[Finding]:
     """Interfaces that no topic holds."""
     given = {key.value: value for key, value in pairs(body)}
-    switch = getattr(given.get(_SWITCH), "value", "")
-    mapped = {getattr(it, "value", "") for _, it in _scalars(given.get("map_interface_to_joint_state"))}
-    if not has_release(_OFF_SINCE, job.context.distro) or str(switch).lower() == "true":
+    mapped = {
+        getattr(it, "value", "") for _, it in _scalars(given.get("map_interface_to_joint_state"))
+    }
+    if not has_release(_GONE_SINCE, job.context.distro):
         return
     for item in items(given.get("interfaces")):
         name = getattr(item, "value", "")
         if name not in _IN_JOINT_STATES | mapped:
             message = f"nobody publishes {name}: joint_states has no field for it"
-            hint = f"use a state_interfaces_broadcaster, or set {_SWITCH}: true"
+            hint = "use a state_interfaces_broadcaster for it"
             yield found_at(job.document, item, NOT_SENT, message, hint)
 
 

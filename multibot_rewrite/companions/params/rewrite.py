@@ -35,8 +35,8 @@ from multibot_rewrite.companions.params.shared_defaults import (
     sources_without_topic,
     without_section,
 )
-from multibot_rewrite.companions.params.unknown_parameters import guessed_names, unclaimed_names
 from multibot_rewrite.companions.params.slashes import slash_findings
+from multibot_rewrite.companions.params.unknown_parameters import guessed_names, unclaimed_names
 from multibot_rewrite.companions.params.values import ParamsJob, name_splices
 from multibot_rewrite.companions.template import (
     NAMESPACE_SLOT,

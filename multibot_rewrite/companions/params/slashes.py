@@ -18,9 +18,9 @@ SLASH = declare(
     WARNING,
     what="A parameter names a frame with a slash at its start. It is a note where the node takes the "
     "slash off in this release; then it is written without it.",
-    why="tf2 sends the frame without the slash and refuses to look up one that has it (Invalid argument "
-    "\"/odom\" passed to lookupTransform): nobody finds the transform. Some nodes took the slash off up "
-    "to Kilted and no longer do.",
+    why="tf2 sends the frame without the slash and refuses to look up one that has it (Invalid "
+    'argument "/odom" passed to lookupTransform): nobody finds the transform. Some nodes took the '
+    "slash off up to Kilted and no longer do.",
     fix="Remove the slash.",
     bad="""\
 diff_drive_controller:

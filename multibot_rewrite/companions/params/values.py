@@ -223,7 +223,8 @@ UNCLEAR_SWITCH = declare(
     "MF116",
     "frame-prefix-switch-unclear",
     WARNING,
-    what="A launch file sets a parameter that must be false, because it adds the namespace to frames.",
+    what="A launch file sets a parameter that must be false, or a prefix that must be /, because it "
+    "adds the namespace to frames.",
     why="The frames have the robot's name already. With true, odom becomes robot1/robot1/odom, and no "
     "transform is found (ros2_controllers #482, #1048).",
     fix="Write false, or make sure that the launch file sets false.",
@@ -239,6 +240,7 @@ diff_drive_controller:
 """,
     line=3,
     formats=("params",),
+    options={"distro": "kilted"},
 )
 
 
