@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleets.meeting import with_meetings
@@ -12,7 +12,9 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
-from multibot_rewrite.remap.node_library import stack_of, with_included
+from multibot_rewrite.remap.node_library import with_included
+from multibot_rewrite.remap.nodl.facts import nodes_of
+from multibot_rewrite.remap.nodl.lookup import find_interfaces
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
@@ -47,16 +49,18 @@ def make_fleet(
     policy: Policy,
     *,
     nodes: str | None = None,
+    nodl: Sequence[str] = (),
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table.
 
-    ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
+    ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
+    ``trust`` lets a xacro file do anything. Raises
     as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    facts = facts_of(stacks, nodes)
+    facts = facts_of(stacks, nodes, nodl)
     found = rewrite_all(
         source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
     )
@@ -65,17 +69,26 @@ def make_fleet(
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
-def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
+def facts_of(
+    stacks: Sequence[str], nodes: str | None = None, nodl: Sequence[str] = ()
+) -> tuple[NodeFacts, ...]:
     """The nodes that a robot with these stacks runs, each once; UsageError for an unknown stack.
 
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
-    for the stack ``no_robot_state_publisher``.
+    for the stack ``no_robot_state_publisher``. What NoDL says of a node is above what the library
+    says, and what the file ``nodes`` says is above both.
     """
     library = user_stack(nodes) if nodes else built_in()
-    found = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    interfaces = find_interfaces(nodl)
+    own = {name for name, node in library.nodes.items() if node != built_in().nodes.get(name)}
+
+    def known(stack: str) -> Iterator[NodeFacts]:
+        return nodes_of(library, stack, interfaces, own)
+
+    found = dict.fromkeys(node for name in stacks for node in known(name))
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
-        added = () if has_publisher else stack_of(library, STATE_PUBLISHER)
+        added = () if has_publisher else known(STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
         hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"

@@ -16,11 +16,12 @@ from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
+from multibot_rewrite.remap.nodl.lookup import NO_DOCUMENTS, find_interfaces
 from multibot_rewrite.sources.own_names import filled, name_robot
 
 SCHEMA = "fleet.schema.json"
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
-LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
+LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
@@ -88,6 +89,7 @@ class FleetFile(NamedTuple):
     distro: str
     installed: str
     nodes: str
+    nodl: tuple[str, ...]
     parameters: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
@@ -113,6 +115,7 @@ def read_fleet(path: str) -> FleetFile:
     _check_robots_differ(robots)
     _check_world(read, naming)
     nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
+    nodl = tuple(_listed(data.get("nodl", [])))
     vocabulary = tuple(_listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
@@ -121,10 +124,13 @@ def read_fleet(path: str) -> FleetFile:
         data.get("distro", "jazzy"),
         data.get("installed", ""),
         nodes,
+        nodl,
         parameters,
         vocabulary,
         robots,
-        tuple(filter(None, (*read.files, nodes, parameters, *vocabulary))),
+        tuple(
+            filter(None, (*read.files, nodes, *_nodl_files(read, nodl), parameters, *vocabulary))
+        ),
     )
 
 
@@ -206,6 +212,8 @@ def _from(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     for key in PATHS:
         if key in result:
             result[key] = resolve(result[key])
+    if result.get("nodl", NO_DOCUMENTS) != NO_DOCUMENTS:
+        result["nodl"] = resolve(result["nodl"])
     if "companions" in result:
         result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
     if "robots" in result:
@@ -268,11 +276,19 @@ def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
 
 def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...]) -> None:
     try:
-        facts_of(stacks, read.data.get("nodes") or None)
+        facts_of(stacks, read.data.get("nodes") or None, _listed(read.data.get("nodl", [])))
     except UsageError as error:
         own: Path = ("robots", at, "stack")
-        found = (it for it in (own, ("stack",), ("nodes",)) if it in read.places)
+        found = (it for it in (own, ("stack",), ("nodes",), ("nodl",)) if it in read.places)
         file, line = read.places[next(found)]
+        raise InputError(f"{file}:{line}: {error}") from None
+
+
+def _nodl_files(read: _Read, nodl: Sequence[str]) -> list[str]:
+    try:
+        return list(find_interfaces(nodl).given.values())
+    except UsageError as error:
+        file, line = read.places["nodl",]
         raise InputError(f"{file}:{line}: {error}") from None
 
 

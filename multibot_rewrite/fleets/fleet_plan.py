@@ -48,7 +48,9 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
     fleets = [
-        assemble([it.member for it in group], facts_of(names, file.nodes or None), naming)
+        assemble(
+            [it.member for it in group], facts_of(names, file.nodes or None, file.nodl), naming
+        )
         for names, group in stacks.items()
     ]
     fleet = merge(fleets)

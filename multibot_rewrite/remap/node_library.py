@@ -34,7 +34,18 @@ from multibot_rewrite.remap.yaml_with_lines import (
 )
 from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
 
-NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "sends", "fixed", *ROLES)
+NODE_KEYS = (
+    "package",
+    "host",
+    "shared",
+    "note",
+    "with",
+    "frames",
+    "sends",
+    "fixed",
+    "nodl",
+    *ROLES,
+)
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
 ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
 STACK_KEYS = ("about", "include", "nodes")
@@ -142,6 +153,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        nodl=words_of(keys, "nodl"),
     )
 
 
@@ -251,6 +263,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
     _check_node_name(keys.get("as", item), name)
     return node._replace(
         name=name,
+        nodl=node.nodl if name == node.name else (node.name, *node.nodl),
         shared=flag_of(keys, "shared", node.shared),
         when=word_of(keys, "when", node.when),
         endpoints=_remapped(_named(endpoints, keys), keys),

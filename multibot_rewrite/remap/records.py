@@ -53,7 +53,8 @@ class NodeFacts(NamedTuple):
     ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes, as
-    the parameters that hold parent and child.
+    the parameters that hold parent and child. ``nodl`` are further names of its NoDL document, such as
+    its executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
     """
 
     name: str
@@ -66,6 +67,8 @@ class NodeFacts(NamedTuple):
     frames: tuple[FrameParameter, ...] = ()
     fixed: tuple[str, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
+    nodl: tuple[str, ...] = ()
+    interface: str = ""
 
 
 class NodeRule(NamedTuple):

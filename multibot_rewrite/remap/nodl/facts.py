@@ -1,0 +1,171 @@
+"""NoDL documents -> facts of nodes, above those of the library.
+
+A document cannot say everything: conditions, helper nodes, which names an image_transport adds, the
+launch file's own rules. These stay from the library where it knows the same endpoint.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container, Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
+from multibot_rewrite.remap.nodl.document import Document, Parameter
+from multibot_rewrite.remap.nodl.lookup import (
+    Identity,
+    Interfaces,
+    file_of,
+    identities,
+    load,
+    shown,
+)
+from multibot_rewrite.remap.records import (
+    SERVES,
+    SERVICE,
+    SUBSCRIBES,
+    TOPIC,
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+)
+from multibot_rewrite.remap.targets import TRANSPORTS
+from multibot_rewrite.rosnames import expand
+
+EVERY_NODE = "every_node"
+# An endpoint of the library alone keeps its rule, and is not asked for: the document may be partial.
+NOT_IN_NODL = "not in the NoDL file of the node"
+TYPE_DESCRIPTION = Endpoint(SERVICE, SERVES, "~/get_type_description")
+_TF = ("/tf", "/tf_static")
+_TF_TYPE = "tf2_msgs/msg/TFMessage"
+_IMAGE = "sensor_msgs/msg/Image"
+_FRAME = re.compile(r"(?:.*[._])?frame(?:_id)?")
+
+
+class _Slot(NamedTuple):
+    """What an endpoint is called from outside, for a node in the root namespace."""
+
+    kind: str
+    role: str
+    name: str
+
+
+def nodes_of(
+    library: NodeLibrary, stack: str, interfaces: Interfaces, own: Container[str] = ()
+) -> Iterator[NodeFacts]:
+    """The nodes of a stack, each as its NoDL document says where there is one.
+
+    A name that is no stack of the library may be that of a document. ``own`` are nodes that the user
+    describes, which stay as they are. Raises UsageError.
+    """
+    known = stack in library.stacks or stack in library.nodes
+    alone = None if known else _alone(library, stack, interfaces)
+    for node in [alone] if alone else stack_of(library, stack):
+        spared = alone or any(name in own for name in _names(node))
+        yield node if spared else declared(node, library, interfaces)
+
+
+def _names(node: NodeFacts) -> tuple[str, ...]:
+    """The names that its document may have; the last one in the library is the usual one."""
+    return (node.name, *node.nodl)
+
+
+def declared(node: NodeFacts, library: NodeLibrary, interfaces: Interfaces) -> NodeFacts:
+    """The node as its NoDL document says; itself where there is none."""
+    names = _names(node)
+    found = (file_of(interfaces, Identity(node.package, name)) for name in names)
+    file = next(filter(None, found), "")
+    if not file:
+        return node
+    base = next((library.nodes[it] for it in reversed(names) if it in library.nodes), node)
+    return _merged(node, base, load(file, interfaces), library.parts)
+
+
+def _alone(library: NodeLibrary, name: str, interfaces: Interfaces) -> NodeFacts | None:
+    """A node that only a document describes; its name may be given as ``package/name``."""
+    found = [it for it in sorted(identities(interfaces)) if name in (it.name, shown(it))]
+    if len(found) > 1:
+        raise UsageError(
+            f"stack {name!r} may be {' or '.join(map(shown, found))}; name one of them"
+        )
+    if not found:
+        return None
+    bare = NodeFacts(found[0].name, found[0].package, ())
+    document = load(file_of(interfaces, found[0]), interfaces)
+    return _merged(bare, bare, document, library.parts)
+
+
+def _merged(
+    node: NodeFacts,
+    base: NodeFacts,
+    document: Document,
+    parts: Mapping[str, tuple[Endpoint, ...]],
+) -> NodeFacts:
+    ours = {_slot(end, base.name): end for end in reversed(node.endpoints)}
+    theirs = {_slot(end, base.name): end for end in _folded(_own(document.endpoints, parts))}
+    ends = [_both(end, ours.get(slot)) for slot, end in theirs.items()]
+    before = {_slot(end, base.name) for end in base.endpoints}
+    added = {_slot(end, base.name) for part in parts.values() for end in part}
+    for slot, end in ((_slot(end, base.name), end) for end in node.endpoints):
+        if slot in theirs:
+            continue
+        stays = end.helper or "<" in end.name or slot in added or slot not in before
+        ends.append(end if stays else end._replace(when=end.when or NOT_IN_NODL))
+    return node._replace(
+        endpoints=tuple(ends),
+        frames=tuple(_frames(node, document.parameters)),
+        interface=document.file,
+    )
+
+
+def _slot(end: Endpoint, node: str) -> _Slot:
+    above, _, own = node.rpartition("/")
+    name = end.name if "<" in end.name else expand(end.name, f"/{above}", own)
+    return _Slot(end.kind, end.role, name)
+
+
+def _own(ends: Iterable[Endpoint], parts: Mapping[str, tuple[Endpoint, ...]]) -> Iterator[Endpoint]:
+    """The endpoints without those that ROS gives every node."""
+    usual = {(it.role, _last(it)) for it in (*parts.get(EVERY_NODE, ()), TYPE_DESCRIPTION)}
+    yield from (end for end in ends if (end.role, _last(end)) not in usual)
+
+
+def _last(end: Endpoint) -> str:
+    return end.name.rpartition("/")[2]
+
+
+def _folded(ends: Iterable[Endpoint]) -> Iterator[Endpoint]:
+    """An image and its image_transport topics as one; tf may be heard by a helper node."""
+    found = list(ends)
+    topics = {(end.role, end.name) for end in found if end.kind == TOPIC}
+    images = {
+        (end.role, end.name)
+        for end in found
+        if end.type == _IMAGE and any((end.role, f"{end.name}/{it}") in topics for it in TRANSPORTS)
+    }
+    for end in found:
+        base, _, last = end.name.rpartition("/")
+        if last in TRANSPORTS and (end.role, base) in images:
+            continue
+        heard = end.role == SUBSCRIBES and end.name in _TF and end.type == _TF_TYPE
+        yield end._replace(transport=(end.role, end.name) in images, helper=heard)
+
+
+def _both(end: Endpoint, ours: Endpoint | None) -> Endpoint:
+    """The endpoint of a document with what the library knows besides of it."""
+    if ours is None:
+        return end
+    # A document made from a running node has a private name in full.
+    name = ours.name if ours.name.startswith("~") else end.name
+    also = tuple(dict.fromkeys(it for it in (*end.also, *ours.also) if it != end.type))
+    return ours._replace(name=name, type=end.type, also=also, note=end.note or ours.note)
+
+
+def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameParameter]:
+    """The frame ids in parameters: those the library names, by their names otherwise."""
+    given = {it.name: it.default for it in parameters if it.type == "string" and it.default}
+    if node.frames or node.sends:
+        yield from (it._replace(default=given.get(it.parameter, it.default)) for it in node.frames)
+        return
+    yield from (FrameParameter(*it) for it in given.items() if _FRAME.fullmatch(it[0]))
