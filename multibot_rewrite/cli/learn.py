@@ -21,6 +21,7 @@ from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.nodl.lookup import SUFFIXES
 from multibot_rewrite.remap.stacks import built_in
 
@@ -44,17 +45,13 @@ def run(options: argparse.Namespace) -> int:
     remarks = [*_notes(graph, learned, options.namespace, bool(options.node))]
     as_nodl = _is_nodl(options)
     if as_nodl:
-        remarks += _write_nodl(
-            options, [to_nodl(it, graph, namespace, library, _is_json(options)) for it in learned]
-        )
+        remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
     else:
         deliver(options, to_yaml(learned, options.stack, library).encode())
     for remark in remarks:
         note(options, f"note: {remark}")
-    note(
-        options,
-        f"{plural(len(learned), 'node')} learned as {'NoDL' if as_nodl else f'stack {options.stack}'}",
-    )
+    shape = "NoDL" if as_nodl else f"stack {options.stack}"
+    note(options, f"{plural(len(learned), 'node')} learned as {shape}")
     return INCONCLUSIVE if doubtful else DONE
 
 
@@ -76,8 +73,14 @@ def _is_nodl(options: argparse.Namespace) -> bool:
     return named or options.form == NODL
 
 
-def _is_json(options: argparse.Namespace) -> bool:
-    return (options.output or "").endswith(".json")
+def _as_nodl(
+    options: argparse.Namespace,
+    graph: Snapshot,
+    learned: Sequence[LearnedNode],
+    library: NodeLibrary,
+) -> list[NodlFile]:
+    in_json = (options.output or "").endswith(".json")
+    return [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned]
 
 
 def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:

@@ -13,7 +13,7 @@ from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder
 from multibot_rewrite.graph.live.child import RosUnusable, observe
 from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.rosgraph import to_yaml
+from multibot_rewrite.graph.rosgraph.writing import to_yaml
 from multibot_rewrite.graph.snapshot import QUIET, Caveat, Snapshot, incomplete, to_json
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import (

@@ -12,6 +12,7 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import with_included
 from multibot_rewrite.remap.nodl.facts import nodes_of
 from multibot_rewrite.remap.nodl.lookup import find_interfaces
@@ -53,14 +54,15 @@ def make_fleet(
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
+    release: str = NEWEST_LTS,
 ) -> Fleet:
-    """Rewrite a description for every robot and make the fleet's table.
+    """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
     ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
     ``trust`` lets a xacro file do anything. Raises
     as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    facts = facts_of(stacks, nodes, nodl)
+    facts = facts_of(stacks, nodes, release, nodl)
     found = rewrite_all(
         source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
     )
@@ -70,17 +72,23 @@ def make_fleet(
 
 
 def facts_of(
-    stacks: Sequence[str], nodes: str | None = None, nodl: Sequence[str] = ()
+    stacks: Sequence[str],
+    nodes: str | None = None,
+    release: str = NEWEST_LTS,
+    nodl: Sequence[str] = (),
 ) -> tuple[NodeFacts, ...]:
-    """The nodes that a robot with these stacks runs, each once; UsageError for an unknown stack.
+    """The nodes that a robot with these stacks runs in a release, each once.
+
+    Raises UsageError for an unknown stack, and for one that the release lacks.
 
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
     for the stack ``no_robot_state_publisher``. What NoDL says of a node is above what the library
     says, and what the file ``nodes`` says is above both.
     """
-    library = user_stack(nodes) if nodes else built_in()
+    built = built_in(release)
+    library = user_stack(nodes, release) if nodes else built
     interfaces = find_interfaces(nodl)
-    own = {name for name, node in library.nodes.items() if node != built_in().nodes.get(name)}
+    own = {name for name, node in library.nodes.items() if node != built.nodes.get(name)}
 
     def known(stack: str) -> Iterator[NodeFacts]:
         return nodes_of(library, stack, interfaces, own)

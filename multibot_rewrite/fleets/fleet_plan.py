@@ -49,7 +49,9 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
         stacks.setdefault(robot.spec.stacks, []).append(robot)
     fleets = [
         assemble(
-            [it.member for it in group], facts_of(names, file.nodes or None, file.nodl), naming
+            [it.member for it in group],
+            facts_of(names, file.nodes or None, file.distro, file.nodl),
+            naming,
         )
         for names, group in stacks.items()
     ]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
-from multibot_rewrite.graph import rosgraph
+from multibot_rewrite.graph.rosgraph.reading import from_message, from_yaml, is_message
 from multibot_rewrite.graph.snapshot import Snapshot, from_value, json_value
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
@@ -18,10 +18,10 @@ def read_snapshot(path: str) -> Snapshot:
     """The snapshot in a file; raises InputError with file, what is wrong and what to do."""
     data = read_file(path, MAX_FLEET_BYTES)
     if _MESSAGE.match(data):
-        return rosgraph.from_yaml(_text(data, path), path)
+        return from_yaml(_text(data, path), path)
     value = json_value(data, path)
-    if isinstance(value, dict) and rosgraph.is_message(value):
-        return rosgraph.from_message(value, path)
+    if isinstance(value, dict) and is_message(value):
+        return from_message(value, path)
     return from_value(value, path)
 
 

@@ -22,7 +22,8 @@ class Endpoint(NamedTuple):
     ``when`` is the condition under which it exists, empty for always. ``helper`` is true if a helper
     node in the same process uses it: a rule for the whole process reaches it, one for this node does
     not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
-    rule must lead there, since only the first match counts.
+    rule must lead there, since only the first match counts. ``releases`` are release words (see
+    ``multibot_rewrite.releases``), ``source`` the places where it can be read.
     """
 
     kind: str
@@ -37,13 +38,20 @@ class Endpoint(NamedTuple):
     when: str = ""
     helper: bool = False
     remapped: str = ""
+    releases: str = ""
+    source: tuple[str, ...] = ()
 
 
 class FrameParameter(NamedTuple):
-    """A parameter that holds a frame id, and its default; no remap rule reaches frame ids."""
+    """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
+
+    ``releases`` and ``source`` as in ``Endpoint``.
+    """
 
     parameter: str
     default: str
+    releases: str = ""
+    source: tuple[str, ...] = ()
 
 
 class NodeFacts(NamedTuple):
@@ -53,8 +61,9 @@ class NodeFacts(NamedTuple):
     ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes, as
-    the parameters that hold parent and child. ``nodl`` are further names of its NoDL document, such as
-    its executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
+    the parameters that hold parent and child. ``releases`` and ``source`` as in ``Endpoint``. ``nodl``
+    are further names of its NoDL document, such as its executable; ``interface`` is the NoDL file that
+    its endpoints are from, empty for the library.
     """
 
     name: str
@@ -67,6 +76,8 @@ class NodeFacts(NamedTuple):
     frames: tuple[FrameParameter, ...] = ()
     fixed: tuple[str, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
+    releases: str = ""
+    source: tuple[str, ...] = ()
     nodl: tuple[str, ...] = ()
     interface: str = ""
 

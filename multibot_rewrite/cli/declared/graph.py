@@ -46,8 +46,8 @@ CHECK = Command(
                 value(
                     "--snapshot",
                     metavar="FILE",
-                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the"
-                    " live graph",
+                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
+                    " the live graph",
                     type=values.path,
                 ),
                 TRUST,
@@ -99,8 +99,8 @@ LEARN = Command(
                 value(
                     "--snapshot",
                     metavar="FILE",
-                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the"
-                    " live graph",
+                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
+                    " the live graph",
                     type=values.path,
                 ),
             ),

@@ -173,9 +173,8 @@ def _endpoint(item: YamlItem, section: str, kind: str, role: str) -> Endpoint:
     name = _checked_name(keys["name"])
     if "qos" in keys:
         _check_qos(keys["qos"])
-    return Endpoint(
-        kind, role, name, _full_type(keys["type"], kind), note=word_of(keys, "description")
-    )
+    note, source = word_of(keys, "description"), (item.where,)
+    return Endpoint(kind, role, name, _full_type(keys["type"], kind), note=note, source=source)
 
 
 def _checked_name(item: YamlItem) -> str:

@@ -159,7 +159,7 @@ def _both(end: Endpoint, ours: Endpoint | None) -> Endpoint:
     # A document made from a running node has a private name in full.
     name = ours.name if ours.name.startswith("~") else end.name
     also = tuple(dict.fromkeys(it for it in (*end.also, *ours.also) if it != end.type))
-    return ours._replace(name=name, type=end.type, also=also, note=end.note or ours.note)
+    return ours._replace(name=name, type=end.type, also=also, source=end.source)
 
 
 def _frames(node: NodeFacts, parameters: Iterable[Parameter]) -> Iterator[FrameParameter]:
