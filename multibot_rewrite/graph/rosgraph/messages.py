@@ -1,7 +1,7 @@
 """The messages of rosgraph_msgs that describe a graph, and what their numbers mean.
 
 They are those of ros2/rcl_interfaces, rosgraph_msgs/msg: since 1.2.3 in Humble, 2.3.2 in Kilted and
-2.4.4 in Rolling. A graph is a list of nodes with their endpoints; transforms and processes are not part of it.
+2.4.4 in Rolling. A graph is a list of nodes with their endpoints, without transforms and processes.
 """
 
 from __future__ import annotations

@@ -105,13 +105,9 @@ def _merged(
     ours = {_slot(end, base.name): end for end in reversed(node.endpoints)}
     theirs = {_slot(end, base.name): end for end in _folded(_own(document.endpoints, parts))}
     ends = [_both(end, ours.get(slot)) for slot, end in theirs.items()]
-    before = {_slot(end, base.name) for end in base.endpoints}
-    added = {_slot(end, base.name) for part in parts.values() for end in part}
-    for slot, end in ((_slot(end, base.name), end) for end in node.endpoints):
-        if slot in theirs:
-            continue
-        stays = end.helper or "<" in end.name or slot in added or slot not in before
-        ends.append(end if stays else end._replace(when=end.when or NOT_IN_NODL))
+    for end in node.endpoints:
+        if _slot(end, base.name) not in theirs:
+            ends.append(end._replace(when=end.when or NOT_IN_NODL))
     return node._replace(
         endpoints=tuple(ends),
         frames=tuple(_frames(node, document.parameters)),
