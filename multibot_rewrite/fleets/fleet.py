@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.fleets.meeting import with_meetings
@@ -14,7 +14,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
 from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import with_included
-from multibot_rewrite.remap.nodl.facts import nodes_of
+from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.remap.nodl.lookup import find_interfaces
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
@@ -59,8 +59,8 @@ def make_fleet(
     """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
     ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
-    ``trust`` lets a xacro file do anything. Raises
-    as ``rewrite_all``, and UsageError for an unknown stack.
+    ``trust`` lets a xacro file do anything. Raises as ``rewrite_all``, and UsageError for an unknown
+    stack.
     """
     facts = facts_of(stacks, nodes, release, nodl)
     found = rewrite_all(
@@ -82,26 +82,27 @@ def facts_of(
     Raises UsageError for an unknown stack, and for one that the release lacks.
 
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
-    for the stack ``no_robot_state_publisher``. What NoDL says of a node is above what the library
-    says, and what the file ``nodes`` says is above both.
+    for the stack ``no_robot_state_publisher``.
     """
-    built = built_in(release)
-    library = user_stack(nodes, release) if nodes else built
-    interfaces = find_interfaces(nodl)
-    own = {name for name, node in library.nodes.items() if node != built.nodes.get(name)}
-
-    def known(stack: str) -> Iterator[NodeFacts]:
-        return nodes_of(library, stack, interfaces, own)
-
-    found = dict.fromkeys(node for name in stacks for node in known(name))
+    known = known_nodes(nodes, release, nodl)
+    library = known.library
+    found = dict.fromkeys(node for name in stacks for node in nodes_of(known, name))
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
-        added = () if has_publisher else known(STATE_PUBLISHER)
+        added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
         hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
         raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
     return tuple(found)
+
+
+def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNodes:
+    """What is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
+    built = built_in(release)
+    library = user_stack(nodes, release) if nodes else built
+    own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
+    return KnownNodes(library, find_interfaces(nodl), frozenset(own))
 
 
 def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:

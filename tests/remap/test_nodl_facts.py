@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.nodl.facts import NOT_IN_NODL, nodes_of
+from multibot_rewrite.remap.nodl.facts import NOT_IN_NODL, KnownNodes, nodes_of
 from multibot_rewrite.remap.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import built_in, user_stack
@@ -34,7 +34,7 @@ def installed(prefix: Path, key: str, text: str) -> str:
 
 
 def node_of(stack: str, *paths: str) -> NodeFacts:
-    (node,) = nodes_of(built_in(), stack, find_interfaces(paths))
+    (node,) = nodes_of(KnownNodes(built_in(), find_interfaces(paths)), stack)
     return node
 
 
@@ -169,7 +169,7 @@ def test_a_document_is_above_the_tables(tmp_path: Path) -> None:
         f"  - {{name: /scan, type: acme_msgs/msg/Scan, {QOS}}}\n"
         "service_servers: [{name: /amcl/get_state, type: lifecycle_msgs/srv/GetState}]\n"
     )
-    (before,) = nodes_of(built_in(), "amcl", NONE)
+    (before,) = nodes_of(KnownNodes(built_in(), NONE), "amcl")
     amcl = amcl_as(tmp_path, text)
     scan = ends(amcl, SUBSCRIBES)["/scan"]
     assert (scan.type, scan.when) == ("acme_msgs/msg/Scan", "")
@@ -236,7 +236,10 @@ def test_frames_are_the_defaults_of_parameters(tmp_path: Path) -> None:
 def test_a_node_of_a_stack_keeps_the_stacks_changes(tmp_path: Path) -> None:
     text = document("/cmd_vel", "local_plan").replace("std_msgs/msg/String", "acme/msg/Velocity")
     path = written(tmp_path, "nav2_controller__controller_server.nodl.yaml", text)
-    found = {it.name: it for it in nodes_of(built_in(), "navigation", find_interfaces([path]))}
+    found = {
+        it.name: it
+        for it in nodes_of(KnownNodes(built_in(), find_interfaces([path])), "navigation")
+    }
     velocity = ends(found["controller_server"])["/cmd_vel"]
     assert (velocity.remapped, velocity.type) == ("cmd_vel_nav", "acme/msg/Velocity")
 
@@ -247,7 +250,10 @@ def test_a_document_is_found_by_the_usual_name_of_a_node_that_a_stack_renames(
     path = written(
         tmp_path, "nav2_lifecycle_manager__lifecycle_manager.nodl.yaml", document("beat")
     )
-    found = {it.name: it for it in nodes_of(built_in(), "localization", find_interfaces([path]))}
+    found = {
+        it.name: it
+        for it in nodes_of(KnownNodes(built_in(), find_interfaces([path])), "localization")
+    }
     assert found["lifecycle_manager_localization"].interface == path
 
 
@@ -259,8 +265,8 @@ def test_a_node_of_the_users_own_file_stays_and_names_its_document_otherwise(
     library = user_stack(nodes)
     path = written(tmp_path, "nav2_amcl__amcl.nodl.yaml", document("theirs"))
     interfaces = find_interfaces([path])
-    (own,) = nodes_of(library, "amcl", interfaces, {"amcl"})
-    (theirs,) = nodes_of(library, "amcl", interfaces)
+    (own,) = nodes_of(KnownNodes(library, interfaces, frozenset({"amcl"})), "amcl")
+    (theirs,) = nodes_of(KnownNodes(library, interfaces), "amcl")
     assert (list(ends(own)), list(ends(theirs))) == (["mine"], ["theirs", "mine"])
 
 

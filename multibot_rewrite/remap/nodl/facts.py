@@ -7,7 +7,7 @@ launch file's own rules. These stay from the library where it knows the same end
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
@@ -51,62 +51,62 @@ class _Slot(NamedTuple):
     name: str
 
 
-def nodes_of(
-    library: NodeLibrary, stack: str, interfaces: Interfaces, own: Container[str] = ()
-) -> Iterator[NodeFacts]:
+class KnownNodes(NamedTuple):
+    """What is known of nodes: a library, NoDL documents above it, and above both the nodes that the
+    user's own file describes (``own``, by name), which the library has."""
+
+    library: NodeLibrary
+    interfaces: Interfaces
+    own: frozenset[str] = frozenset()
+
+
+def nodes_of(known: KnownNodes, stack: str) -> Iterator[NodeFacts]:
     """The nodes of a stack, each as its NoDL document says where there is one.
 
-    A name that is no stack of the library may be that of a document. ``own`` are nodes that the user
-    describes, which stay as they are. Raises UsageError.
+    A name that is no stack of the library may be that of a document. Raises UsageError.
     """
-    known = stack in library.stacks or stack in library.nodes
-    alone = None if known else _alone(library, stack, interfaces)
-    for node in [alone] if alone else stack_of(library, stack):
-        spared = alone or any(name in own for name in _names(node))
-        yield node if spared else declared(node, library, interfaces)
+    library = known.library
+    alone = None if stack in library.stacks or stack in library.nodes else _alone(known, stack)
+    yield from [alone] if alone else (declared(known, it) for it in stack_of(library, stack))
 
 
-def _names(node: NodeFacts) -> tuple[str, ...]:
-    """The names that its document may have; the last one in the library is the usual one."""
-    return (node.name, *node.nodl)
-
-
-def declared(node: NodeFacts, library: NodeLibrary, interfaces: Interfaces) -> NodeFacts:
-    """The node as its NoDL document says; itself where there is none."""
-    names = _names(node)
-    found = (file_of(interfaces, Identity(node.package, name)) for name in names)
+def declared(known: KnownNodes, node: NodeFacts) -> NodeFacts:
+    """The node as its NoDL document says; itself where there is none. Raises UsageError."""
+    usual = node.known or node.name
+    if usual in known.own:
+        return node
+    names = dict.fromkeys((node.name, *node.nodl, usual))
+    found = (file_of(known.interfaces, Identity(node.package, name)) for name in names)
     file = next(filter(None, found), "")
     if not file:
         return node
-    base = next((library.nodes[it] for it in reversed(names) if it in library.nodes), node)
-    return _merged(node, base, load(file, interfaces), library.parts)
+    return _merged(node, usual, load(file, known.interfaces), known.library.parts)
 
 
-def _alone(library: NodeLibrary, name: str, interfaces: Interfaces) -> NodeFacts | None:
+def _alone(known: KnownNodes, name: str) -> NodeFacts | None:
     """A node that only a document describes; its name may be given as ``package/name``."""
-    found = [it for it in sorted(identities(interfaces)) if name in (it.name, shown(it))]
+    found = [it for it in sorted(identities(known.interfaces)) if name in (it.name, shown(it))]
     if len(found) > 1:
-        raise UsageError(
-            f"stack {name!r} may be {' or '.join(map(shown, found))}; name one of them"
-        )
+        both = " or ".join(map(shown, found))
+        raise UsageError(f"stack {name!r} may be {both}; name one of them")
     if not found:
         return None
     bare = NodeFacts(found[0].name, found[0].package, ())
-    document = load(file_of(interfaces, found[0]), interfaces)
-    return _merged(bare, bare, document, library.parts)
+    document = load(file_of(known.interfaces, found[0]), known.interfaces)
+    return _merged(bare, bare.name, document, known.library.parts)
 
 
 def _merged(
     node: NodeFacts,
-    base: NodeFacts,
+    usual: str,
     document: Document,
     parts: Mapping[str, tuple[Endpoint, ...]],
 ) -> NodeFacts:
-    ours = {_slot(end, base.name): end for end in reversed(node.endpoints)}
-    theirs = {_slot(end, base.name): end for end in _folded(_own(document.endpoints, parts))}
+    ours = {_slot(end, usual): end for end in reversed(node.endpoints)}
+    theirs = {_slot(end, usual): end for end in _folded(_own(document.endpoints, parts))}
     ends = [_both(end, ours.get(slot)) for slot, end in theirs.items()]
     for end in node.endpoints:
-        if _slot(end, base.name) not in theirs:
+        if _slot(end, usual) not in theirs:
             ends.append(end._replace(when=end.when or NOT_IN_NODL))
     return node._replace(
         endpoints=tuple(ends),
