@@ -29,7 +29,8 @@ NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
-    description (``file:line``) of each plugin's node. ``tags`` are the robots whose prefix or postfix
+    description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
+    that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it."""
 
     table: Table
@@ -38,6 +39,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
+    origins: dict[str, str]
     tags: dict[str, str]
 
 
@@ -78,7 +80,9 @@ def facts_of(
     for the stack ``no_robot_state_publisher``.
     """
     library = user_stack(nodes, release) if nodes else built_in(release)
-    found = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    named = {node: name for name in reversed(stacks) for node in stack_of(library, name)}
+    order = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    found = [node._replace(origin=f"stack {named[node]}") for node in order]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
         added = () if has_publisher else stack_of(library, STATE_PUBLISHER)
@@ -97,13 +101,15 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
+    table = build_table([it.robot for it in members], facts, naming, plugins)
     return Fleet(
-        build_table([it.robot for it in members], facts, naming, plugins),
+        table,
         inventories,
         naming,
         edges,
         facts,
         _sources(members),
+        _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
@@ -118,6 +124,16 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
     return found
 
 
+def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
+    """By full name: the file or stack that names a node."""
+    known = {it.name: it.origin for it in facts}
+    return {
+        f"{it.namespace.rstrip('/')}/{it.name}": origin
+        for it in table.nodes
+        if (origin := known.get(it.node, ""))
+    }
+
+
 def merge(fleets: Sequence[Fleet]) -> Fleet:
     """Robots of different descriptions as one fleet; their names may not collide either."""
     first, *others = fleets
@@ -129,6 +145,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.sources, **other.sources},
+            {**first.origins, **other.origins},
             {**first.tags, **other.tags},
         )
     return first
@@ -146,6 +163,7 @@ def expected(fleet: Fleet) -> Expectation:
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     tags, places = fleet.tags, fleet.sources
     plan = expect(fleet.table, fleet.naming, frames, fleet.facts, named, places, tags)
+    plan = plan._replace(origins=tuple(fleet.origins.items()))
     nothing = vacuous(plan)
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
