@@ -8,6 +8,7 @@ from itertools import chain, islice
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.hazards import hazards
+from multibot_rewrite.checks.model_namespaces import ignored_namespaces, used_namespaces
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.references import (
     ambiguous,
@@ -38,6 +39,8 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         ambiguous(inventory),
         unknown_plugins(inventory, tree),
         unknown_hardware(inventory, tree),
+        ignored_namespaces(inventory, tree),
+        used_namespaces(inventory, tree),
         hazards(inventory, renames),
     )
     found = [
