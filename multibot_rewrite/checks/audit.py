@@ -8,6 +8,7 @@ from itertools import islice
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.hazards import hazards
+from multibot_rewrite.checks.model_namespaces import ignored_namespaces, used_namespaces
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.references import (
     ambiguous,
@@ -41,6 +42,8 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         *to_findings(document, unknown_plugins(inventory, tree), WARNING),
         *to_findings(document, unknown_hardware(inventory, tree), WARNING),
         *to_findings(document, other_ros(inventory, tree), NOTE),
+        *to_findings(document, ignored_namespaces(inventory, tree), WARNING),
+        *to_findings(document, used_namespaces(inventory, tree), WARNING),
         *hazards(inventory, renames),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))

@@ -12,6 +12,7 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of, with_included
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
@@ -28,7 +29,8 @@ NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
-    description (``file:line``) of each plugin's node. ``tags`` are the robots whose prefix or postfix
+    description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
+    that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it."""
 
     table: Table
@@ -37,6 +39,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
+    origins: dict[str, str]
     tags: dict[str, str]
 
 
@@ -50,29 +53,42 @@ def make_fleet(
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
+    release: str = NEWEST_LTS,
 ) -> Fleet:
-    """Rewrite a description for every robot and make the fleet's table.
+    """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
     ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
     as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    facts = facts_of(stacks, nodes)
+    facts = facts_of(stacks, nodes, release)
     found = rewrite_all(
-        source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
+        source,
+        robots,
+        vocabulary=vocabulary,
+        xacro_args=xacro_args,
+        trust=trust,
+        distro=release,
+        **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
     fleet = assemble(members, facts, make_naming(**policy))
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
-def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
-    """The nodes that a robot with these stacks runs, each once; UsageError for an unknown stack.
+def facts_of(
+    stacks: Sequence[str], nodes: str | None = None, release: str = NEWEST_LTS
+) -> tuple[NodeFacts, ...]:
+    """The nodes that a robot with these stacks runs in a release, each once.
+
+    Raises UsageError for an unknown stack, and for one that the release lacks.
 
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
     for the stack ``no_robot_state_publisher``.
     """
-    library = user_stack(nodes) if nodes else built_in()
-    found = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    library = user_stack(nodes, release) if nodes else built_in(release)
+    named = {node: name for name in reversed(stacks) for node in stack_of(library, name)}
+    order = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    found = [node._replace(origin=f"stack {named[node]}") for node in order]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
         added = () if has_publisher else stack_of(library, STATE_PUBLISHER)
@@ -91,13 +107,15 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
+    table = build_table([it.robot for it in members], facts, naming, plugins)
     return Fleet(
-        build_table([it.robot for it in members], facts, naming, plugins),
+        table,
         inventories,
         naming,
         edges,
         facts,
         _sources(members),
+        _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
@@ -112,6 +130,16 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
     return found
 
 
+def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
+    """By full name: the file or stack that names a node."""
+    known = {it.name: it.origin for it in facts}
+    return {
+        f"{it.namespace.rstrip('/')}/{it.name}": origin
+        for it in table.nodes
+        if (origin := known.get(it.node, ""))
+    }
+
+
 def merge(fleets: Sequence[Fleet]) -> Fleet:
     """Robots of different descriptions as one fleet; their names may not collide either."""
     first, *others = fleets
@@ -123,6 +151,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.sources, **other.sources},
+            {**first.origins, **other.origins},
             {**first.tags, **other.tags},
         )
     return first
@@ -140,6 +169,7 @@ def expected(fleet: Fleet) -> Expectation:
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     tags, places = fleet.tags, fleet.sources
     plan = expect(fleet.table, fleet.naming, frames, fleet.facts, named, places, tags)
+    plan = plan._replace(origins=tuple(fleet.origins.items()))
     nothing = vacuous(plan)
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"

@@ -11,6 +11,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.model_namespaces import below_models
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
@@ -72,6 +73,7 @@ def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHIN
             below[element] = found.active
         if found.attributes or found.text is not None:
             _claim(claims, found, element, start)
+    claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
     names = resolved_names(claims, declared)
     return Inventory(document, claims, hosts, declared, format_, names)

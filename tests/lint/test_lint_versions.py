@@ -45,7 +45,7 @@ EXACT = 1e-12
 
 
 def linted(text: str, distro: str = "lyrical") -> list[Finding]:
-    return lint_data("robot.urdf", text.encode(), Settings(release=distro))
+    return lint_data("robot.urdf", text.encode(), Settings(distro=distro))
 
 
 def codes(text: str, distro: str = "lyrical") -> set[str]:
@@ -53,7 +53,7 @@ def codes(text: str, distro: str = "lyrical") -> set[str]:
 
 
 def fixed(text: str, distro: str = "lyrical") -> str:
-    return fix("robot.urdf", text.encode(), Settings(release=distro))[0].decode()
+    return fix("robot.urdf", text.encode(), Settings(distro=distro))[0].decode()
 
 
 def complaints(text: str, version: str) -> list[Finding]:

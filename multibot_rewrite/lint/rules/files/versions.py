@@ -34,6 +34,7 @@ from multibot_rewrite.lint.schema.readers import (
 )
 from multibot_rewrite.lint.schema.versions import KNOWN, Version, read_version, version_of
 from multibot_rewrite.model import Edit
+from multibot_rewrite.releases import NEWEST_LTS
 
 QUATERNIONS = KNOWN[1]
 # What makes another version another file than the one that is read now.
@@ -199,14 +200,14 @@ def ignored_limit(subject: Subject) -> Iterator[Problem]:
     bad=_robot("1.1", _joint(_TURNED)),
     good=_robot("1.0", _joint('<origin rpy="0 0 3.14"/>')),
     fixed=_robot("1.0", _joint('<origin rpy="0 0 3.141592653589793"/>')),
-    options={"release": "jazzy"},
+    options={"distro": "jazzy"},
 )
 def version_of_release(subject: Subject) -> Iterator[Problem]:
     """With a fix where the file means the same in URDF 1.0."""
     root = subject.document.root
     declared, reads = read_version(root.get("version", "")), _reads(subject)
     if root.tag == "robot" and declared in KNOWN and declared > reads:
-        reader = reader_of(subject.settings.release, URDFDOM)
+        reader = reader_of(_release(subject), URDFDOM)
         message = f"URDF {declared} is not read by {reader}, which rejects the file"
         yield Problem(root, message, "version", f"it reads {reads}", _lowered(subject))
 
@@ -256,7 +257,7 @@ def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
 )
 def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
     """One finding for a link."""
-    reader = reader_of(subject.settings.release, RVIZ)
+    reader = reader_of(_release(subject), RVIZ)
     for link, shapes in _links_with_capsules(subject, "visual"):
         if reader.reads != CAPSULE:
             message = f"{reader} draws no <capsule> of link {link.get('name')!r}"
@@ -277,7 +278,11 @@ def _links_with_capsules(
 
 def _reads(subject: Subject) -> Version:
     """The highest version that the release's urdfdom reads."""
-    return highest_version(subject.settings.release)
+    return highest_version(_release(subject))
+
+
+def _release(subject: Subject) -> str:
+    return subject.settings.distro or NEWEST_LTS
 
 
 @memoized
