@@ -17,14 +17,15 @@ from multibot_rewrite.releases import RELEASES
 
 START = "## Parameters and launch files\n"
 _TEXT = """
-Made by `python -m multibot_rewrite.interfaces.parameters_page fixtures/interfaces`. Parameters come from the YAML files of
-generate_parameter_library, from what C++ and Python code declares or asks for, nodes from launch files in Python, XML and
-YAML. `python -m multibot_rewrite.interfaces.parameter_tables` reads them from checkouts. Each fact has its repository, tag
-or commit, file and line. A *difference* is a parameter of ours that a release lacks, another default, or a text of the sources
-that looks like a name and is not in our table, in one release. *Corrected* are those that our table no longer has, *excepted*
-those with a reason in `parameters_exceptions.tsv`.
+Made by `python -m multibot_rewrite.interfaces.parameters_page fixtures/interfaces`. Parameters come
+from the YAML files of generate_parameter_library and from what C++ and Python code declares or asks
+for, launched nodes from launch files in Python, XML and YAML. `python -m
+multibot_rewrite.interfaces.parameter_tables` reads both from checkouts; each fact has its repository,
+tag or commit, file and line. A *difference* is a parameter of ours that a release lacks, another
+default, or a text of the sources that looks like a name and is not in our table. *Corrected* are those
+that our table no longer has, *excepted* those with a reason in `parameters_exceptions.tsv`.
 
-| release | parameters | of them texts | with bounds | launched nodes | components | differences | corrected | excepted |
+| release | parameters | texts | bounded | launched | components | differences | corrected | excepted |
 |---|--:|--:|--:|--:|--:|--:|--:|--:|
 """
 _SOURCES = """

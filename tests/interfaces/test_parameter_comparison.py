@@ -1,8 +1,8 @@
 """Our table of parameters is what the sources of each release say, or an exception says why not.
 
 ``fixtures/interfaces/parameters_RELEASE.tsv`` is made by ``python -m
-multibot_rewrite.interfaces.parameter_tables``; ``parameters_exceptions.tsv`` has kind, subject, path and
-reason, ``parameters_corrected.tsv`` what was wrong once, with its releases.
+multibot_rewrite.interfaces.parameter_tables``; ``parameters_exceptions.tsv`` has kind, subject, path
+and reason, ``parameters_corrected.tsv`` what was wrong once, with its releases.
 """
 
 from __future__ import annotations
@@ -45,7 +45,10 @@ def rows(file: str) -> list[list[str]]:
     return [line.split("\t") for line in (TABLES / file).read_text().splitlines()]
 
 
-EXCEPTIONS = {(kind, subject, path): reason for kind, subject, path, reason in rows("parameters_exceptions.tsv")}
+EXCEPTIONS = {
+    (kind, subject, path): reason
+    for kind, subject, path, reason in rows("parameters_exceptions.tsv")
+}
 
 
 @cache
@@ -114,7 +117,9 @@ def test_a_table_is_read_as_it_is_written(release: str) -> None:
 def test_a_fact_that_was_looked_up_by_hand(
     release: str, package: str, path: str, default: str
 ) -> None:
-    assert default in {it.default for it in facts(release) if (it.package, it.path) == (package, path)}
+    assert default in {
+        it.default for it in facts(release) if (it.package, it.path) == (package, path)
+    }
 
 
 def test_a_parameter_that_is_gone_is_not_there() -> None:
@@ -136,13 +141,13 @@ def ours(path: str, kind: str = "frame", default: str = "", releases: str = "") 
     ("row", "source", "kinds"),
     [
         pytest.param(ours("base_frame"), fact("base_frame", default='""'), [], id="agree"),
-        pytest.param(ours("base_frame", default="a"), fact("base_frame", default="b"), [DEFAULT], id="default"),
-        pytest.param(ours("base_frame", default="a"), fact("base_frame"), [], id="default-not-in-the-text"),
+        pytest.param(ours("base", default="a"), fact("base", default="b"), [DEFAULT], id="default"),
+        pytest.param(ours("base", default="a"), fact("base"), [], id="default-not-in-the-text"),
         pytest.param(ours("base"), fact("frame"), [MISSING, UNKNOWN], id="another-name"),
         pytest.param(ours("base", releases="lyrical+"), fact("rate", "double"), [], id="later-release"),
         pytest.param(ours("base", kind="keep"), fact("rate", "double"), [], id="no-name"),
         pytest.param(ours("frame", kind="keep"), fact("frame"), [], id="known-to-be-none"),
-        pytest.param(ours("rate", kind="keep"), fact("goal", default="odom"), [UNKNOWN], id="by-default"),
+        pytest.param(ours("rate", "keep"), fact("goal", default="odom"), [UNKNOWN], id="by-default"),
         pytest.param(ours("rate", kind="keep"), fact("goal", default="a/b"), [UNKNOWN], id="by-slash"),
         pytest.param(ours("rate", kind="keep"), fact("frame", "double"), [], id="a-number"),
         pytest.param(ours("<id>.topic", "topic"), fact("topic", how=YAML), [], id="below-a-prefix"),

@@ -47,8 +47,8 @@ NOT_SENT = declare(
     "MF130",
     "interfaces-not-published",
     WARNING,
-    what="joint_state_broadcaster has interfaces that only dynamic_joint_states had, which it no longer "
-    "publishes.",
+    what="joint_state_broadcaster has interfaces that only dynamic_joint_states had, which it no "
+    "longer publishes.",
     why="joint_states has positions, velocities and efforts alone. dynamic_joint_states was off by "
     "default from ros2_controllers 6.5 on and is gone since 6.8, which is in Lyrical: nobody sees the "
     "others.",
