@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -109,8 +110,9 @@ def facts_of(
 
 
 def _origin(node: NodeFacts, stack: str) -> str:
-    described = f", described in {node.interface}" if node.interface else ""
-    return f"stack {stack}{described}"
+    # Without its folder: a plan is the same from every working directory.
+    file = os.path.basename(node.interface)
+    return f"stack {stack}, described in {file}" if file else f"stack {stack}"
 
 
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNodes:
