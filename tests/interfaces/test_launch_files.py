@@ -29,7 +29,9 @@ def test_a_launch_file_in_python() -> None:
     found = {it.line: it for it in launched_nodes("a.launch.py", PYTHON)}
     tf = "/tf:=tf /tf_static:=tf_static"
     assert sorted(found) == [5, 6, 8, 12, 14]
-    assert found[5] == LaunchedNode("node", "nav", "server", "", "", f"{tf} cmd_vel:=cmd_vel_nav", 5)
+    assert found[5] == LaunchedNode(
+        "node", "nav", "server", "", "", f"{tf} cmd_vel:=cmd_vel_nav", 5
+    )
     assert found[6][:5] == ("lifecycle_node", "nav", "server", "planner", "$(var namespace)")
     assert found[8][3:5] == ("$(var namespace)_box", "")
     assert found[12][:6] == ("component", "nav", "nav::Server", "smoother", "", tf)
@@ -37,7 +39,9 @@ def test_a_launch_file_in_python() -> None:
 
 
 def test_a_launch_file_is_never_run() -> None:
-    assert launched_nodes("a.py", "raise SystemExit\nNode(package='a', executable='b')")[0].line == 2
+    assert (
+        launched_nodes("a.py", "raise SystemExit\nNode(package='a', executable='b')")[0].line == 2
+    )
 
 
 XML = """\

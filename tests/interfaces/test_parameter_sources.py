@@ -41,13 +41,13 @@ def in_cpp(line: str, header: str = "", before: str = "") -> list[tuple[str, str
          'rclcpp::ParameterValue("scan"));', "<id>.topic", "string", "scan"),
         ('node->declare_or_get_parameter(name_ + "." + "frame", std::string("odom"));',
          "<id>.frame", "string", "odom"),
-        ('declareParameter("map_topic", rclcpp::ParameterValue("map"));', "<id>.map_topic", "string", "map"),
+        ('declareParameter("m", rclcpp::ParameterValue("map"));', "<id>.m", "string", "map"),
         ('declareParameter(source + "." + "topic", rclcpp::ParameterValue(source));',
          "<id>.<id>.topic", "", ""),
-        ('add_parameter("base", rclcpp::ParameterValue(std::string("b")), "note");', "base", "string", "b"),
+        ('add_parameter("b", rclcpp::ParameterValue(std::string("b")), "note");', "b", "string", "b"),
         ('auto_declare<std::vector<std::string>>("joints", {});', "joints", "string_array", ""),
         ('getParam(x_, "layer_name", std::string("a"));', "<id>.layer_name", "string", "a"),
-        ('node->get_parameter_or("octomap_frame", frame_, std::string("a"));', "octomap_frame", "string", "a"),
+        ('node->get_parameter_or("frame", frame_, std::string("a"));', "frame", "string", "a"),
     ],
 )  # fmt: skip
 def test_a_declared_parameter(line: str, path: str, type_: str, default: str) -> None:
