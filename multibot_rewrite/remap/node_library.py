@@ -34,10 +34,13 @@ from multibot_rewrite.remap.yaml_with_lines import (
 )
 from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
 
-NODE_KEYS = ("package", "host", "shared", "note", "with", "frames", "sends", "fixed", *ROLES)
+NODE_KEYS = (
+    *("package", "host", "plugin", "shared", "note", "with", "frames", "sends", "fixed"),
+    *ROLES,
+)
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
 ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
-STACK_KEYS = ("about", "include", "nodes")
+STACK_KEYS = ("about", "include", "container", "nodes")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps")
 _TYPE = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 # Part of a name that is only known at run time.
@@ -47,11 +50,15 @@ Known = TypeVar("Known")
 
 
 class Stack(NamedTuple):
-    """Nodes that are started together; ``include`` are stacks that it contains."""
+    """Nodes that are started together; ``include`` are stacks that it contains.
+
+    ``container`` is the node among them that all others are loaded into as components, if any.
+    """
 
     about: str
     include: tuple[str, ...]
     nodes: tuple[NodeFacts, ...]
+    container: str = ""
 
 
 class NodeLibrary(NamedTuple):
@@ -91,9 +98,16 @@ def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
 def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
         raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")
-    for other in library.stacks[name].include:
-        yield from _gathered(library, other, (*above, name))
-    yield from library.stacks[name].nodes
+    stack = library.stacks[name]
+    for other in stack.include:
+        yield from (_loaded(it, stack) for it in _gathered(library, other, (*above, name)))
+    yield from (_loaded(it, stack) for it in stack.nodes)
+
+
+def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
+    """The node as a component, if the stack has a container for it."""
+    kept = node.host or node.shared or node.name == stack.container or not stack.container
+    return node if kept else node._replace(container=stack.container)
 
 
 def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
@@ -142,6 +156,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        plugin=word_of(keys, "plugin"),
     )
 
 
@@ -235,6 +250,7 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
         word_of(keys, "about"),
         tuple(_known(entry, "stack", known) for entry in entries_of(keys, "include")),
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
+        word_of(keys, "container"),
     )
 
 
