@@ -27,10 +27,12 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     found = given or environment.get(VARIABLE, "") or NEWEST_LTS
     if found in RELEASES:
         return found
-    where = "" if given else f" (in {VARIABLE})"
-    hint = did_you_mean_one_of(found, RELEASES)
     known = f"known are {', '.join(RELEASES)}"
-    raise UsageError(f"release {found!r}{where} is not known; {hint or known}")
+    if given:
+        hint = did_you_mean_one_of(found, RELEASES)
+        raise UsageError(f"release {found!r} is not known; {hint or known}")
+    hint = f"name the release whose facts count with --distro: {', '.join(RELEASES)}"
+    raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
 def has_release(words: str, release: str) -> bool:

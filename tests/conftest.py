@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Iterator
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -48,6 +49,14 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: object) -> object:
             return "live" if any(word in file for word in LIVE_FILES) else file
 
     return Scheduling(config, log)
+
+
+@pytest.fixture(autouse=True, scope="session")
+def no_release() -> Iterator[None]:
+    """The facts that are tested are not those of the machine's ROS."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("ROS_DISTRO", raising=False)
+        yield
 
 
 @pytest.fixture(scope="session")

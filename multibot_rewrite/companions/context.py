@@ -9,11 +9,10 @@ from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.targets import placed
 from multibot_rewrite.rewriters.forms import Declared
-
-JAZZY, KILTED = "jazzy", "kilted"
 
 
 class Context(NamedTuple):
@@ -25,7 +24,7 @@ class Context(NamedTuple):
     names: CompanionNames
     topics: CompanionNames
     nodes: Mapping[str, str]
-    distro: str = JAZZY
+    distro: str = NEWEST_LTS
 
 
 class Companion(NamedTuple):
@@ -39,7 +38,7 @@ def make_context(
     declared: Declared,
     naming: Naming,
     facts: Iterable[NodeFacts],
-    distro: str = JAZZY,
+    distro: str = NEWEST_LTS,
     own: Mapping[tuple[str, str], str] = NO_OWN,
 ) -> Context:
     """The context of a description (not rewritten) and the nodes that its robots run; ``own`` as in

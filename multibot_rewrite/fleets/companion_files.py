@@ -47,7 +47,7 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
     read = {it: yaml_of(it) for it in group.companions["params"]}
     others = [document for it, document in read.items() if it != path]
-    known = load_known_nodes(plan.file.parameters)
+    known = load_known_nodes(plan.file.parameters, plan.file.distro)
     robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     made = rewrite_params(read[path], group.context, known, others, group.facts, sorted(robots))
     if path != next(iter(read)):

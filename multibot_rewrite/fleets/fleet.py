@@ -12,6 +12,7 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of, with_included
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
@@ -50,28 +51,33 @@ def make_fleet(
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
+    release: str = NEWEST_LTS,
 ) -> Fleet:
-    """Rewrite a description for every robot and make the fleet's table.
+    """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
     ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
     as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    facts = facts_of(stacks, nodes)
+    facts = facts_of(stacks, nodes, release)
     found = rewrite_all(
         source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, facts, make_naming(**policy))
+    fleet = assemble(members, facts, make_naming(**policy), release)
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
-def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts, ...]:
-    """The nodes that a robot with these stacks runs, each once; UsageError for an unknown stack.
+def facts_of(
+    stacks: Sequence[str], nodes: str | None = None, release: str = NEWEST_LTS
+) -> tuple[NodeFacts, ...]:
+    """The nodes that a robot with these stacks runs in a release, each once.
+
+    Raises UsageError for an unknown stack, and for one that the release lacks.
 
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
     for the stack ``no_robot_state_publisher``.
     """
-    library = user_stack(nodes) if nodes else built_in()
+    library = user_stack(nodes, release) if nodes else built_in(release)
     found = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
@@ -83,8 +89,13 @@ def facts_of(stacks: Sequence[str], nodes: str | None = None) -> tuple[NodeFacts
     return tuple(found)
 
 
-def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
-    """The fleet of robots that run the same nodes."""
+def assemble(
+    members: Sequence[Member],
+    facts: tuple[NodeFacts, ...],
+    naming: Naming,
+    release: str = NEWEST_LTS,
+) -> Fleet:
+    """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
@@ -92,7 +103,7 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
     return Fleet(
-        build_table([it.robot for it in members], facts, naming, plugins),
+        build_table([it.robot for it in members], facts, naming, plugins, release),
         inventories,
         naming,
         edges,

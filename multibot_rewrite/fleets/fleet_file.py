@@ -16,9 +16,11 @@ from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
+from multibot_rewrite.releases import RELEASES, chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 
 SCHEMA = "fleet.schema.json"
+NOTHING: Mapping[str, str] = {}
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
@@ -103,13 +105,17 @@ class _Read(NamedTuple):
     files: tuple[str, ...]
 
 
-def read_fleet(path: str) -> FleetFile:
-    """Read a fleet file and those it includes; raises InputError with file and line."""
+def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOTHING) -> FleetFile:
+    """Read a fleet file and those it includes; raises InputError with file and line.
+
+    The release is ``distro``, else that of the file, else as ``chosen_release`` says.
+    """
     read = _with_includes(path, ())
     data = read.data
+    release = chosen_release(distro or data.get("distro", ""), environment)
     policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
     naming = _naming(read, policy)
-    robots = tuple(_robot(read, naming, at) for at in range(len(data["robots"])))
+    robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
     _check_world(read, naming)
     nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
@@ -118,7 +124,7 @@ def read_fleet(path: str) -> FleetFile:
         path,
         policy,
         data.get("world", ""),
-        data.get("distro", "jazzy"),
+        release,
         data.get("installed", ""),
         nodes,
         parameters,
@@ -186,11 +192,12 @@ def _check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
 
 @cache
 def schema() -> dict[str, Any]:
-    """The published JSON Schema of fleet files, with the layouts that there are."""
+    """The published JSON Schema of fleet files, with the layouts and releases that there are."""
     text = files("multibot_rewrite.fleets").joinpath(SCHEMA).read_text()
     result: dict[str, Any] = json.loads(text)
     names = [*(it.name for it in LAYOUTS), *(it.short for it in LAYOUTS)]
     result["properties"]["layout"]["enum"] = names
+    result["properties"]["distro"]["enum"] = list(RELEASES)
     return result
 
 
@@ -239,7 +246,7 @@ def _check_world(read: _Read, naming: Naming) -> None:
         raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
 
 
-def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
+def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     place, name = f"{file}:{line}", own["name"]
@@ -248,7 +255,7 @@ def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
     companions = {**data.get("companions", {}), **own.get("companions", {})}
     stacks = tuple(_listed(own.get("stack", data.get("stack", []))))
-    _check_stacks(read, at, stacks)
+    _check_stacks(read, at, stacks, release)
     return RobotSpec(
         name,
         description,
@@ -266,9 +273,9 @@ def _robot(read: _Read, naming: Naming, at: int) -> RobotSpec:
     )
 
 
-def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...]) -> None:
+def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:
     try:
-        facts_of(stacks, read.data.get("nodes") or None)
+        facts_of(stacks, read.data.get("nodes") or None, release)
     except UsageError as error:
         own: Path = ("robots", at, "stack")
         found = (it for it in (own, ("stack",), ("nodes",)) if it in read.places)

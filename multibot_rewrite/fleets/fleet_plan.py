@@ -47,8 +47,9 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
     stacks: dict[tuple[str, ...], list[RewrittenRobot]] = {}
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
+    release, own = file.distro, file.nodes or None
     fleets = [
-        assemble([it.member for it in group], facts_of(names, file.nodes or None), naming)
+        assemble([it.member for it in group], facts_of(names, own, release), naming, release)
         for names, group in stacks.items()
     ]
     fleet = merge(fleets)

@@ -35,7 +35,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         key = spec.sources, spec.stacks, files
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
-        facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None)
+        facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None, plan.file.distro)
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)
         context = with_srdf(context, robots[0].semantics)

@@ -157,6 +157,7 @@ def node(
 ) -> Action:
     """A node of a robot's stacks: launch_ros's Node with its names, remappings and parameters.
 
+    For a controller it is that of its spawner, with its parameter files as ``-p``.
     ``name`` is its name in the stack; ``files`` are parameter files of the fleet, a list or separated
     by commas; ``describe`` adds ``robot_description``. ``options`` are Node's own: its remappings
     come first and its parameters last, so that they override.
@@ -240,8 +241,13 @@ def expose(substitutions: Mapping[str, Any], actions: Mapping[str, Any]) -> None
 
 
 def _node(robot: LoadedRobot, name: str, files: list[str], options: Mapping[str, Any]) -> Action:
-    """The Node; its own remappings come first and its parameters last, since rcl applies the first
-    rule that matches and the last value."""
+    """The Node, for a controller that of its spawner; its own remappings come first and its
+    parameters last, since rcl applies the first rule that matches and the last value."""
+    if robot.table.is_controller(name):
+        own = robot.spawner(name)
+        more = [word for file in files for word in ("-p", file)]
+        arguments = [*own["arguments"], *more, *(options.get("arguments") or ())]
+        return node_class()(**{**options, **own, "arguments": arguments})
     given = {
         "name": robot.table.name(name),
         "namespace": robot.table.namespace(name),

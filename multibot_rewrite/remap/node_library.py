@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.records import (
-    ACTION,
-    PUBLISHES,
-    ROLES,
-    SERVICE,
-    SUBSCRIBES,
-    TOPIC,
-    Endpoint,
-    FrameParameter,
-    NodeFacts,
+from multibot_rewrite.remap.endpoint_entries import checked_endpoint, endpoints_of
+from multibot_rewrite.remap.fact_words import (
+    FACT_KEYS,
+    check_apart,
+    releases_of,
+    share_release,
+    source_of,
+    text_and_words,
+    variants,
 )
+from multibot_rewrite.remap.records import ROLES, Endpoint, FrameParameter, NodeFacts
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
     entries,
@@ -32,25 +31,20 @@ from multibot_rewrite.remap.yaml_with_lines import (
     words_of,
     wrong,
 )
-from multibot_rewrite.rosnames import check_full_name, check_node_name, check_topic_name, expand
+from multibot_rewrite.rosnames import check_node_name
 
-NODE_KEYS = (
-    *("package", "host", "plugin", "shared", "note", "with", "frames", "sends", "fixed"),
-    *ROLES,
-)
-ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
-ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper")
-STACK_KEYS = ("about", "include", "container", "nodes")
-ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps")
-_TYPE = re.compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
-# Part of a name that is only known at run time.
-_MADE = re.compile(r"<[^<>/]+>")
-_GIVES = {"msg": "a topic", "srv": "a service", "action": "an action"}
+NODE_WORDS = ("package", "host", "plugin", "shared", "note", "with", "frames", "sends", "fixed")
+NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
+STACK_KEYS = ("about", "include", "container", "nodes", "releases")
+ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps", "releases")
+FILE_KEYS = ("parts", "nodes", "stacks")
+NOTHING: Mapping[str, str] = {}
 Known = TypeVar("Known")
 
 
 class Stack(NamedTuple):
-    """Nodes that are started together; ``include`` are stacks that it contains.
+    """Nodes that are started together; ``include`` are stacks that it contains, ``releases`` the
+    words for the releases that have it.
 
     ``container`` is the node among them that all others are loaded into as components, if any.
     """
@@ -58,34 +52,53 @@ class Stack(NamedTuple):
     about: str
     include: tuple[str, ...]
     nodes: tuple[NodeFacts, ...]
+    releases: str = ""
     container: str = ""
 
 
 class NodeLibrary(NamedTuple):
-    """Known parts (endpoints that many nodes have), nodes and stacks."""
+    """Known parts (endpoints that many nodes have), nodes and stacks.
+
+    It is of one release, or of all of them, with ``release`` empty. ``elsewhere`` says of nodes and
+    stacks that this release lacks which releases have them.
+    """
 
     parts: Mapping[str, tuple[Endpoint, ...]]
     nodes: Mapping[str, NodeFacts]
     stacks: Mapping[str, Stack]
+    release: str = ""
+    elsewhere: Mapping[str, str] = NOTHING
 
 
 def stack_of(library: NodeLibrary, name: str) -> tuple[NodeFacts, ...]:
     """The nodes of a stack, each once; nodes of included stacks come first.
 
-    The name of a node is a stack of that node alone. Raises UsageError for other names.
+    The name of a node is a stack of that node alone. Raises UsageError for other names, and for
+    what the library's release lacks.
     """
+    if name in library.elsewhere:
+        hint = "name one of these releases, or leave the stack out"
+        has = f"it is in {library.elsewhere[name]}"
+        raise UsageError(f"{library.release} has no node of stack {name!r}; {has}; {hint}")
     if name not in library.stacks and name in library.nodes:
         return (library.nodes[name],)
     if name not in library.stacks:
         raise UsageError(unknown("stack", name, library.stacks, library.nodes))
-    found: dict[str, NodeFacts] = {}
-    for node in _gathered(library, name, ()):
-        if found.setdefault(node.name, node) != node:
+    found = tuple(dict.fromkeys(_gathered(library, name, ())))
+    for node in found:
+        if any(_are_one(node, other) for other in found):
             raise UsageError(
                 f"stack {name!r} has two different nodes called {node.name!r}; "
                 "rename one of them with 'as'"
             )
-    return tuple(found.values())
+    return found
+
+
+def _are_one(node: NodeFacts, other: NodeFacts) -> bool:
+    """Have two nodes one name in one release?"""
+    if node is other or node.name != other.name:
+        return False
+    return share_release(node.releases, other.releases)
 
 
 def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
@@ -112,16 +125,16 @@ def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
 
 def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
     """``library`` with what a YAML text adds or changes."""
-    top = table(read_yaml_with_lines(text, file), "the file", NodeLibrary._fields)
+    top = table(read_yaml_with_lines(text, file), "the file", FILE_KEYS)
     new = {key: table(item, key) for key, item in top.items()}
     parts = dict(library.parts)
     parts |= {name: _part(item) for name, item in new.get("parts", {}).items()}
     nodes = dict(library.nodes)
     nodes |= {name: _node(name, item, parts) for name, item in new.get("nodes", {}).items()}
     known = {*library.stacks, *new.get("stacks", {})}
-    grown = NodeLibrary(parts, nodes, library.stacks)
+    grown = library._replace(parts=parts, nodes=nodes)
     stacks = {name: _stack(item, grown, known) for name, item in new.get("stacks", {}).items()}
-    whole = NodeLibrary(parts, nodes, {**library.stacks, **stacks})
+    whole = grown._replace(stacks={**library.stacks, **stacks})
     for name, item in new.get("stacks", {}).items():
         _check_stack(whole, name, item)
     return whole
@@ -136,28 +149,38 @@ def _check_stack(library: NodeLibrary, name: str, item: YamlItem) -> None:
 
 
 def _part(item: YamlItem) -> tuple[Endpoint, ...]:
-    return tuple(_endpoints(table(item, "a part", ROLES)))
+    return tuple(endpoints_of(table(item, "a part", ROLES)))
 
 
 def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) -> NodeFacts:
     keys = table(item, f"node {name!r}", NODE_KEYS)
     _check_node_name(item, name)
-    frames = tuple(
-        FrameParameter(parameter, word(default, f"frame {parameter}"))
-        for parameter, default in table_of(keys, "frames").items()
-    )
+    frames = tuple(_frames(keys))
     return NodeFacts(
         name,
         word_of(keys, "package"),
-        (*_endpoints(keys), *_taken_over(keys, parts)),
+        (*endpoints_of(keys), *_taken_over(keys, parts)),
         flag_of(keys, "shared"),
         word_of(keys, "note"),
         host=word_of(keys, "host"),
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        releases=releases_of(keys),
+        source=source_of(keys),
         plugin=word_of(keys, "plugin"),
     )
+
+
+def _frames(keys: Mapping[str, YamlItem]) -> Iterator[FrameParameter]:
+    for name, item in table_of(keys, "frames").items():
+        found = []
+        for it in variants(item):
+            words = text_and_words(it, f"frame {name}", "default")
+            default = word_of(words, "default")
+            found.append(FrameParameter(name, default, releases_of(words), source_of(words)))
+        check_apart(item, f"frame {name}", [it.releases for it in found])
+        yield from found
 
 
 def _sends(
@@ -185,57 +208,6 @@ def _known(item: YamlItem, what: str, known: Mapping[str, Known]) -> Known:
     return known[name]
 
 
-def _endpoints(keys: Mapping[str, YamlItem]) -> Iterator[Endpoint]:
-    for role in ROLES:
-        for name, item in table_of(keys, role).items():
-            yield _endpoint(role, name, item)
-
-
-def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
-    if isinstance(item.value, str):
-        return _checked(item, Endpoint(_kind(role, item.value), role, name, item.value))
-    keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
-    endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
-        **{key: word_of(keys, key) for key in ENDPOINT_WORDS},
-        also=words_of(keys, "also"),
-        transport=flag_of(keys, "transport"),
-        helper=flag_of(keys, "helper"),
-    )
-    return _checked(item, endpoint)
-
-
-def _kind(role: str, type_: str) -> str:
-    if role in (PUBLISHES, SUBSCRIBES):
-        return TOPIC
-    return ACTION if "/action/" in type_ else SERVICE
-
-
-def _checked(item: YamlItem, endpoint: Endpoint) -> Endpoint:
-    """The endpoint, if its name and types are valid; no rule reaches a name made at run time."""
-    for name in filter(None, (endpoint.name, endpoint.remapped)):
-        text = _MADE.sub("x", name)
-        fault = check_topic_name(text) or check_full_name(expand(text, "/", "node"))
-        if fault:
-            wrong(item, f"name {name!r}: {fault.reason}")
-    for type_ in filter(None, (endpoint.type, *endpoint.also)):
-        _check_type(item, endpoint, type_)
-    if not _MADE.search(endpoint.name) or endpoint.fixed:
-        return endpoint
-    source = f"parameter {endpoint.parameter}" if endpoint.parameter else "its configuration"
-    return endpoint._replace(fixed=f"the name is made at run time from {source}")
-
-
-def _check_type(item: YamlItem, endpoint: Endpoint, type_: str) -> None:
-    found = _TYPE.fullmatch(type_)
-    if not found:
-        wrong(item, f"{type_!r} is not a ROS type; write it like std_msgs/msg/String")
-    # The parts of an action have types like nav2_msgs/action/Spin_FeedbackMessage.
-    if endpoint.kind == TOPIC and "/action/" in type_ and "_" in type_.rpartition("/")[2]:
-        return
-    if found[1] != {TOPIC: "msg", SERVICE: "srv", ACTION: "action"}[endpoint.kind]:
-        wrong(item, f"{endpoint.role} {endpoint.name!r}: {type_} is the type of {_GIVES[found[1]]}")
-
-
 def _check_node_name(item: YamlItem, name: str) -> None:
     for token in name.split("/"):
         fault = check_node_name(token)
@@ -250,6 +222,7 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
         word_of(keys, "about"),
         tuple(_known(entry, "stack", known) for entry in entries_of(keys, "include")),
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
+        releases_of(keys),
         word_of(keys, "container"),
     )
 
@@ -269,6 +242,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
         name=name,
         shared=flag_of(keys, "shared", node.shared),
         when=word_of(keys, "when", node.when),
+        releases=releases_of(keys) or node.releases,
         endpoints=_remapped(_named(endpoints, keys), keys),
     )
 
@@ -294,7 +268,7 @@ def _renamed(
         return
     for value in values:
         name = endpoint.name.replace(given, value)
-        yield _checked(item, endpoint._replace(name=name, fixed=""))
+        yield checked_endpoint(item, endpoint._replace(name=name, fixed=""))
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:
@@ -311,6 +285,7 @@ def _remapped(
             wrong(item, unknown("name", given, {endpoint.name for endpoint in endpoints}))
         target = word(item, f"remaps {given}")
         endpoints = tuple(
-            _checked(item, e._replace(remapped=target)) if e.name == given else e for e in endpoints
+            checked_endpoint(item, e._replace(remapped=target)) if e.name == given else e
+            for e in endpoints
         )
     return endpoints

@@ -23,7 +23,8 @@ class Endpoint(NamedTuple):
     ``when`` is the condition under which it exists, empty for always. ``helper`` is true if a helper
     node in the same process uses it: a rule for the whole process reaches it, one for this node does
     not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
-    rule must lead there, since only the first match counts.
+    rule must lead there, since only the first match counts. ``releases`` are release words (see
+    ``multibot_rewrite.releases``), ``source`` the places where it can be read.
     """
 
     kind: str
@@ -38,13 +39,20 @@ class Endpoint(NamedTuple):
     when: str = ""
     helper: bool = False
     remapped: str = ""
+    releases: str = ""
+    source: tuple[str, ...] = ()
 
 
 class FrameParameter(NamedTuple):
-    """A parameter that holds a frame id, and its default; no remap rule reaches frame ids."""
+    """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
+
+    ``releases`` and ``source`` as in ``Endpoint``.
+    """
 
     parameter: str
     default: str
+    releases: str = ""
+    source: tuple[str, ...] = ()
 
 
 class NodeFacts(NamedTuple):
@@ -55,7 +63,8 @@ class NodeFacts(NamedTuple):
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes, as
     the parameters that hold parent and child. ``container`` is the node whose process it is loaded
-    into as a component, ``plugin`` the plugin of the simulator that makes it.
+    into as a component, ``plugin`` the plugin of the simulator that makes it. ``releases`` and
+    ``source`` as in ``Endpoint``.
     """
 
     name: str
@@ -68,6 +77,8 @@ class NodeFacts(NamedTuple):
     frames: tuple[FrameParameter, ...] = ()
     fixed: tuple[str, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
+    releases: str = ""
+    source: tuple[str, ...] = ()
     container: str = ""
     plugin: str = ""
 

@@ -11,24 +11,35 @@ from importlib.resources import files
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.by_release import in_release
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
 
 BUILT_IN = ("nodes.yaml", "stacks.yaml")
 
 
-def load_nodes() -> dict[str, NodeFacts]:
-    """Every built-in node by name."""
-    return dict(built_in().nodes)
+def load_nodes(release: str = NEWEST_LTS) -> dict[str, NodeFacts]:
+    """Every built-in node of a release by name."""
+    return dict(built_in(release).nodes)
 
 
 @lru_cache
-def load_stack(name: str) -> tuple[NodeFacts, ...]:
-    """The nodes of a built-in stack, or a built-in node; UsageError for an unknown name."""
-    return stack_of(built_in(), name)
+def load_stack(name: str, release: str = NEWEST_LTS) -> tuple[NodeFacts, ...]:
+    """The nodes of a built-in stack, or a built-in node.
+
+    Raises UsageError for an unknown name, and for a stack that the release lacks.
+    """
+    return stack_of(built_in(release), name)
 
 
-def user_stack(path: str) -> NodeLibrary:
+@lru_cache
+def built_in(release: str = NEWEST_LTS) -> NodeLibrary:
+    """The nodes and stacks of a release that this package knows."""
+    return in_release(every_release(), release)
+
+
+def user_stack(path: str, release: str = NEWEST_LTS) -> NodeLibrary:
     """The built-in nodes and stacks and those of a file; ``stack_of`` selects a stack.
 
     A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError
@@ -40,12 +51,12 @@ def user_stack(path: str) -> NodeLibrary:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    return extend(built_in(), text, path)
+    return in_release(extend(every_release(), text, path), release)
 
 
 @lru_cache
-def built_in() -> NodeLibrary:
-    """The nodes and stacks that this package knows."""
+def every_release() -> NodeLibrary:
+    """The nodes and stacks that this package knows, of all releases."""
     library = NodeLibrary({}, {}, {})
     for name in BUILT_IN:
         text = files("multibot_rewrite.remap").joinpath(name).read_text(encoding="utf-8")
@@ -56,4 +67,4 @@ def built_in() -> NodeLibrary:
 if __name__ == "__main__":
     from multibot_rewrite.remap.stacks_page import page
 
-    sys.stdout.write(page(built_in()))
+    sys.stdout.write(page(every_release()))

@@ -19,7 +19,9 @@ the stack `no_robot_state_publisher` leaves it out, for robots whose tf comes fr
 Names are those in the nodes' code: `scan` is resolved in the namespace, `/tf` is absolute, `~/odom`
 is below the node's name. A name in `<>` is made at run time, so no remap rule can be written before
 it is known: a stack sets it under `names`. *Only if* is the condition under which the node has the
-name. *Remapped to* is the name after the remap rules of the usual launch files.
+name. *Remapped to* is the name after the remap rules of the usual launch files. *In* names the
+only releases that have it: `kilted+` is Kilted and later, `<=jazzy` Jazzy and earlier,
+`jazzy 1.3.9+` is Jazzy from that version of the package on.
 
 Add your own nodes and stacks in a file of the same shape, for example:
 
@@ -76,6 +78,7 @@ def _stack(name: str, stack: Stack) -> str:
 def _member(node: NodeFacts) -> str:
     notes = [f"`{e.name}` remapped to `{e.remapped}`" for e in node.endpoints if e.remapped]
     notes += [f"only if: {node.when}"] * bool(node.when) + ["for all robots"] * node.shared
+    notes += _in(node.releases)
     return f"`{node.name}`" + (f": {', '.join(dict.fromkeys(notes))}" if notes else "")
 
 
@@ -84,7 +87,7 @@ def _reach(node: NodeFacts) -> Iterator[str]:
     for text in node.fixed:
         yield _row([f"`{node.name}`", "", _plain(text)])
     for frame in node.frames:
-        why = f"a frame: parameter `{frame.parameter}`"
+        why = "; ".join((f"a frame: parameter `{frame.parameter}`", *_in(frame.releases)))
         yield _row([f"`{node.name}`", f"`{frame.default}`", why])
     for endpoint in node.endpoints:
         if endpoint.fixed or endpoint.helper:
@@ -95,7 +98,10 @@ def _reach(node: NodeFacts) -> Iterator[str]:
 def _node(node: NodeFacts, library: NodeLibrary) -> str:
     facts = [f"package {node.package}"] * bool(node.package)
     facts += [f"in the process of {node.host}"] * bool(node.host)
-    facts += ["one for all robots"] * node.shared + [node.note] * bool(node.note)
+    facts += (
+        ["one for all robots"] * node.shared + _in(node.releases) + [node.note] * bool(node.note)
+    )
+    facts += [f"source: {it}" for it in node.source]
     # A part is listed by name; its own table has the rest.
     parts = {name: found for name, found in library.parts.items() if {*found} <= {*node.endpoints}}
     facts += [f"with {', '.join(parts)}"] * bool(parts)
@@ -115,9 +121,15 @@ def _cells(endpoint: Endpoint) -> list[str]:
     types = " or ".join(filter(None, (endpoint.type, *endpoint.also)))
     notes = [endpoint.note] * bool(endpoint.note) + ["image_transport"] * endpoint.transport
     notes += [f"remapped to {endpoint.remapped}"] * bool(endpoint.remapped)
+    notes = [*_in(endpoint.releases), *notes, *(f"source: {it}" for it in endpoint.source)]
     parameter = f"`{endpoint.parameter}`" if endpoint.parameter else ""
     name = f"{endpoint.role} {endpoint.kind}", f"`{endpoint.name}`"
     return [*name, types, parameter, _plain(endpoint.when), _plain("; ".join(notes))]
+
+
+def _in(releases: str) -> list[str]:
+    """The only releases that have it, as a list of one; empty for all."""
+    return [f"in {releases}"] * bool(releases)
 
 
 def _row(cells: Iterable[str]) -> str:

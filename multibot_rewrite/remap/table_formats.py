@@ -63,7 +63,7 @@ def _launch_table(found: list[Started], way: str, name: str, *words: str) -> str
     if not own and way != PROCESS:
         return ""
     for robot in dict.fromkeys(it.node.robot for it in own):
-        rows.append(f"    {robot or EVERY_ROBOT!r}: {{\n")
+        rows.append(f"    {(robot or EVERY_ROBOT)!r}: {{\n")
         for it in own:
             rows += _launch_row(it) if it.node.robot == robot else ()
         rows.append("    },\n")

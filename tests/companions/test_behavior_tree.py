@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from multibot_rewrite.companions.behavior_tree.rewrite import rewrite_behavior_tree
-from multibot_rewrite.companions.context import JAZZY, Context, make_context
+from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
@@ -22,7 +22,7 @@ DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}
 FACTS = stack_of(built_in(), "nav2")
 
 
-def context(layout: str = "L2", distro: str = JAZZY, **more: str) -> Context:
+def context(layout: str = "L2", distro: str = "jazzy", **more: str) -> Context:
     affix = more.pop("affix", "postfix" if layout == "L4" else "prefix")
     return make_context(DECLARED, make_naming(layout, affix, **more), FACTS, distro)  # type: ignore[arg-type]
 

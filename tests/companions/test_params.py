@@ -17,7 +17,6 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.params.known_nodes import (
     KINDS,
     built_in_nodes,
-    in_release,
     load_known_nodes,
 )
 from multibot_rewrite.companions.params.page import page
@@ -609,23 +608,6 @@ def test_the_data_is_what_it_seems() -> None:
     assert "world_frame" not in known.anywhere.exact
 
 
-@pytest.mark.parametrize(
-    ("words", "distro", "found"),
-    [
-        ("<=jazzy", "humble", True),
-        ("<=jazzy", "jazzy", True),
-        ("<=jazzy", "kilted", False),
-        ("kilted+", "rolling", True),
-        ("kilted+", "jazzy", False),
-        ("rolling", "jazzy", False),
-        ("<=jazzy", "unheard-of", False),
-        ("", "jazzy", False),
-    ],
-)
-def test_releases(words: str, distro: str, found: bool) -> None:
-    assert in_release(words, distro) is found
-
-
 def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
     path = f"{tmp_path}/more.yaml"
     text = "nodes:\n  rover:\n    params: {wheels: {kind: joint, list: true}, mast.*: frame}\n"
@@ -647,7 +629,7 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
         ("nodes: {a: {parms: {}}}", "did you mean 'params'"),
         ("nodes:\n  a:\n    params:\n      <jont>.b: keep", "did you mean 'joint'"),
         ("nodes: {a: {params: {b: {default: x}}}}", "has no kind"),
-        ("nodes: {a: {params: {b: {kind: frame, distros: jazy}}}}", "did you mean 'jazzy'"),
+        ("nodes: {a: {params: {b: {kind: frame, releases: jazy}}}}", "did you mean 'jazzy'"),
         ("nodes: {a: {params: {b..c: frame}}}", "empty segment"),
         ("guesses: {frme: [x]}", "did you mean 'frame'"),
         ("nodes: [", "not valid YAML"),

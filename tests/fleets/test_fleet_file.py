@@ -237,7 +237,7 @@ BAD: dict[str, tuple[str, ...]] = {
     "layout": (f"layout: frames\n{ONE}", "1: layout: 'frames' is not known; did you mean 'frames-"),
     "layout-none": (f"layout:\n{ONE}", "1: layout: the value is missing; write one, or remove the"),
     "affix": (f"affix: suffix\n{ONE}", "1: affix: 'suffix' is not known; did you mean 'postfix'?"),
-    "distro": (f"distro: humble\n{ONE}", "1: distro: 'humble' is not known; known are jazzy, kil"),
+    "distro": (f"distro: iron\n{ONE}", "1: distro: 'iron' is not known; known are humble, jazzy"),
     "stack": (f"stack: nav3\n{ONE}", "1: stack 'nav3' is not known; did you mean 'nav2'?"),
     "robots-stack": (
         "robots:\n  - {name: a, description: rover.urdf, stack: nav3}\n",

@@ -62,7 +62,10 @@ def test_the_release_that_is_meant(given: str, environment: dict[str, str], rele
 
 @pytest.mark.parametrize(
     ("given", "environment", "words"),
-    [("lyricl", {}, "did you mean 'lyrical'"), ("", {"ROS_DISTRO": "noetic"}, "in ROS_DISTRO")],
+    [
+        ("lyricl", {}, "did you mean 'lyrical'"),
+        ("", {"ROS_DISTRO": "noetic"}, "ROS_DISTRO is 'noetic'.* --distro: humble"),
+    ],
 )
 def test_a_release_that_is_not_known(given: str, environment: dict[str, str], words: str) -> None:
     with pytest.raises(UsageError, match=words):

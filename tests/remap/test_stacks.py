@@ -13,7 +13,13 @@ from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
-from multibot_rewrite.remap.stacks import built_in, load_nodes, load_stack, user_stack
+from multibot_rewrite.remap.stacks import (
+    built_in,
+    every_release,
+    load_nodes,
+    load_stack,
+    user_stack,
+)
 from multibot_rewrite.remap.stacks_page import page
 from multibot_rewrite.rosnames import expand
 
@@ -78,7 +84,7 @@ def test_the_type_decides_the_kind() -> None:
 
 
 def test_the_page_of_stacks_is_current() -> None:
-    assert (ROOT / "docs" / "stacks.md").read_text() == page(built_in())
+    assert (ROOT / "docs" / "stacks.md").read_text() == page(every_release())
 
 
 def test_a_host_is_a_node() -> None:
@@ -156,7 +162,7 @@ def test_teleop_goes_through_the_mux() -> None:
 
 
 def test_frames_are_reported_with_their_defaults() -> None:
-    frames = dict(load_nodes()["amcl"].frames)
+    frames = {it.parameter: it.default for it in load_nodes()["amcl"].frames}
     assert frames == {
         "base_frame_id": "base_footprint",
         "odom_frame_id": "odom",
@@ -174,7 +180,7 @@ def test_a_node_is_a_stack_of_its_own() -> None:
 
 
 def test_the_example_of_the_page_is_read() -> None:
-    text = page(built_in()).partition("```yaml\n")[2].partition("```")[0]
+    text = page(every_release()).partition("```yaml\n")[2].partition("```")[0]
     nodes = {node.name: node for node in stack_of(extra(text), "cell")}
     assert {"move_group", "gripper_driver", "table_to_base", "twist_mux"} <= nodes.keys()
     assert endpoint(nodes["gripper_driver"], "publishes", "/gripper/image").transport

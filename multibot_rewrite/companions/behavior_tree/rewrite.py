@@ -21,10 +21,10 @@ from multibot_rewrite.companions.behavior_tree.ports import (
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, is_plain
 from multibot_rewrite.companions.names.node_topics import FROM_NODE, spell_topic
-from multibot_rewrite.companions.params.known_nodes import in_release
 from multibot_rewrite.companions.template import check_no_slots, make_template
 from multibot_rewrite.companions.yaml_text import Splice
 from multibot_rewrite.model import InputError
+from multibot_rewrite.releases import has_release
 from multibot_rewrite.steps.document import Document, read_document, value_slot
 
 NAVIGATOR = "bt_navigator"
@@ -83,7 +83,7 @@ def _default_splices(document: Document, context: Context) -> Iterator[Splice]:
             if it["node"] != name or it["port"] in element.attrib or it["unless"] in element.attrib:
                 continue
             new = _new_text(context, it["kind"], it["value"])
-            if in_release(it["distros"], context.distro) and new != it["value"]:
+            if has_release(it["releases"], context.distro) and new != it["value"]:
                 at = _character(document, start + 1 + len(str(element.tag).encode()))
                 yield Splice(at, at, f' {it["port"]}="{new}"')
 

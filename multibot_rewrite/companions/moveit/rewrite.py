@@ -58,7 +58,7 @@ def rewrite_moveit(
     for an alias whose value would need two new names.
     """
     try:
-        return _moveit(document, context, facts_by_name(facts))
+        return _moveit(document, context, facts_by_name(facts, context.distro))
     except RecursionError:
         raise InputError(
             f"{document.file}:1: the YAML is nested too deeply for a MoveIt file"

@@ -37,9 +37,9 @@ class TopicText(NamedTuple):
 
 
 @lru_cache
-def built_in_facts() -> Facts:
+def built_in_facts(release: str) -> Facts:
     """Node -> facts, as in the stacks; nodes with their own remap rules first."""
-    library = built_in()
+    library = built_in(release)
     facts = [node for stack in library.stacks.values() for node in stack.nodes]
     facts.sort(key=lambda it: not any(endpoint.remapped for endpoint in it.endpoints))
     found: dict[str, NodeFacts] = {}
@@ -48,9 +48,9 @@ def built_in_facts() -> Facts:
     return found
 
 
-def facts_by_name(facts: Iterable[NodeFacts]) -> Facts:
-    """The facts of the robots' nodes, or the built-in ones if none are given."""
-    return {it.name: it for it in facts} or built_in_facts()
+def facts_by_name(facts: Iterable[NodeFacts], release: str) -> Facts:
+    """The facts of the robots' nodes, or the built-in ones of a release if none are given."""
+    return {it.name: it for it in facts} or built_in_facts(release)
 
 
 def spell_topic(

@@ -23,7 +23,9 @@ def is_undeclared(context: Context, word: str, value: str) -> bool:
     bare = value[1:] if word == "frame" and value.startswith("/") else value
     if not declared or not is_plain(value) or is_declared(context.names, word, bare):
         return False
-    return word != "frame" or not (bare in built_in_nodes().sent or is_shared_frame(context, bare))
+    return word != "frame" or not (
+        bare in built_in_nodes(context.distro).sent or is_shared_frame(context, bare)
+    )
 
 
 def undeclared_message(context: Context, word: str, value: str) -> tuple[str, str]:

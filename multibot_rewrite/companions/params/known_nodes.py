@@ -13,6 +13,14 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import NEWEST_LTS, has_release
+from multibot_rewrite.remap.fact_words import (
+    FACT_KEYS,
+    check_apart,
+    releases_of,
+    source_of,
+    variants,
+)
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
     flag_of,
@@ -26,15 +34,15 @@ from multibot_rewrite.remap.yaml_with_lines import (
     wrong,
 )
 
-RELEASES = ("humble", "iron", "jazzy", "kilted", "lyrical", "rolling")
 NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "interface")
 GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
 OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
 KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, "off", "exclusive", "keep")
 # Placeholders for a segment of a path; an id holds no name of a robot.
 SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
-NODE_KEYS = ("package", "aliases", "types", "known_by", "absolute", "note", "params")
-PARAM_KEYS = ("kind", "default", "list", "distros", "absolute", "note")
+NODE_WORDS = ("package", "aliases", "types", "known_by", "absolute", "note", "params")
+NODE_KEYS = (*NODE_WORDS, *FACT_KEYS)
+PARAM_KEYS = ("kind", "default", "list", "absolute", "note", *FACT_KEYS)
 # Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")
 _INDEX = "<index>"
@@ -43,17 +51,19 @@ _INDEX = "<index>"
 class Param(NamedTuple):
     """A parameter by its dotted path: what its value is, and its default.
 
-    ``distros`` are the only releases that have it, ``absolute`` those in which a relative topic in
-    it is not resolved in the robot's namespace; both may be empty.
+    ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
+    relative topic in it is not resolved in the robot's namespace, empty for none; ``source`` are the
+    places where it can be read.
     """
 
     path: str
     kind: str
     default: str = ""
     is_list: bool = False
-    distros: str = ""
+    releases: str = ""
     absolute: str = ""
     note: str = ""
+    source: tuple[str, ...] = ()
 
 
 class Branch(NamedTuple):
@@ -68,7 +78,9 @@ class Branch(NamedTuple):
 
 class KnownNode(NamedTuple):
     """A node's parameters; ``types`` are controller types, ``known_by`` parameters that identify the
-    node if its section has another name, ``defaults`` parameters that hold one name by default."""
+    node if its section has another name, ``defaults`` parameters that hold one name by default in the
+    release that was asked for. What a release lacks is known all the same: where a file sets it, it
+    is for a release that has it."""
 
     name: str
     package: str
@@ -79,6 +91,8 @@ class KnownNode(NamedTuple):
     note: str
     tree: Branch
     defaults: tuple[Param, ...]
+    releases: str = ""
+    source: tuple[str, ...] = ()
 
 
 class KnownNodes(NamedTuple):
@@ -97,43 +111,36 @@ class KnownNodes(NamedTuple):
 
 
 @lru_cache
-def built_in_nodes() -> KnownNodes:
-    """The nodes that this package knows."""
+def built_in_nodes(release: str = NEWEST_LTS) -> KnownNodes:
+    """The nodes that this package knows, with the defaults of a release."""
     text = (
         files("multibot_rewrite.companions.params")
         .joinpath("params.yaml")
         .read_text(encoding="utf-8")
     )
-    return _known({}, {}, frozenset(), text, "params.yaml")
+    return _known({}, {}, frozenset(), text, "params.yaml", release)
 
 
-def load_known_nodes(path: str = "") -> KnownNodes:
+def load_known_nodes(path: str = "", release: str = NEWEST_LTS) -> KnownNodes:
     """The built-in nodes, and those that a file of the same shape adds or changes.
 
     Raises UsageError, with file and line, for whatever is wrong in it.
     """
     if not path:
-        return built_in_nodes()
+        return built_in_nodes(release)
     try:
         text = read_text(path)
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}") from None
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
-    base = built_in_nodes()
-    return _known(base.nodes, base.guesses, base.sent, text, path)
+    base = built_in_nodes(release)
+    return _known(base.nodes, base.guesses, base.sent, text, path, release)
 
 
-def in_release(words: str, distro: str) -> bool:
-    """Is this release in ``jazzy``, ``<=jazzy`` or ``kilted+``? An unknown release is the newest."""
-    if not words:
-        return False
-    last = len(RELEASES) - 1
-    at = RELEASES.index(distro) if distro in RELEASES else last
-    bound = RELEASES.index(words.strip("<=+"))
-    if words.startswith("<="):
-        return at <= bound
-    return at >= bound if words.endswith("+") else at == bound
+def is_absolute(param: Param, release: str) -> bool:
+    """Is a relative topic in it outside of the robot's namespace in this release?"""
+    return bool(param.absolute) and has_release(param.absolute, release)
 
 
 def guess(known: KnownNodes, path: str) -> str:
@@ -157,6 +164,7 @@ def _known(
     sent: frozenset[str],
     text: str,
     file: str,
+    release: str,
 ) -> KnownNodes:
     top = table(read_yaml_with_lines(text, file), "the file", ("sent", "guesses", "nodes"))
     given = table_of(top, "guesses")
@@ -165,7 +173,7 @@ def _known(
     guesses = {**guesses, **{key: words_of(given, key) for key in given}}
     nodes = dict(nodes)
     for name, item in table_of(top, "nodes").items():
-        nodes[name] = _node(name, item, nodes.get(name))
+        nodes[name] = _node(name, item, nodes.get(name), release)
     names = {alias: it.name for it in nodes.values() for alias in (*it.aliases, it.name)}
     types = {type_: it.name for it in nodes.values() for type_ in it.types}
     names |= {name: name for name in nodes}
@@ -176,13 +184,16 @@ def _known(
     )
 
 
-def _node(name: str, item: YamlItem, old: KnownNode | None) -> KnownNode:
+def _node(name: str, item: YamlItem, old: KnownNode | None, release: str) -> KnownNode:
     """A node as a file describes it; of a known node, what the file adds."""
     keys = table(item, f"node {name!r}", NODE_KEYS)
-    absolute = _releases(keys, "absolute")
+    absolute = releases_of(keys, "absolute")
+    releases = releases_of(keys) or (old.releases if old else "")
     params = dict(old.params) if old else {}
     for path, entry in table_of(keys, "params").items():
-        params[path] = _param(path, entry, absolute)
+        params[path] = _param_in(path, entry, absolute, release)
+    here = has_release(releases, release)
+    there = [it for it in params.values() if here and has_release(it.releases, release)]
     return KnownNode(
         name,
         word_of(keys, "package", old.package if old else ""),
@@ -192,17 +203,26 @@ def _node(name: str, item: YamlItem, old: KnownNode | None) -> KnownNode:
         words_of(keys, "known_by") or (old.known_by if old else ()),
         word_of(keys, "note", old.note if old else ""),
         _tree(params.values()),
-        tuple(it for it in params.values() if _has_default(it)),
+        tuple(it for it in there if has_default(it)),
+        releases,
+        source_of(keys) or (old.source if old else ()),
     )
 
 
-def _has_default(param: Param) -> bool:
+def has_default(param: Param) -> bool:
     """Does the parameter have a default, and a path without placeholders?"""
     return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
 
 
-def _param(path: str, item: YamlItem, absolute: str) -> Param:
+def _param_in(path: str, item: YamlItem, absolute: str, release: str) -> Param:
+    """What a parameter is in a release; where that lacks it, what it is in the last that had it."""
     _check_path(path, item)
+    found = [_param(path, it, absolute) for it in variants(item)]
+    check_apart(item, f"parameter {path!r}", [it.releases for it in found])
+    return next((it for it in found if has_release(it.releases, release)), found[-1])
+
+
+def _param(path: str, item: YamlItem, absolute: str) -> Param:
     if isinstance(item.value, str):
         kind = _one_of(item, "kind", item.value, KINDS)
         return Param(path, kind, absolute=absolute if kind == "topic" else "")
@@ -215,9 +235,10 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         kind,
         word_of(keys, "default"),
         flag_of(keys, "list"),
-        _releases(keys, "distros"),
-        _releases(keys, "absolute") or (absolute if kind == "topic" else ""),
+        releases_of(keys),
+        releases_of(keys, "absolute") or (absolute if kind == "topic" else ""),
         word_of(keys, "note"),
+        source_of(keys),
     )
 
 
@@ -236,13 +257,6 @@ def _one_of(item: YamlItem, what: str, value: str, allowed: tuple[str, ...]) -> 
     if value not in allowed:
         wrong(item, unknown(what, value, allowed))
     return value
-
-
-def _releases(keys: Mapping[str, YamlItem], key: str) -> str:
-    words = word_of(keys, key)
-    if words:
-        _one_of(keys[key], "release", words.removeprefix("<=").removesuffix("+"), RELEASES)
-    return words
 
 
 def _anywhere(nodes: Mapping[str, KnownNode], guessing: re.Pattern[str]) -> Iterator[Param]:

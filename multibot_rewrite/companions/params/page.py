@@ -10,6 +10,7 @@ from multibot_rewrite.companions.params.known_nodes import (
     KnownNodes,
     Param,
     built_in_nodes,
+    has_default,
 )
 
 START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
@@ -47,7 +48,8 @@ def _listed(params: list[Param]) -> str:
 
 def _inserted(node: KnownNode) -> str:
     kinds = ("frame", "link", "stem", "off", "joint_prefix")
-    return ", ".join(f"`{it.path}`" for it in node.defaults if it.kind in kinds)
+    found = (it for it in node.params.values() if it.kind in kinds and has_default(it))
+    return ", ".join(f"`{it.path}`{it.releases and f' (in {it.releases})'}" for it in found)
 
 
 if __name__ == "__main__":

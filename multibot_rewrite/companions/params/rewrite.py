@@ -69,7 +69,13 @@ def rewrite_params(
     with gc_paused():
         check_no_slots(document.text, document.file)
         words = frozenset(robots)
-        job = ParamsJob(document, context, known or built_in_nodes(), facts_by_name(facts), words)
+        job = ParamsJob(
+            document,
+            context,
+            known or built_in_nodes(context.distro),
+            facts_by_name(facts, context.distro),
+            words,
+        )
         return _params(job, beside)
 
 
@@ -143,7 +149,7 @@ def nodes_without_section(
 ) -> tuple[Finding, ...]:
     """Nodes of the stack that have no section in any of a robot's parameter files, though all robots
     would share their defaults; reported at the first file."""
-    known = known or built_in_nodes()
+    known = known or built_in_nodes(context.distro)
     if not documents:
         return ()
     sections = [identify_sections(raw_sections(it), context, known) for it in documents]

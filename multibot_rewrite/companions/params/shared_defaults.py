@@ -10,7 +10,7 @@ import yaml
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
-from multibot_rewrite.companions.params.known_nodes import KnownNode, Param, in_release
+from multibot_rewrite.companions.params.known_nodes import KnownNode, is_absolute
 from multibot_rewrite.companions.params.name_checks import prefix_only
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
@@ -70,7 +70,7 @@ def _inexpressible(
 def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Iterator[DefaultLine]:
     """The parameters of a node whose default must differ from robot to robot."""
     for param in node.defaults:
-        if param.path in here or not _is_in_release(param, context):
+        if param.path in here:
             continue
         if param.kind == "off":
             yield DefaultLine(OFF, param.path, "false")
@@ -78,10 +78,6 @@ def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Itera
             text = SPELLERS[param.kind](context, param.default)
             if text != param.default:
                 yield DefaultLine(DEFAULT, param.path, quoted(text))
-
-
-def _is_in_release(param: Param, context: Context) -> bool:
-    return not param.distros or in_release(param.distros, context.distro)
 
 
 def _set_anywhere(
@@ -191,6 +187,7 @@ local_costmap:
 """,
     line=5,
     formats=("params",),
+    options={"distro": "jazzy"},
 )
 
 
@@ -199,7 +196,7 @@ def sources_without_topic(job: ParamsJob, section: ParamSection) -> Iterator[Fin
     top = "observation_sources"
     param = section.node.params.get("<id>.<id>.topic") if section.node else None
     namespaced = job.context.topics.naming.topics == NAMESPACE
-    if param is None or (namespaced and not in_release(param.absolute, job.context.distro)):
+    if param is None or (namespaced and not is_absolute(param, job.context.distro)):
         return
     names = dict(flattened(section.body))
     values = {id(key): value for key, value in _scalars(section.body)}

@@ -17,12 +17,13 @@ from multibot_rewrite.companions.names.node_topics import (
     spell_topic,
 )
 from multibot_rewrite.companions.names.rename_map import is_declared
-from multibot_rewrite.companions.params.known_nodes import KnownNodes, in_release
+from multibot_rewrite.companions.params.known_nodes import KnownNodes, Param, is_absolute
 from multibot_rewrite.companions.params.name_sites import NameSite, SectionNames
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.releases import RELEASES
 
 # Kinds that are only guessed where the description declares the name.
 _UNSURE = ("frame", "sensor", "interface")
@@ -148,7 +149,7 @@ MADE_ABSOLUTE = declare(
     "it never sees an obstacle (navigation2 #1433, #3772). From Kilted on it resolves the topic in the "
     "robot's namespace.",
     fix="Nothing has to be done; a topic with a slash before it is not reported. If the file is for "
-    "Kilted, set distro: kilted in the fleet file.",
+    "Kilted or later, name that release in the fleet file (distro:) or with --distro.",
     bad="""\
 local_costmap:
   local_costmap:
@@ -163,6 +164,7 @@ local_costmap:
 """,
     line=4,
     formats=("params",),
+    options={"distro": "jazzy"},
 )
 
 
@@ -177,17 +179,22 @@ def _topic(job: ParamsJob, section: ParamSection, site: NameSite) -> Iterator[Sp
         yield found_at(job.document, site.scalar, WRONG_TARGET, message, hint)
     if result.made_absolute and result.text != site.value:
         message = "relative topics of a costmap are resolved below the costmap: made absolute"
-        hint = "Kilted resolves them below the robot: set distro: kilted if the file is for that"
+        hint = f"{_others(site.param)} resolve them below the robot: set distro: if the file is for one"
         yield found_at(job.document, site.scalar, MADE_ABSOLUTE, message, hint)
 
 
 def _reach(job: ParamsJob, section: ParamSection, site: NameSite) -> str:
-    words = site.param.absolute if site.param else ""
-    if not words:
+    if site.param is None or not site.param.absolute:
         return FROM_NODE
-    if in_release(words, job.context.distro) or _is_binary_filter(site):
+    if is_absolute(site.param, job.context.distro) or _is_binary_filter(site):
         return IN_FULL
     return FROM_PARENT
+
+
+def _others(param: Param | None) -> str:
+    """The releases that resolve a relative topic in the robot's namespace."""
+    found = [it for it in RELEASES if param and not is_absolute(param, it)]
+    return f"{', '.join(found[:-1])} and {found[-1]}" if len(found) > 1 else "".join(found)
 
 
 def _is_binary_filter(site: NameSite) -> bool:
