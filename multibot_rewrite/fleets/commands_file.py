@@ -1,5 +1,4 @@
-"""``commands.md``: the commands that place, spawn and drive each robot of a fleet, load its controllers,
-and open RViz."""
+"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz."""
 
 from __future__ import annotations
 
@@ -9,7 +8,8 @@ from collections.abc import Iterable, Iterator
 from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
-from multibot_rewrite.fleets.start_poses import InitialPose, command, start_posesfrom multibot_rewrite.remap.started import SPAWN, arguments, started
+from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
+from multibot_rewrite.remap.started import SPAWN, arguments, started
 from multibot_rewrite.remap.ways import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"

@@ -59,9 +59,11 @@ class NodeNames(NamedTuple):
         """Is this node a controller, which a spawner loads? Raises nothing."""
         return node in self.started and self.started[node].way == SPAWNER
 
-    def is_component(self, node: str) -> bool:
-        """Is this node loaded into a container? Raises nothing."""
-        return node in self.started and self.started[node].way == COMPONENT
+    def container(self, node: str) -> str:
+        """The full name of the container that this node is loaded into, empty for other nodes; raises
+        nothing."""
+        it = self.started.get(node)
+        return self.full_name(it.node.home.container) if it and it.way == COMPONENT else ""
 
     @checked
     def name(self, node: str) -> str:

@@ -99,12 +99,15 @@ class LoadedRobot:
         }
 
     @checked
-    def spawner(self, controller: str) -> dict[str, Any]:
+    def spawner(self, controller: str, *paths: str) -> dict[str, Any]:
         """What loads a controller of its stacks, with its remappings, for ``Node(**...)``.
 
-        Raises UsageError for a node that is no controller or that no stack has.
+        ``paths`` are parameter files for it. Raises UsageError for a node that is no controller or
+        that no stack has.
         """
-        return self.table.spawner(controller)
+        made = self.table.spawner(controller)
+        files = (word for path in paths for word in ("-p", path))
+        return {**made, "arguments": [*made["arguments"], *files]}
 
     @checked
     def params(self, file: str, node: str) -> dict[str, Value]:

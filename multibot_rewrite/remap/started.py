@@ -41,12 +41,15 @@ def started(table: Table) -> Iterator[Started]:
     given = deliveries(table)
     rules = rules_by_taker(given)
     names = {it.node.robot: it.node.name for it in given if it.node.node == MANAGER}
+    controllers = (it.node for it in given if it.node.home.host == MANAGER)
+    # The node that a stack has for the spawner of a controller is that spawner.
+    spawners = {(it.robot, f"spawner_{it.node}") for it in controllers}
     for it in given:
         node, own = it.node, rules.get((it.node.robot, it.taker), ())
         if node.home.host == MANAGER:
             taken = own if it.way == SPAWNER else ()
             yield Started(node, SPAWNER, taken, names.get(node.robot, MANAGER))
-        elif it.way in STARTED:
+        elif it.way in STARTED and (node.robot, node.node) not in spawners:
             yield Started(node, it.way, own)
 
 
