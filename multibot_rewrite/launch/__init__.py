@@ -16,9 +16,9 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets import spawn as spawning
-from multibot_rewrite.fleets.rcl_parameters import parameters_text
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
 from multibot_rewrite.launch.node_options import node_options
 from multibot_rewrite.launch.robot_words import WORDS

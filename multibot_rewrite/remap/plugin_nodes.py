@@ -13,6 +13,7 @@ from multibot_rewrite.remap.records import (
     NodeFacts,
     NodeRule,
     NodeTable,
+    SentTransform,
 )
 
 
@@ -32,7 +33,8 @@ def _facts(node: ReadNode) -> NodeFacts:
     )
     frames = tuple(FrameParameter(*frame) for frame in node.frames)
     package = node.section.names[0]
-    return NodeFacts(node.name, package, tuple(endpoints), frames=frames, sends=node.sends)
+    sends = tuple(SentTransform(*it) for it in node.sends)
+    return NodeFacts(node.name, package, tuple(endpoints), frames=frames, sends=sends)
 
 
 def _rules(node: ReadNode, robot: str) -> Iterator[NodeRule]:
