@@ -100,8 +100,11 @@ def _of_plugin(node: NodeTable, own: tuple[Pair, ...], standing: _Standing) -> t
 
 
 def is_stand_in(node: NodeTable, endpoint: Endpoint) -> bool:
-    """Is this what a controller of the plugin publishes, and not the controller manager itself?"""
-    return node.home.process_wide and endpoint.role == PUBLISHES
+    """Is this a topic of a controller of the plugin, and not of the controller manager itself?
+
+    Those are what the plugin is known to publish, and without a role what its rules name.
+    """
+    return node.home.process_wide and endpoint.role in (PUBLISHES, "")
 
 
 def bound_to(node: NodeTable, rules: Iterable[Pair]) -> BoundNode:

@@ -243,7 +243,9 @@ def useless_rules(pairs: Pairs, controllers: Pairs | None = ()) -> Iterator[Find
 
 def _names(node: NodeFacts, table: NodeTable) -> _Names:
     bare = bind(table.name, table.namespace, ())
-    asked = {pair for endpoint in node.endpoints for pair in expanded(endpoint)}
+    # What is known of a controller manager only by its rules proves none of them.
+    known = [it for it in node.endpoints if it.role or not table.home.process_wide]
+    asked = {pair for endpoint in known for pair in expanded(endpoint)}
     return _Names(bare, frozenset((kind, resolve_bound(name, kind, bare)) for kind, name in asked))
 
 

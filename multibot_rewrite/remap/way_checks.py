@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
 from multibot_rewrite.remap.records import ACTION, TOPIC, EndpointName, Table
 from multibot_rewrite.remap.ways import PLUGIN, controller_way
-from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.rosnames import resolve_bound
 
 NOT_TAKEN = declare(
     "MR105",
@@ -45,35 +45,47 @@ NOT_TAKEN = declare(
   </gazebo>
 </robot>
 """,
-    line=4,
+    line=6,
     formats=("remap-urdf",),
     options={"robots": ("robot1", "robot2"), "layout": "tf-per-robot"},
 )
 
 
 def not_taken(table: Table) -> Iterator[Finding]:
-    """Names that a node keeps because the rule for them does not reach it; one finding a node."""
+    """Names of the code or of another robot that a node has because its rule does not reach it.
+
+    One finding a node.
+    """
     names: dict[tuple[str, str], list[EndpointName]] = {}
+    owners: dict[str, set[str]] = {}
     for it in table.names:
+        owners.setdefault(it.name, set()).add(it.robot)
         if not (it.endpoint.fixed or it.endpoint.when):
             names.setdefault((it.robot, it.node), []).append(it)
     for running in running_nodes(table):
-        own = names.get((running.node.robot, running.node.full_name), ())
-        kept = dict.fromkeys(it.endpoint.name for it in own if _keeps(it, running))
-        if kept:
-            yield _finding(running, list(kept), table.release)
+        plain = tuple((it.source, it.target) for it in running.node.rules)
+        if running.node.home.process_wide or running.rules != plain:
+            own = names.get((running.node.robot, running.node.full_name), ())
+            wrong = dict.fromkeys(_wrong(own, running, owners))
+            if wrong:
+                yield _finding(running, list(wrong), table.release)
 
 
-def _keeps(name: EndpointName, running: RunningNode) -> bool:
-    """Has the name of its code, although the table has another?"""
+def _wrong(
+    names: Iterable[EndpointName], running: RunningNode, owners: Mapping[str, set[str]]
+) -> Iterator[str]:
+    """Those called otherwise than the table says: as in the code, or like something of a robot."""
     node = running.node
-    of_controller = is_stand_in(node, name.endpoint)
-    kind = TOPIC if name.endpoint.kind == ACTION else name.endpoint.kind
-    bare = resolve_bound(name.endpoint.name, kind, bind(node.name, node.namespace, ()))
-    if bare == name.name:
-        return False
-    given = running.handed_on if of_controller else running.rules
-    return resolve_bound(name.endpoint.name, kind, bound_to(node, given)) == bare
+    own, theirs, bare = (bound_to(node, it) for it in (running.rules, running.handed_on, ()))
+    for it in names:
+        kind = TOPIC if it.endpoint.kind == ACTION else it.endpoint.kind
+        given = theirs if is_stand_in(node, it.endpoint) else own
+        found = resolve_bound(it.endpoint.name, kind, given)
+        if found == it.name:
+            continue
+        is_bare = found == resolve_bound(it.endpoint.name, kind, bare)
+        if is_bare or node.robot not in owners.get(found, {node.robot}):
+            yield it.endpoint.name
 
 
 def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
@@ -86,4 +98,5 @@ def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
     if running.way == PLUGIN and not controller_way(release).spawner:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"
-    return NOT_TAKEN.finding(message, hint, robot=node.robot, node=node.node)
+    place = {"robot": node.robot, "node": node.node, "names": tuple(kept)}
+    return NOT_TAKEN.finding(message, hint, **place)

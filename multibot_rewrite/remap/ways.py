@@ -134,11 +134,19 @@ def _deliveries(
     way, taker = way_of(node, known, release), taker_of(node, known, release)
     lead = f"{node.name}:" if way == HOST else ""
     yield Delivery(node, way, taker, tuple(_pair(it, lead) for it in node.rules))
-    # A helper node of a component has the rules of the process, which are those of the container.
-    own = helpers.get(node.full_name, frozenset())
-    if way == COMPONENT and own:
-        rules = tuple(_pair(it) for it in node.rules if it.source in own)
-        yield Delivery(node, HOST, node.home.container, rules)
+    # A helper node has the rules of its process alone, and not by the name of the node it helps.
+    process = _process_of(node, known)
+    asked = helpers.get(node.full_name, frozenset())
+    asked -= {it.source for it in process.rules}
+    rules = tuple(_pair(it) for it in node.rules if it.source in asked)
+    if rules and process is not node:
+        yield Delivery(node, HOST, process.node, rules)
+
+
+def _process_of(node: NodeTable, known: Nodes) -> NodeTable:
+    """The node whose process this one is in: its host, the container of either, or itself."""
+    host = known.get((node.robot, node.home.host), node)
+    return known.get((node.robot, host.home.container), host)
 
 
 def _pair(rule: NodeRule, lead: str = "") -> Pair:
