@@ -7,11 +7,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
-from multibot_rewrite.fleets.fleet import facts_of
+from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.output_file import yaml_of
+from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
-from multibot_rewrite.remap.stacks import built_in, user_stack
 
 # What decides the nodes of a robot.
 NodeSources = tuple[tuple[str, ...], tuple[str, ...]]
@@ -26,13 +26,17 @@ def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotNodes:
     """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
     known = load_known_nodes(file.parameters, file.distro)
     documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    library = user_stack(file.nodes, file.distro) if file.nodes else built_in(file.distro)
-    return nodes_of(stack_nodes(spec, file), given_nodes(documents, known), library.nodes)
+    given = given_nodes(documents, known)
+    facts = known_nodes(file.nodes, file.distro, file.nodl)
+    nodes = dict(facts.library.nodes)
+    named = {it.known for it in given} & nodes.keys()
+    nodes |= {name: declared(facts, nodes[name]) for name in named}
+    return nodes_of(stack_nodes(spec, file), given, nodes)
 
 
 def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
     """The nodes of a robot's stacks, as their usual files have them."""
-    return facts_of(spec.stacks, file.nodes or None, file.distro)
+    return facts_of(spec.stacks, file.nodes or None, file.distro, file.nodl)
 
 
 def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:

@@ -37,6 +37,7 @@ from multibot_rewrite.rosnames import check_node_name
 NODE_WORDS = (
     *("package", "host", "plugin", "shared", "note"),
     *("with", "frames", "sends", "ids", "fixed"),
+    "nodl",
 )
 SENT_KEYS = ("child", "if")
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
@@ -171,6 +172,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        nodl=words_of(keys, "nodl"),
         ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
         releases=releases_of(keys),
         source=source_of(keys),

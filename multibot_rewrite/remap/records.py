@@ -80,9 +80,10 @@ class NodeFacts(NamedTuple):
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
     are words in <> of its names, with the parameter that lists what they stand for. ``known`` is its
     name in nodes.yaml if it has another one. ``origin`` is where a robot's own files name it
-    (``file:line``), empty for a node of a stack. ``container`` is the node whose process it is
-    loaded into as a component, ``plugin`` the plugin of the simulator that makes it. ``releases``,
-    ``source``: see ``Endpoint``.
+    (``file:line``), empty for a node of a stack. ``releases``, ``source``: see ``Endpoint``. ``nodl``
+    are further names of its NoDL document, such as its executable; ``interface`` is the NoDL file that
+    its endpoints are from, empty for the library. ``container`` is the node whose process it is
+    loaded into as a component, ``plugin`` the plugin of the simulator that makes it.
     """
 
     name: str
@@ -100,6 +101,8 @@ class NodeFacts(NamedTuple):
     origin: str = ""
     releases: str = ""
     source: tuple[str, ...] = ()
+    nodl: tuple[str, ...] = ()
+    interface: str = ""
     container: str = ""
     plugin: str = ""
 
