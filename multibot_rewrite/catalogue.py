@@ -116,7 +116,7 @@ HOMES: tuple[Home, ...] = (
         GRAPH_INTRO,
     ),
     Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
-    Home("MR1", "remap tables", ("remap.table_checks",)),
+    Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 
 
