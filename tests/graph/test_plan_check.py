@@ -183,7 +183,17 @@ def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) 
 # ---------------------------------------------------------------- what a plan has besides
 
 
-def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.fixture
+def teleop_plan(tmp_path: Path) -> Path:
+    """A stack with a node that need not run: its keyboard."""
+    path = tmp_path / "plan.yaml"
+    robots = (ROVER, "robot1", "robot2", "--stack", "teleop_direct", "--layout", "both")
+    assert main(["plan", *robots, "-o", str(path)]) == 0
+    return path
+
+
+def test_a_plan_from_before_is_read(teleop_plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    plan = teleop_plan
     graph = as_planned(plan)
     text = plan.read_text().partition("\nsources:")[0].replace("ignored_nodes: []\n", "") + "\n"
     kept = re.sub(r"^    (other_frames|optional): \[[^]]*\]\n", "", text, flags=re.MULTILINE)
@@ -194,11 +204,12 @@ def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[st
 
 
 def test_a_node_under_a_condition_is_optional(
-    plan: Path, capsys: pytest.CaptureFixture[str]
+    teleop_plan: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    first, _ = from_yaml(plan.read_bytes(), "plan").robots
-    assert first.optional == ("/robot1/route_server",)
-    assert held(plan, without_node(as_planned(plan), "/robot1/route_server"), capsys)[0] == 0
+    first, _ = from_yaml(teleop_plan.read_bytes(), "plan").robots
+    keyboard = "/robot1/teleop_twist_keyboard"
+    assert first.optional == (keyboard,)
+    assert held(teleop_plan, without_node(as_planned(teleop_plan), keyboard), capsys)[0] == 0
 
 
 def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:
