@@ -76,7 +76,7 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, facts, make_naming(**policy))
+    fleet = assemble(members, facts, make_naming(**policy), release)
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
@@ -123,15 +123,20 @@ def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNo
     return KnownNodes(library, find_interfaces(nodl), frozenset(own))
 
 
-def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
-    """The fleet of robots that run the same nodes."""
+def assemble(
+    members: Sequence[Member],
+    facts: tuple[NodeFacts, ...],
+    naming: Naming,
+    release: str = NEWEST_LTS,
+) -> Fleet:
+    """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
-    table = build_table([it.robot for it in members], facts, naming, plugins)
+    table = build_table([it.robot for it in members], facts, naming, plugins, release)
     return Fleet(
         table,
         inventories,
