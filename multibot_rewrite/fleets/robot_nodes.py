@@ -10,6 +10,7 @@ from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.output_file import yaml_of
+from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.stacks import built_in, user_stack
 
@@ -26,8 +27,12 @@ def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotNodes:
     """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
     known = load_known_nodes(file.parameters, file.distro)
     documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    library = user_stack(file.nodes, file.distro) if file.nodes else built_in(file.distro)
-    return nodes_of(stack_nodes(spec, file), given_nodes(documents, known), library.nodes)
+    return nodes_of(stack_nodes(spec, file), given_nodes(documents, known), library_of(file).nodes)
+
+
+def library_of(file: FleetFile) -> NodeLibrary:
+    """The nodes and stacks that a fleet file knows."""
+    return user_stack(file.nodes, file.distro) if file.nodes else built_in(file.distro)
 
 
 def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
