@@ -14,7 +14,7 @@ from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 OUTSIDE = frozenset(
     """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
     joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
-    parameter_events robot_description external_wrench manual_control""".split()  # noqa: SIM905
+    parameter_events robot_description external_wrench manual_control speed_scaling_input""".split()  # noqa: SIM905
 )
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
 

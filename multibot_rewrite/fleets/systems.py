@@ -65,7 +65,7 @@ def system_before(
     sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
     return System(
         given,
-        tuple(exported(source.root, source.file)),
+        tuple(_plain(robot, it) for it in exported(source.root, source.file)),
         tuple(ends),
         tuple(shared),
         frozenset(sent),
