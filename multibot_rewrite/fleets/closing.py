@@ -18,7 +18,7 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
-from multibot_rewrite.fleets.robot_nodes import library_of, stack_nodes
+from multibot_rewrite.fleets.robot_nodes import robot_nodes
 from multibot_rewrite.fleets.systems import System, system_after, system_before
 
 # So many names in one line.
@@ -151,10 +151,10 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
     ``fleet`` has all nodes that are started, ``texts`` are the files that were made.
     """
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
-    library = library_of(plan.file).nodes
     for group in group_robots(plan):
         robot = group.robots[0]
-        before = system_before(robot, stack_nodes(robot.spec, plan.file), library, known)
+        evidence = robot_nodes(robot.spec, plan.file)
+        before, library = system_before(robot, evidence), evidence.known
         after = system_after(robot, fleet, texts, known)
         made = [*interface_gaps(before.given, library, before.exports)]
         now = [*interface_gaps(after.given, library, after.exports)]

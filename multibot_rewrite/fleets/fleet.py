@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -13,7 +14,9 @@ from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of, with_included
+from multibot_rewrite.remap.node_library import with_included
+from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of
+from multibot_rewrite.remap.nodl.lookup import find_interfaces
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
@@ -50,6 +53,7 @@ def make_fleet(
     policy: Policy,
     *,
     nodes: str | None = None,
+    nodl: Sequence[str] = (),
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
@@ -57,10 +61,11 @@ def make_fleet(
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
-    ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
-    as ``rewrite_all``, and UsageError for an unknown stack.
+    ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
+    ``trust`` lets a xacro file do anything. Raises as ``rewrite_all``, and UsageError for an unknown
+    stack.
     """
-    facts = facts_of(stacks, nodes, release)
+    facts = facts_of(stacks, nodes, release, nodl)
     found = rewrite_all(
         source,
         robots,
@@ -71,12 +76,15 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, facts, make_naming(**policy))
+    fleet = assemble(members, facts, make_naming(**policy), release)
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
 def facts_of(
-    stacks: Sequence[str], nodes: str | None = None, release: str = NEWEST_LTS
+    stacks: Sequence[str],
+    nodes: str | None = None,
+    release: str = NEWEST_LTS,
+    nodl: Sequence[str] = (),
 ) -> tuple[NodeFacts, ...]:
     """The nodes that a robot with these stacks runs in a release, each once.
 
@@ -85,13 +93,15 @@ def facts_of(
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
     for the stack ``no_robot_state_publisher``.
     """
-    library = user_stack(nodes, release) if nodes else built_in(release)
-    named = {node: name for name in reversed(stacks) for node in stack_of(library, name)}
-    order = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
-    found = [node._replace(origin=f"stack {named[node]}") for node in order]
+    known = known_nodes(nodes, release, nodl)
+    library = known.library
+    runs = {name: list(nodes_of(known, name)) for name in stacks}
+    named = {node: name for name in reversed(stacks) for node in runs[name]}
+    order = dict.fromkeys(node for name in stacks for node in runs[name])
+    found = [node._replace(origin=_origin(node, named[node])) for node in order]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
-        added = () if has_publisher else stack_of(library, STATE_PUBLISHER)
+        added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
         hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
@@ -99,15 +109,34 @@ def facts_of(
     return tuple(found)
 
 
-def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
-    """The fleet of robots that run the same nodes."""
+def _origin(node: NodeFacts, stack: str) -> str:
+    # Without its folder: a plan is the same from every working directory.
+    file = os.path.basename(node.interface)
+    return f"stack {stack}, described in {file}" if file else f"stack {stack}"
+
+
+def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNodes:
+    """What is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
+    built = built_in(release)
+    library = user_stack(nodes, release) if nodes else built
+    own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
+    return KnownNodes(library, find_interfaces(nodl), frozenset(own))
+
+
+def assemble(
+    members: Sequence[Member],
+    facts: tuple[NodeFacts, ...],
+    naming: Naming,
+    release: str = NEWEST_LTS,
+) -> Fleet:
+    """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
-    table = build_table([it.robot for it in members], facts, naming, plugins)
+    table = build_table([it.robot for it in members], facts, naming, plugins, release)
     return Fleet(
         table,
         inventories,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.closure.topics import End
@@ -10,7 +10,7 @@ from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs, read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
-from multibot_rewrite.evidence.nodes import children_of, nodes_of
+from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.fleets.bridge_entry import BOTH, ROS
@@ -18,6 +18,7 @@ from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_nodes import RobotEvidence
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
@@ -41,19 +42,12 @@ class System(NamedTuple):
     sent: frozenset[str]
 
 
-def system_before(
-    robot: RewrittenRobot,
-    stack: Sequence[NodeFacts],
-    library: Mapping[str, NodeFacts],
-    known: KnownNodes,
-) -> System:
+def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
     usual launch files remap."""
-    documents, bridges = _documents(robot, "params"), _documents(robot, "bridge")
-    given = tuple(given_nodes(documents, known))
-    source = robot.member.source
+    source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
-    nodes = [_runs(it, moves) for it in nodes_of(stack, given, library).nodes]
+    nodes = [_runs(it, moves) for it in evidence.nodes]
     reading = read(source.source, source.file, robot.member.vocabulary)
     shared = [end for node in nodes if node.shared for end in _ends_of(node, given)]
     ends = [

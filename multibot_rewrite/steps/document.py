@@ -38,6 +38,7 @@ _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
 # How far the common spelling of an attribute is looked for.
 _NEAR = 4096
+CORRECT = "correct the XML and try again"
 _HINTS = (
     ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),
@@ -87,14 +88,17 @@ def _refuse_bytes(source: bytes, file: str) -> None:
         width = 32 if b"\0\0" in source[:8] else 16
         name = f"UTF-{width}"
         raise InputError(f"{file}: the text is {name}; convert it: iconv -f {name} -t UTF-8")
+    at = source.find(b"\0")
+    # The libxml2 of Ubuntu 22.04 takes it for the end of the file.
+    if at >= 0 and source[:at].strip():
+        line, column = locate(source, at)
+        raise InputError(f"{file}:{line}:{column}: not well-formed XML: a NUL byte; {CORRECT}")
 
 
 def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
     message = " ".join(str(error.msg).split()).partition(", line ")[0]
     message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
-    hint = next(
-        (hint for start, hint in _HINTS if start in message), "correct the XML and try again"
-    )
+    hint = next((hint for start, hint in _HINTS if start in message), CORRECT)
     line, column = error.position
     return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
 
@@ -156,10 +160,10 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
     # The common spelling, inside this tag and not inside another value; else the exact way.
     written = f' {attribute}="{value}"'.encode()
     begin = source.find(written, start, start + _NEAR)
-    if begin < 0 or source.find(b">", start, begin) >= 0:
+    earlier = source[start:begin]
+    if begin < 0 or b">" in earlier:
         return attribute_slot(source, start, attribute, value)
-    earlier = source.find(b"=", start, begin) >= 0
-    if earlier and (b"'" in source[start:begin] or source.count(b'"', start, begin) % 2):
+    if b"=" in earlier and (b"'" in earlier or earlier.count(b'"') % 2):
         return attribute_slot(source, start, attribute, value)
     return begin + len(attribute) + 3, begin + len(written) - 1
 
@@ -171,18 +175,17 @@ def value_places(
     slot = value_slot(source, start, attribute, value)
     if slot is None:
         return None
-    begin, end = slot
-    # As many bytes as characters: nothing is escaped.
-    if end - begin == len(value):
-        return [begin + at for at in characters]
-    places = [_place(source, slot, value, at) for at in characters]
+    places = [place_in(source, slot, value, at) for at in characters]
     found = [place for place in places if place is not None]
     return found if len(found) == len(places) else None
 
 
-def _place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
+def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
     """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
     begin, end = slot
+    # As many bytes as characters: nothing is escaped.
+    if end - begin == len(value):
+        return begin + at
     raw = source[begin:end]
     head, tail = value[:at].encode(), value[at:].encode()
     if raw.endswith(tail) and b";" not in tail:

@@ -6,6 +6,7 @@ The grammar is in the docstring of the package.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
@@ -56,6 +57,8 @@ FORMS = (
     "argument",
     "collision",
 )
+# A vocabulary has hundreds of paths, which are asked for again with every plugin.
+PATHS = 4096
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
@@ -306,14 +309,16 @@ def is_step(text: str) -> bool:
     return _ONE_STEP.fullmatch(text) is not None
 
 
-def split_path(path: str) -> tuple[list[str], str]:
+@lru_cache(maxsize=PATHS)
+def split_path(path: str) -> tuple[tuple[str, ...], str]:
     """The child steps of a path, and the attribute at its end or an empty string."""
     bracket = path.rfind("]") + 1
     steps, _, attribute = path[bracket:].partition("@")
     whole = path[:bracket] + steps
-    return (whole.split("/") if whole else []), attribute
+    return (tuple(whole.split("/")) if whole else ()), attribute
 
 
+@lru_cache(maxsize=PATHS)
 def split_step(step: str) -> tuple[str, str, str]:
     """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
     tag, _, ask = step.partition("[@")
