@@ -12,6 +12,7 @@ from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
+from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
 from multibot_rewrite.sources.job import Job, read_job, read_jobs
@@ -34,7 +35,7 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, own = self.job
+        data, file, naming, _, urdf, own, _ = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
         return pipeline.prepare(data, file, naming, tree, beside, own)
@@ -83,6 +84,11 @@ class Rewrite(NamedTuple):
         return not_proved(self.findings)
 
     @property
+    def distro(self) -> str:
+        """The ROS 2 release whose facts it was made with; raises nothing."""
+        return self.prepared.job.release
+
+    @property
     def changes(self) -> list[Change]:
         """Every renamed or inserted value, in source order; raises as ``template`` does."""
         return list_changes(self.template, self.robot)
@@ -106,6 +112,7 @@ def rewrite(
     again: bool = False,
     file: str = "",
     trust: bool = False,
+    distro: str = "",
 ) -> Rewrite:
     """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
@@ -119,7 +126,8 @@ def rewrite(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
+    release = release_here(distro)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
     return next(rewrite_job(job, [robot], again))
 
 
@@ -141,6 +149,7 @@ def rewrite_all(
     again: bool = False,
     file: str = "",
     trust: bool = False,
+    distro: str = "",
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -152,12 +161,14 @@ def rewrite_all(
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
-    read what is near them (SECURITY.md). Raises as ``rewrite`` does, before the first result.
+    read what is near them (SECURITY.md); ``distro`` is the ROS 2 release whose facts count (default:
+    ROS_DISTRO, else the newest LTS). Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     names = tuple(robots)
     _check_robots(names)
-    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file, trust)
+    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    jobs = read_jobs(names, source, naming, *given)
     return rewrite_jobs(jobs, again)
 
 
@@ -207,6 +218,7 @@ def explain(
     vocabulary: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
+    distro: str = "",
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``.
 
@@ -215,7 +227,8 @@ def explain(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
+    release = release_here(distro)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
     urdf_declarations = job.urdf_declarations
@@ -242,6 +255,7 @@ def strip(
     vocabulary: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
+    distro: str = "",
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
@@ -252,12 +266,21 @@ def strip(
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
-    before = b""
+    before, release = b"", release_here(distro)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
-        of = read_job(made, naming, beside, xacro_args, vocabulary, words=[robot], trust=trust)
+        of = read_job(
+            made,
+            naming,
+            beside,
+            xacro_args,
+            vocabulary,
+            words=[robot],
+            trust=trust,
+            release=release,
+        )
         naming, before = of.naming, b"" if beside else of.data
-    job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust)
+    job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust, release=release)
     beside_urdf = job.urdf_declarations
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
 

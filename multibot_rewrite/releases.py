@@ -36,9 +36,9 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
-def release_here(given: str = "") -> str:
+def release_here(given: str | None = None) -> str:
     """``chosen_release`` with this process's environment: for commands and public calls alone."""
-    return chosen_release(given, os.environ)
+    return chosen_release(given or "", os.environ)
 
 
 def has_release(words: str, release: str) -> bool:

@@ -36,7 +36,9 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     check_report(options, printed=False)
-    plan = plan_fleet(read_fleet(options.fleet), trust=options.trust)
+    plan = plan_fleet(
+        read_fleet(options.fleet, options.distro or "", os.environ), trust=options.trust
+    )
     made = make_outputs(plan, os.path.abspath(options.output))
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Sequence
 from math import inf
 
@@ -62,7 +63,7 @@ def _plan(options: argparse.Namespace) -> Expectation:
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    file = read_fleet(path)
+    file = read_fleet(path, options.distro or "", os.environ)
     if options.output:
         check_target(options.output, input_files(file))
     return expected(with_start_pose_nodes(plan_fleet(file, trust=options.trust)))

@@ -16,6 +16,7 @@ from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import InputError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
@@ -64,7 +65,9 @@ def run(options: argparse.Namespace) -> int:
         check_target(
             options.output, [*paths, *options.vocabulary, *filter(None, [options.explained])]
         )
-    tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
+    tree = builtin_tree(
+        (*configured_vocabulary(paths[0]), *options.vocabulary), release_here(options.distro)
+    )
     unreadable: list[Unreadable] = []
     arguments = filled(xacro_args(options))
 

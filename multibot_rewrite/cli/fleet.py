@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
@@ -11,6 +12,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import release_here
 
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
@@ -54,7 +56,7 @@ def _from_file(options: argparse.Namespace) -> Fleet:
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    file = read_fleet(options.input)
+    file = read_fleet(options.input, options.distro or "", os.environ)
     if options.output:
         check_target(options.output, input_files(file))
     return with_start_pose_nodes(plan_fleet(file, trust=options.trust))
@@ -74,6 +76,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,
+        release=release_here(options.distro),
     )
 
 

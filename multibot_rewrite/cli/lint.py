@@ -34,6 +34,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import release_here
 
 SUFFIXES = (".urdf", ".xacro", ".srdf")
 STDIN = "-"
@@ -49,7 +50,9 @@ def run(options: argparse.Namespace) -> int:
             explain.list_rules(options, RULES) if options.list_rules else explain.of_option(options)
         )
     check_use(options)
-    config = with_options(configured(".", options.config), **given(options))
+    config = configured(".", options.config)
+    release = release_here(options.distro or config.distro)
+    config = with_options(config, **given(options), release=release)
     paths, unreadable = _files(options, config)
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]

@@ -77,6 +77,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         again=options.again,
         file=input_name(options),
         trust=options.trust,
+        distro=options.distro or "",
     )
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
@@ -107,6 +108,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         vocabulary=vocabulary,
         file=name,
         trust=options.trust,
+        distro=options.distro or "",
         **extra,
     )
 

@@ -29,6 +29,7 @@ def run(options: argparse.Namespace) -> int:
         urdf=options.urdf,
         xacro_args=xacro_args(options),
         trust=options.trust,
+        distro=options.distro or "",
         vocabulary=[*configured_vocabulary(path), *options.vocabulary],
         **policy(options),
     )

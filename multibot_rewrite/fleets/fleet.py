@@ -60,7 +60,13 @@ def make_fleet(
     """
     facts = facts_of(stacks, nodes, release)
     found = rewrite_all(
-        source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
+        source,
+        robots,
+        vocabulary=vocabulary,
+        xacro_args=xacro_args,
+        trust=trust,
+        distro=release,
+        **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
     fleet = assemble(members, facts, make_naming(**policy))

@@ -38,7 +38,7 @@ def plan_fleet(
     """
     with gc_paused():
         naming = make_naming(**file.policy)
-        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
         return FleetPlan(file, tuple(robots), _fleet(file, robots, naming), read)
 

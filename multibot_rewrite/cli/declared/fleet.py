@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -47,6 +48,7 @@ _DESCRIPTION = OptionGroup(
         ),
         value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
         VOCABULARY,
+        DISTRO,
         TRUST,
     ),
 )
@@ -66,7 +68,7 @@ BUILD = Command(
         Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
     ),
     (
-        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), TRUST)),
+        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), DISTRO, TRUST)),
         output_group(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),

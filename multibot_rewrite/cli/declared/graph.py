@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -48,6 +49,7 @@ CHECK = Command(
                     about="what multibot snapshot wrote, instead of the live graph",
                     type=values.path,
                 ),
+                DISTRO,
                 TRUST,
             ),
         ),
@@ -99,6 +101,7 @@ LEARN = Command(
                     about="what multibot snapshot wrote, instead of the live graph",
                     type=values.path,
                 ),
+                DISTRO,
             ),
         ),
         output_group(

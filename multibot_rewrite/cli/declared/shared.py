@@ -13,6 +13,7 @@ from multibot_rewrite.naming import (
     SHARED_FRAMES,
     SHARED_TOPICS,
 )
+from multibot_rewrite.releases import NEWEST_LTS, RELEASES, VARIABLE
 
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="
@@ -66,6 +67,13 @@ VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
 URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
+DISTRO = choice(
+    "--distro",
+    "NAME",
+    RELEASES,
+    f"the ROS 2 release whose facts count: {', '.join(RELEASES)}; default: the fleet file's or"
+    f" configuration's, else {VARIABLE}, else {NEWEST_LTS}",
+)
 TRUST = switch(
     "--trust",
     about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",

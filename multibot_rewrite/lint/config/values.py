@@ -14,6 +14,7 @@ from multibot_rewrite.lint.config.patterns import anchored, with_folders
 from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rosnames.names import check_robot_name
 
 
@@ -81,6 +82,10 @@ def _one_of(given: Given, allowed: Sequence[str]) -> str:
 
 def _level(given: Given) -> str:
     return _one_of(given, LEVELS)
+
+
+def _release(given: Given) -> str:
+    return _one_of(given, RELEASES)
 
 
 def targets(given: Given) -> tuple[str, ...]:
@@ -199,6 +204,7 @@ READERS: Mapping[str, Callable[[Given], object]] = {
     "shared-topics": _texts,
     "targets": targets,
     "roots": _folders,
+    "distro": _release,
     "urdf": _file,
     "vocabulary": _files,
     "xacro": _argument_sets,
