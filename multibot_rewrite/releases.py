@@ -41,6 +41,11 @@ def release_here(given: str | None = None) -> str:
     return chosen_release(given or "", os.environ)
 
 
+def facts_of_release(release: str) -> str:
+    """The end of a summary: whose facts it rests on; nothing where that is not known."""
+    return f" (facts of {release})" if release else ""
+
+
 def has_release(words: str, release: str) -> bool:
     """Does a fact with these release words hold in ``release``? No words stand for all releases."""
     return not words or any(_holds(it, release) for it in _terms(words))

@@ -82,7 +82,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
 
 def about(options: argparse.Namespace, made: Fleet) -> About:
     """What the findings of a fleet are about."""
-    return About([options.input], words_of(made))
+    return About([options.input], words_of(made), made.table.release)
 
 
 def words_of(made: Fleet) -> dict[str, str]:

@@ -19,7 +19,7 @@ from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import release_here
+from multibot_rewrite.releases import facts_of_release, release_here
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.sources.read import read_file
 
@@ -36,12 +36,16 @@ def run(options: argparse.Namespace) -> int:
         say(f"incomplete: {caveat.message}", PROGRAM)
     namespace = options.namespace or "/"
     names = choose_nodes(graph, options.node, namespace)
-    library = built_in(release_here(options.distro))
+    release = release_here(options.distro)
+    library = built_in(release)
     learned = learn(graph, names, namespace, library)
     deliver(options, to_yaml(learned, options.stack, library).encode())
     for remark in _notes(graph, learned, options.namespace, bool(options.node)):
         note(options, f"note: {remark}")
-    note(options, f"{plural(len(learned), 'node')} learned as stack {options.stack}")
+    note(
+        options,
+        f"{plural(len(learned), 'node')} learned as stack {options.stack}{facts_of_release(release)}",
+    )
     return INCONCLUSIVE if doubtful else DONE
 
 

@@ -34,7 +34,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import release_here
+from multibot_rewrite.releases import facts_of_release, release_here
 
 SUFFIXES = (".urdf", ".xacro", ".srdf")
 STDIN = "-"
@@ -149,12 +149,13 @@ def _conclude(
         known = read_baseline(config.baseline)
         findings, stale = beyond(findings, known, config.baseline, paths)
     options.fail_on = config.fail_on
-    about = About(paths, by_themselves(config.settings.robots))
+    about = About(paths, by_themselves(config.settings.robots), config.settings.release)
     if options.fix and options.diff:
         failed = fails(findings, config.fail_on)
     else:
         failed = report_first(options, findings, about, RULES)
-    note(options, _summary(options, paths, findings, stale))
+    end = facts_of_release(config.settings.release)
+    note(options, f"{_summary(options, paths, findings, stale)}{end}")
     if any(it.code == CRASHED for it in findings):
         return UNUSABLE
     return STOPPED if failed else DONE

@@ -32,6 +32,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.sources.own_names import name_robot
 from multibot_rewrite.sources.read import Source, read_source
 
@@ -82,7 +83,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
     others = list(rewrites) if first.prepared.job.naming.own else []
-    about = About([input_name(options)], by_themselves(names))
+    about = About([input_name(options)], by_themselves(names), first.distro)
     found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
     if report_beside(options, chosen(options, found), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
@@ -139,6 +140,7 @@ def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
 
     table = {
         "file": rewrites[0].prepared.job.file,
+        "distro": rewrites[0].distro,
         "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
     }
     return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
@@ -167,4 +169,5 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
     end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    end += facts_of_release(first.distro)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

@@ -55,7 +55,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             *rviz_files(configs),
             *bridge_outputs(plan),
             *_tables(plan, fleet),
-            *commands_file(each, rviz_commands(configs)),
+            *commands_file(each, rviz_commands(configs), plan.file.distro),
         ]
         files = sorted(it for it in made if isinstance(it, OutputFile))
         _check_paths_differ(files)
@@ -147,5 +147,6 @@ def _remappings(table: Table) -> str:
             f"      name: {scalar(node.name)}\n      remappings: [{rules}]\n"
         )
     rows = [f"  {scalar(robot)}:\n{''.join(nodes)}" for robot, nodes in robots.items()]
-    head = f"layout: {scalar(table.layout)}\nrobots:{'' if rows else ' {}'}\n"
+    distro = f"distro: {table.release}\n" if table.release else ""
+    head = f"layout: {scalar(table.layout)}\n{distro}robots:{'' if rows else ' {}'}\n"
     return head + "".join(rows)

@@ -69,7 +69,7 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, facts, make_naming(**policy))
+    fleet = assemble(members, facts, make_naming(**policy), release)
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
@@ -95,16 +95,22 @@ def facts_of(
     return tuple(found)
 
 
-def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
-    """The fleet of robots that run the same nodes."""
+def assemble(
+    members: Sequence[Member],
+    facts: tuple[NodeFacts, ...],
+    naming: Naming,
+    release: str = NEWEST_LTS,
+) -> Fleet:
+    """The fleet of robots that run the same nodes, which are those of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
+    table = build_table([it.robot for it in members], facts, naming, plugins)
     return Fleet(
-        build_table([it.robot for it in members], facts, naming, plugins),
+        table._replace(release=release),
         inventories,
         naming,
         edges,
@@ -156,4 +162,4 @@ def expected(fleet: Fleet) -> Expectation:
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
-    return plan
+    return plan._replace(release=fleet.table.release)

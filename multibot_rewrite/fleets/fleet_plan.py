@@ -47,10 +47,9 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
     stacks: dict[tuple[str, ...], list[RewrittenRobot]] = {}
     for robot in robots:
         stacks.setdefault(robot.spec.stacks, []).append(robot)
+    nodes, release = file.nodes or None, file.distro
     fleets = [
-        assemble(
-            [it.member for it in group], facts_of(names, file.nodes or None, file.distro), naming
-        )
+        assemble([it.member for it in group], facts_of(names, nodes, release), naming, release)
         for names, group in stacks.items()
     ]
     fleet = merge(fleets)

@@ -120,9 +120,11 @@ Pairs: TypeAlias = Sequence[tuple[NodeFacts, NodeTable]]
 
 
 class Table(NamedTuple):
-    """The remap table of a fleet, and what it cannot do or does wrongly."""
+    """The remap table of a fleet, and what it cannot do or does wrongly; ``release`` is that whose
+    facts it rests on, empty if that is not known."""
 
     layout: str
     nodes: tuple[NodeTable, ...]
     names: tuple[EndpointName, ...]
     problems: tuple[Finding, ...]
+    release: str = ""

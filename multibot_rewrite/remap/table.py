@@ -77,7 +77,8 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
     known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
     met = (it for it in collisions(by_robot, naming) if (it.code, it.message) not in known)
     problems = tuple(dict.fromkeys((*table.problems, *other.problems, *met)))
-    return Table(table.layout, tuple(dict.fromkeys((*table.nodes, *other.nodes))), names, problems)
+    nodes = tuple(dict.fromkeys((*table.nodes, *other.nodes)))
+    return table._replace(nodes=nodes, names=names, problems=problems)
 
 
 def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Callable, Iterator
 from xml.sax.saxutils import escape
 
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.records import NodeTable, Table
 
 EVERY_ROBOT = "all robots"
@@ -16,7 +17,12 @@ OF_A_PROBLEM = ("code", "level", "robot", "node", "message", "hint")
 
 def ros_args(table: Table) -> str:
     """One line for each node: the arguments of ``ros2 run PACKAGE EXECUTABLE``."""
-    return "".join(_ros_args(node) for node in table.nodes)
+    return _comment(table) + "".join(_ros_args(node) for node in table.nodes)
+
+
+def _comment(table: Table) -> str:
+    """A line that says whose facts the table rests on, for shells and Python."""
+    return f"# Facts of {table.release}\n" if table.release and table.nodes else ""
 
 
 def _ros_args(node: NodeTable) -> str:
@@ -36,7 +42,8 @@ def arguments(node: NodeTable) -> list[str]:
 def launch(table: Table) -> str:
     """Python for a launch file: robot -> node -> the arguments of ``launch_ros.actions.Node``."""
     rows = [
-        "# Arguments of nodes, by robot and node: Node(**NODES[robot][node], package=..., ...)\n"
+        _comment(table),
+        "# Arguments of nodes, by robot and node: Node(**NODES[robot][node], package=..., ...)\n",
     ]
     rows.append("NODES = {\n")
     for robot, nodes in _by_robot(table):
@@ -58,6 +65,7 @@ def as_data(table: Table) -> dict[str, object]:
     """The table as plain data, as in the YAML and JSON formats."""
     return {
         "layout": table.layout,
+        "distro": table.release,
         "robots": {
             robot: {
                 node.node: {
@@ -98,7 +106,7 @@ def as_yaml(table: Table) -> str:
 
 def gazebo(table: Table) -> str:
     """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
-    blocks = []
+    blocks = [f"<!-- Facts of {table.release} -->\n"] * bool(table.release)
     for node in table.nodes:
         rows = [f"  <namespace>{escape(node.namespace)}</namespace>"] * (node.namespace != "/")
         rows += [
@@ -113,7 +121,7 @@ def gazebo(table: Table) -> str:
 
 def markdown(table: Table) -> str:
     """One Markdown table for each robot."""
-    parts = [f"# Remap table, layout {table.layout}\n"]
+    parts = [f"# Remap table, layout {table.layout}{facts_of_release(table.release)}\n"]
     for robot, nodes in _by_robot(table):
         parts.append(f"\n## {robot}\n\n| node | runs as | rule |\n|---|---|---|\n")
         for node in nodes:

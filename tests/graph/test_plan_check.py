@@ -60,7 +60,7 @@ def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
 def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = held(plan, as_planned(plan), capsys)
     assert (code, out) == (0, "")
-    assert err == "multibot: 2 robots, 0 findings: as planned\n"
+    assert err == "multibot: 2 robots, 0 findings: as planned (facts of lyrical)\n"
 
 
 def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
