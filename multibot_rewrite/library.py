@@ -269,18 +269,9 @@ def strip(
     before, release = b"", release_here(distro)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
-        of = read_job(
-            made,
-            naming,
-            beside,
-            xacro_args,
-            vocabulary,
-            words=[robot],
-            trust=trust,
-            release=release,
-        )
+        of = read_job(made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release)
         naming, before = of.naming, b"" if beside else of.data
-    job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust, release=release)
+    job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release)
     beside_urdf = job.urdf_declarations
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
 

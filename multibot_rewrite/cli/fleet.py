@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 import os
+from collections.abc import Iterable
 
+from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -13,6 +15,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import release_here
+from multibot_rewrite.remap.records import NodeFacts
 
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
@@ -21,6 +24,7 @@ OF_FLEET_FILE = {
     "robots": "--robots",
     "stack": "--stack",
     "nodes": "--nodes",
+    "nodl": "--nodl",
     "layout": "--layout",
     "affix": "--affix",
     "topics": "--topics",
@@ -42,7 +46,15 @@ def check_use(options: argparse.Namespace, printed: bool) -> None:
 
 def build(options: argparse.Namespace) -> Fleet:
     """Make the fleet that the options describe."""
-    return (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
+    made = (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
+    note_interfaces(options, made.facts)
+    return made
+
+
+def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> None:
+    """Say which nodes are as a NoDL file says."""
+    for name, file in dict.fromkeys((it.name, it.interface) for it in facts if it.interface):
+        note(options, f"note: {name} as in {file} (NoDL)")
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
@@ -73,6 +85,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         options.stack,
         policy(options),
         nodes=options.nodes,
+        nodl=options.nodl,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,

@@ -52,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
     check_use(options)
     config = configured(".", options.config)
     release = release_here(options.distro or config.distro)
-    config = with_options(config, **given(options), release=release)
+    config = with_options(config, **given(options), distro=release)
     paths, unreadable = _files(options, config)
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]
@@ -149,12 +149,12 @@ def _conclude(
         known = read_baseline(config.baseline)
         findings, stale = beyond(findings, known, config.baseline, paths)
     options.fail_on = config.fail_on
-    about = About(paths, by_themselves(config.settings.robots), config.settings.release)
+    about = About(paths, by_themselves(config.settings.robots), config.settings.distro)
     if options.fix and options.diff:
         failed = fails(findings, config.fail_on)
     else:
         failed = report_first(options, findings, about, RULES)
-    end = facts_of_release(config.settings.release)
+    end = facts_of_release(config.settings.distro)
     note(options, f"{_summary(options, paths, findings, stale)}{end}")
     if any(it.code == CRASHED for it in findings):
         return UNUSABLE

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, cast
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
-from multibot_rewrite.fleets.fleet_paths import Places, below, check_files, listed
+from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, nodl_files, with_paths
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
 from multibot_rewrite.releases import RELEASES, chosen_release
@@ -23,7 +23,7 @@ from multibot_rewrite.sources.own_names import filled, name_robot
 SCHEMA = "fleet.schema.json"
 NOTHING: Mapping[str, str] = {}
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
-LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
+LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
@@ -89,6 +89,7 @@ class FleetFile(NamedTuple):
     distro: str
     installed: str
     nodes: str
+    nodl: tuple[str, ...]
     parameters: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
@@ -118,6 +119,7 @@ def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOT
     _check_robots_differ(robots)
     _check_world(read, naming)
     nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
+    nodl = tuple(listed(data.get("nodl", [])))
     vocabulary = tuple(listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
@@ -126,10 +128,15 @@ def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOT
         release,
         data.get("installed", ""),
         nodes,
+        nodl,
         parameters,
         vocabulary,
         robots,
-        tuple(filter(None, (*read.files, nodes, parameters, *vocabulary))),
+        tuple(
+            filter(
+                None, (*read.files, nodes, *nodl_files(nodl, read.places), parameters, *vocabulary)
+            )
+        ),
     )
 
 
@@ -167,7 +174,7 @@ def _read(path: str) -> _Read:
     wanted = {key: value for key, value in schema().items() if key != "required"}
     data, lines = read_checked(path, wanted, f"write {EXAMPLE}")
     places = {at: (path, line) for at, line in lines.items()}
-    resolved = below(os.path.dirname(path), data)
+    resolved = with_paths(os.path.dirname(path), data)
     check_files(resolved, (), places)
     return _Read(path, resolved, places, (path,))
 
@@ -234,10 +241,11 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
 
 def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:
     try:
-        facts_of(stacks, read.data.get("nodes") or None, release)
+        nodl = listed(read.data.get("nodl", []))
+        facts_of(stacks, read.data.get("nodes") or None, release, nodl)
     except UsageError as error:
         own: Path = ("robots", at, "stack")
-        found = (it for it in (own, ("stack",), ("nodes",)) if it in read.places)
+        found = (it for it in (own, ("stack",), ("nodes",), ("nodl",)) if it in read.places)
         file, line = read.places[next(found)]
         raise InputError(f"{file}:{line}: {error}") from None
 

@@ -1,4 +1,4 @@
-"""The files that a fleet file names: where they are, and that they are there."""
+"""The paths in a fleet file: relative to its folder, and there."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from multibot_rewrite.fleets.checked_yaml import Path
-from multibot_rewrite.model import InputError
+from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.remap.nodl.lookup import NO_DOCUMENTS, find_interfaces
 
 PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
 Places = Mapping[Path, tuple[str, int]]
@@ -30,7 +31,7 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
                 raise InputError(f"{file}:{line}: {path} {what}; correct the path")
 
 
-def below(folder: str, data: dict[str, Any]) -> dict[str, Any]:
+def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     """The data with every path relative to the working directory."""
 
     def resolve(value: Any) -> Any:
@@ -42,13 +43,24 @@ def below(folder: str, data: dict[str, Any]) -> dict[str, Any]:
     for key in PATHS:
         if key in result:
             result[key] = resolve(result[key])
+    if result.get("nodl", NO_DOCUMENTS) != NO_DOCUMENTS:
+        result["nodl"] = resolve(result["nodl"])
     if "companions" in result:
         result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
     if "robots" in result:
-        result["robots"] = [below(folder, robot) for robot in result["robots"]]
+        result["robots"] = [with_paths(folder, robot) for robot in result["robots"]]
     return result
 
 
 def listed(value: Any) -> Sequence[Any]:
-    """A list, or the one word that stands for a list of it."""
+    """A list as it is, one word as a list."""
     return [value] if isinstance(value, str) else value
+
+
+def nodl_files(nodl: Sequence[str], places: Places) -> list[str]:
+    """The NoDL files that a fleet file names, those in its folders too; InputError with its line."""
+    try:
+        return list(find_interfaces(nodl).given.values())
+    except UsageError as error:
+        file, line = places["nodl",]
+        raise InputError(f"{file}:{line}: {error}") from None

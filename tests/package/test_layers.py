@@ -26,14 +26,14 @@ FLOORS = (
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),
-    ("pipeline", "reports", "graph", "lint", "companions"),
-    ("library",),
+    ("pipeline", "reports", "graph", "lint", "companions", "interfaces"),
+    ("library", "evidence"),
     ("fleets",),
     ("__init__", "launch", "catalogue"),
     ("cli",),
     ("__main__",),
 )
-HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro")
+HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro", "tree_sitter", "tree_sitter_cpp")
 # What a start pays for without need; the commands import these where they use them.
 LATE = (*HEAVY, "yaml", "rich", "numpy", "difflib")
 SOURCES = {

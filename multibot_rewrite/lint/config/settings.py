@@ -40,7 +40,7 @@ class Settings(NamedTuple):
     linted together with them. ``included`` are xacro files that are linted through those which
     include them. ``seconds`` is the time limit for one file. ``trust`` lets xacro
     files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
-    looks in: a configuration gives them no folder outside of its own. ``release`` is the ROS 2 release
+    looks in: a configuration gives them no folder outside of its own. ``distro`` is the ROS 2 release
     whose facts count.
     """
 
@@ -60,7 +60,7 @@ class Settings(NamedTuple):
     seconds: float = TIME_LIMIT
     trust: bool = False
     readable: tuple[str, ...] = ()
-    release: str = NEWEST_LTS
+    distro: str = NEWEST_LTS
 
 
 def matches(path: str, pattern: str) -> bool:

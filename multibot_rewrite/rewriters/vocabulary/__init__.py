@@ -64,6 +64,7 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     insert: yes | no       no where the consumer throws on children it does not know (default: yes)
     unique: KIND           bare names of this kind are looked up in the whole world
     hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them
+    model_namespace: RELEASES  its relative topics stand below the <model namespace> in these (kilted+)
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
     about: TEXT            what it is
     source: TEXT           where in which source that can be read
@@ -250,7 +251,7 @@ def _released(chunk: str) -> str:
 
 @lru_cache(maxsize=8)
 def load_vocabulary(
-    extra: tuple[str, ...] = (), release: str = NEWEST_LTS, *, packages: bool = True
+    extra: tuple[str, ...] = (), *, packages: bool = True, release: str = NEWEST_LTS
 ) -> Vocabulary:
     """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
     as they hold in a ``release``; with an empty one all of it, which no document can be read with.
@@ -263,7 +264,7 @@ def load_vocabulary(
     texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
     try:
         texts |= {name: _text(name, path) for name, path in more.items()}
-        vocabulary = Vocabulary(texts, extended=bool(more), release=release)
+        vocabulary = Vocabulary(texts, bool(more), release)
         vocabulary.sections_in(more)
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None

@@ -1,0 +1,383 @@
+"""C++ -> what its classes call. The only import of tree-sitter.
+
+What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from multibot_rewrite.interfaces.records import (
+    Alias,
+    Call,
+    Class,
+    Constructor,
+    Place,
+    Plugin,
+    Source,
+    Value,
+)
+from multibot_rewrite.model import UsageError
+
+if TYPE_CHECKING:
+    from tree_sitter import Node, Parser, QueryCursor
+
+MAKERS = ("make_shared", "make_unique", "allocate_shared")
+# Their first argument is the text that they give back.
+SAME_TEXT = (
+    *("string", "c_str", "str", "to_string", "move", "getString", "topicResolve", "ParameterValue"),
+    *("static_pointer_cast", "dynamic_pointer_cast"),
+)
+LAST_TEXT = ("joinWithParentNamespace", "resolve_topic_name", "append")
+NAMES_PARAMETER = re.compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
+EXPORTS = ("PLUGINLIB_EXPORT_CLASS", "CLASS_LOADER_REGISTER_CLASS")
+LONGEST_CONDITION = 60
+LONGEST_NAME = 80
+_EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
+_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
+_MESSAGE = re.compile(r"::(msg|srv|action)::")
+_SCOPE = re.compile(r"(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
+
+
+@cache
+def _tools() -> tuple[Parser, QueryCursor]:
+    """The parser, and the query for all kinds of syntax that have a handler."""
+    try:
+        import tree_sitter
+        import tree_sitter_cpp
+    except ImportError:
+        raise UsageError(
+            "reading C++ needs tree-sitter; pip install 'multibot_rewrite[interfaces]'"
+        ) from None
+    language = tree_sitter.Language(tree_sitter_cpp.language())
+    query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in HANDLERS))
+    return tree_sitter.Parser(language), tree_sitter.QueryCursor(query)
+
+
+def _interesting(text: str) -> list[Node]:
+    parser, query = _tools()
+    tree = parser.parse(text.encode())
+    return sorted(query.captures(tree.root_node).get("found", ()), key=lambda it: it.start_byte)
+
+
+def read_cpp(text: str, place: Place) -> Source:
+    """What a C++ file declares and calls."""
+    clean = _MACRO.sub(lambda found: " " * len(found[0]), text)
+    found: dict[type, list[Any]] = {kind: [] for kind in _COLUMNS}
+    for node in _interesting(clean):
+        for item in HANDLERS[node.type](node, place):
+            found[type(item)].append(item)
+    found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
+    return Source(*(tuple(found[kind]) for kind in _COLUMNS))
+
+
+_COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
+
+
+def text_of(node: Node | None) -> str:
+    """The source text, on one line."""
+    return " ".join((node.text or b"").decode("utf-8", "replace").split()) if node else ""
+
+
+def last(name: str) -> str:
+    """``a::B<c::D>`` -> ``B``."""
+    return name.partition("<")[0].rpartition("::")[2].strip(" &*")
+
+
+def template_arguments(type_: str) -> tuple[str, ...]:
+    """``a::B<c::D, E<F, G>>`` -> ``c::D``, ``E<F, G>``."""
+    inside = type_.partition("<")[2].rpartition(">")[0]
+    found, depth, start = [], 0, 0
+    for at, sign in enumerate(inside):
+        depth += (sign in "<(") - (sign in ">)")
+        if sign == "," and not depth:
+            found.append(inside[start:at].strip())
+            start = at + 1
+    return tuple(part for part in (*found, inside[start:].strip()) if part)
+
+
+def _up(node: Node, *types: str) -> Node | None:
+    above = node.parent
+    while above is not None and above.type not in types:
+        above = above.parent
+    return above
+
+
+def _declarator(node: Node) -> Node | None:
+    """The function's declarator, below pointers and references."""
+    found = node.child_by_field_name("declarator")
+    while found is not None and found.type != "function_declarator":
+        found = found.child_by_field_name("declarator") or next(iter(found.named_children), None)
+    return found
+
+
+def _around(node: Node) -> tuple[str, str]:
+    """The class and function that something is in."""
+    function = node if node.type == "function_definition" else _up(node, "function_definition")
+    name = ""
+    if function is not None and (declarator := _declarator(function)) is not None:
+        full = text_of(declarator.child_by_field_name("declarator"))
+        name = last(full) if "operator" not in full else ""
+        if "::" in re.sub(r"<[^<>]*>", "", full):
+            return last(re.sub(r"<[^<>]*>", "", full).rpartition("::")[0]), name
+    owner = _up(function or node, "class_specifier", "struct_specifier")
+    return last(text_of(owner.child_by_field_name("name"))) if owner else "", name
+
+
+def _condition(node: Node) -> str:
+    """The text of the nearest ``if`` around it, in its function."""
+    above = node
+    while above.parent is not None and above.parent.type not in ("function_definition",):
+        below, above = above, above.parent
+        if above.type == "if_statement" and below != above.child_by_field_name("condition"):
+            text = text_of(above.child_by_field_name("condition"))[1:-1]
+            wrong = below.type == "else_clause"
+            text = f"not ({text})" if wrong else text
+            return text if len(text) <= LONGEST_CONDITION else text[: LONGEST_CONDITION - 1] + "…"
+    return ""
+
+
+def _class(node: Node, place: Place) -> Iterator[Class]:
+    body, name = node.child_by_field_name("body"), node.child_by_field_name("name")
+    if body is None or name is None:
+        return
+    clause = next((it for it in node.children if it.type == "base_class_clause"), None)
+    named = ("type_identifier", "qualified_identifier", "template_type")
+    bases = tuple(text_of(it) for it in clause.named_children if it.type in named) if clause else ()
+    above = node.parent
+    heads = above.child_by_field_name("parameters") if above is not None else None
+    parameters = tuple(_head(it) for it in heads.named_children) if heads else ()
+    members = {
+        last(text_of(field.child_by_field_name("declarator"))): text_of(
+            field.child_by_field_name("type")
+        )
+        for field in body.named_children
+        if field.type == "field_declaration"
+        and not text_of(field.child_by_field_name("declarator")).startswith(("&", "*"))
+    }
+    yield Class(last(text_of(name)), bases, parameters, members, _at(node, place))
+
+
+def _head(node: Node) -> str:
+    """``typename T = a::B`` -> ``T=a::B``."""
+    name, _, default = text_of(node).partition("=")
+    return f"{name.split()[-1]}={default.strip()}" if default else name.split()[-1]
+
+
+def _at(node: Node, place: Place) -> Place:
+    return place._replace(line=node.start_point[0] + 1)
+
+
+def _arguments(node: Node | None) -> tuple[str, ...]:
+    if node is None:
+        return ()
+    return tuple(evaluated(it) for it in node.named_children if it.type != "comment")
+
+
+def _call(node: Node, place: Place) -> Iterator[Call | Value]:
+    function = node.child_by_field_name("function")
+    arguments = node.child_by_field_name("arguments")
+    if function is None:
+        return
+    name, types, on = _callee(function)
+    given = _arguments(arguments)
+    if name in MAKERS and types:
+        yield _made(node, types[0], given, place)
+        return
+    owner, inside = _around(node)
+    yield Call(owner, inside, name, types, given, on, _condition(node), _at(node, place))
+    if NAMES_PARAMETER.fullmatch(name):
+        yield from _parameter(owner, inside, name, given)
+
+
+def _callee(function: Node) -> tuple[str, tuple[str, ...], str]:
+    """Its last name, its template arguments, and the object that is asked."""
+    full, on = text_of(function), ""
+    if function.type == "field_expression":
+        on = evaluated(function.child_by_field_name("argument"))
+        full = text_of(function.child_by_field_name("field"))
+    full = full.removeprefix("template ")
+    if _MESSAGE.search(full.partition("<")[0]):
+        return "", (), ""
+    return last(full), template_arguments(full), "" if on == "<this>" else on
+
+
+def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
+    owner, inside = _around(node)
+    name = "" if _MESSAGE.search(type_.partition("<")[0]) else last(type_)
+    own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))
+    return Call(owner, inside, *own)
+
+
+def _parameter(owner: str, inside: str, name: str, given: tuple[str, ...]) -> Iterator[Value]:
+    """``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
+    texts = [it for it in given if not is_node(it)]
+    parameter = _braced(texts[0]) if texts else ""
+    for other in texts[1:]:
+        if other.startswith("<") and name.startswith("get") and "(" not in other:
+            yield Value(owner, inside, other.strip("<>"), f"<@{parameter}>")
+        elif not other.startswith("<"):
+            yield Value("", inside, f"@{parameter}", other)
+
+
+def _braced(text: str) -> str:
+    return text.replace("<", "{").replace(">", "}")
+
+
+_NODE = re.compile(
+    r"<(this|\w*[nN]ode\w*|nh_?|n_?|parent\w*|shared_from_this|\w*interface\w*|Node:.*)>"
+)
+
+
+def is_node(text: str) -> bool:
+    """Is this argument a node, or a part of one?"""
+    return _NODE.fullmatch(text) is not None
+
+
+def _made_new(node: Node, place: Place) -> Iterator[Call]:
+    type_ = text_of(node.child_by_field_name("type"))
+    yield _made(node, type_, _arguments(node.child_by_field_name("arguments")), place)
+
+
+def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
+    """``: member_(value)`` or ``: Base<T>(value)`` of a constructor."""
+    name = text_of(node.named_children[0]) if node.named_children else ""
+    given = _arguments(node.named_children[-1])
+    owner, inside = _around(node)
+    if given:
+        yield Value(owner, inside, last(name), given[0])
+    yield Call(owner, "", name, template_arguments(name), given, "", "", _at(node, place))
+
+
+def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
+    """``Type name = value;`` or ``Type name(value);``."""
+    declarator, value = (node.child_by_field_name(it) for it in ("declarator", "value"))
+    if value is None or declarator is None or node.parent is None:
+        return
+    owner, inside = _around(node)
+    if value.type == "argument_list":
+        type_ = text_of(node.parent.child_by_field_name("type"))
+        given = _arguments(value)
+        yield _made(node, type_, given, place)
+        text = given[0] if given else ""
+    else:
+        text = evaluated(value)
+    yield Value(owner, inside, last(text_of(declarator).partition("[")[0]), text)
+
+
+def _assigned(node: Node, place: Place) -> Iterator[Value]:
+    left, right = (node.child_by_field_name(it) for it in ("left", "right"))
+    yield Value(*_around(node), evaluated(left).strip("<>"), evaluated(right))
+
+
+def _default(node: Node, place: Place) -> Iterator[Value]:
+    """The default of a function's parameter, or of a member."""
+    name, value = (node.child_by_field_name(it) for it in ("declarator", "default_value"))
+    if value is None:
+        return
+    owner, inside = _around(node)
+    yield Value(owner, inside, last(text_of(name)), evaluated(value))
+
+
+def _alias(node: Node, place: Place) -> Iterator[Alias]:
+    name = text_of(node.child_by_field_name("name") or node.child_by_field_name("declarator"))
+    type_ = text_of(node.child_by_field_name("type"))
+    yield Alias(_around(node)[0], name, type_)
+
+
+def _taking(node: Node, place: Place) -> Iterator[Constructor]:
+    """The names of a function's parameters."""
+    parameters = node.child_by_field_name("parameters")
+    full = text_of(node.child_by_field_name("declarator"))
+    if parameters is None:
+        return
+    owner, _ = _around(node)
+    names = tuple(
+        re.split(r"[\s&*]", text_of(it.child_by_field_name("declarator")))[-1]
+        for it in parameters.named_children
+        if it.type in ("parameter_declaration", "optional_parameter_declaration")
+    )
+    yield Constructor(owner or last(full.rpartition("::")[0]), last(full), names)
+
+
+HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
+    "class_specifier": _class,
+    "struct_specifier": _class,
+    "call_expression": _call,
+    "new_expression": _made_new,
+    "field_initializer": _initialised,
+    "init_declarator": _declared,
+    "assignment_expression": _assigned,
+    "optional_parameter_declaration": _default,
+    "field_declaration": _default,
+    "alias_declaration": _alias,
+    "type_definition": _alias,
+    "function_declarator": _taking,
+}
+
+
+def evaluated(node: Node | None) -> str:
+    """An expression as a text; what is not known is in <>."""
+    if node is None:
+        return "<?>"
+    if node.type in TEXTS:
+        return TEXTS[node.type](node)
+    text = text_of(node)
+    return f"<{_SCOPE.sub('', text)}>" if len(text) <= LONGEST_NAME else "<?>"
+
+
+def _field(field: str) -> Callable[[Any], str]:
+    return lambda node: evaluated(node.child_by_field_name(field))
+
+
+def _all(node: Node) -> str:
+    return "".join(evaluated(it) for it in node.named_children)
+
+
+def _sum(node: Node) -> str:
+    return _all(node) if any(it.type == "+" for it in node.children) else "<?>"
+
+
+def _last_field(node: Node) -> str:
+    return f"<{text_of(node.child_by_field_name('field'))}>"
+
+
+def _called(node: Node) -> str:
+    function, arguments = (node.child_by_field_name(it) for it in ("function", "arguments"))
+    if function is None:
+        return "<?>"
+    name, types, on = _callee(function)
+    given = _arguments(arguments)
+    made = last(types[0]) if types else last(text_of(function).rpartition("::")[0])
+    if name in MAKERS and made.endswith("Node"):
+        return f"<Node:{_braced(given[0]) if given else ''}>"
+    if NAMES_PARAMETER.fullmatch(name):
+        texts = [it for it in given if not is_node(it)]
+        return f"<@{_braced(texts[0])}>" if texts else "<?>"
+    return _passed_on(name, given, on) or f"<{name}>"
+
+
+def _passed_on(name: str, given: tuple[str, ...], on: str) -> str:
+    """The text that a function gives back; empty where it is another one."""
+    if name.startswith(("as_", "get_value", "value")) and "@" in on:
+        return on
+    if name in LAST_TEXT and given:
+        return given[-1]
+    return (given[0] if given else on) if name in SAME_TEXT else ""
+
+
+TEXTS: dict[str, Callable[[Any], str]] = {
+    "string_literal": lambda node: text_of(node)[1:-1],
+    "concatenated_string": _all,
+    "initializer_list": _all,
+    "compound_literal_expression": _field("value"),
+    "binary_expression": _sum,
+    "parenthesized_expression": _all,
+    "pointer_expression": _field("argument"),
+    "conditional_expression": _field("consequence"),
+    "field_expression": _last_field,
+    "call_expression": _called,
+}

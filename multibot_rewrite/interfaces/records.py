@@ -1,0 +1,115 @@
+"""What is read from sources: classes, what they call, and the facts that follow.
+
+A text that is only known at run time has its unknown parts in <>: ``<layer>_raw``. A part that is the
+value of a parameter starts with @: ``<@odom_topic>``, ``<@{plugin}.topic>``; a node that is made has a
+colon: ``<Node:name>``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class Place(NamedTuple):
+    """Where something was read: a repository, its tag or commit, a path in it, a line, a package."""
+
+    repository: str
+    version: str
+    path: str
+    line: int = 0
+    package: str = ""
+
+
+class Call(NamedTuple):
+    """A call, or an object that is made.
+
+    ``owner`` is the class that does it, empty in a free function; ``on`` the object that is asked,
+    empty for none or ``this``. ``types`` are its template arguments, ``given`` its arguments.
+    ``condition`` is the text of the ``if`` around it.
+    """
+
+    owner: str
+    function: str
+    name: str
+    types: tuple[str, ...]
+    given: tuple[str, ...]
+    on: str
+    condition: str
+    place: Place
+
+
+class Class(NamedTuple):
+    """A class: its bases as written, template parameters, types of its members."""
+
+    name: str
+    bases: tuple[str, ...]
+    parameters: tuple[str, ...]
+    members: Mapping[str, str]
+    place: Place
+
+
+class Value(NamedTuple):
+    """What a variable of a class is set to; ``variable`` starts with @ for a parameter's default."""
+
+    owner: str
+    function: str
+    variable: str
+    text: str
+
+
+class Alias(NamedTuple):
+    """Another name of a type."""
+
+    owner: str
+    name: str
+    type: str
+
+
+class Constructor(NamedTuple):
+    """The names of what a constructor or method is given."""
+
+    owner: str
+    function: str
+    names: tuple[str, ...]
+
+
+class Plugin(NamedTuple):
+    """A class that is loaded by name, and what it is loaded as."""
+
+    name: str
+    base: str
+
+
+class Source(NamedTuple):
+    """What one file says, or all files together."""
+
+    classes: tuple[Class, ...] = ()
+    calls: tuple[Call, ...] = ()
+    values: tuple[Value, ...] = ()
+    aliases: tuple[Alias, ...] = ()
+    constructors: tuple[Constructor, ...] = ()
+    plugins: tuple[Plugin, ...] = ()
+
+
+class Fact(NamedTuple):
+    """An endpoint that a node declares.
+
+    ``way`` is ``helper`` for the listener's own node of tf2, ``private`` for a node that the class
+    makes for itself; else it is empty. ``parameter`` sets the name. ``condition`` is empty for always.
+    """
+
+    node: str
+    role: str
+    name: str
+    type: str
+    way: str
+    parameter: str
+    condition: str
+    place: Place
+
+
+def joined(sources: list[Source]) -> Source:
+    """All of them as one."""
+    columns = zip(*sources, strict=True)
+    return Source(*(tuple(item for part in column for item in part) for column in columns))
