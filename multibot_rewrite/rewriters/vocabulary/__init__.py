@@ -251,7 +251,7 @@ def _released(chunk: str) -> str:
 
 @lru_cache(maxsize=8)
 def load_vocabulary(
-    extra: tuple[str, ...] = (), *, packages: bool = True, release: str = NEWEST_LTS
+    extra: tuple[str, ...] = (), release: str = NEWEST_LTS, *, packages: bool = True
 ) -> Vocabulary:
     """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
     as they hold in a ``release``; with an empty one all of it, which no document can be read with.

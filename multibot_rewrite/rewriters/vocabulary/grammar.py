@@ -300,7 +300,7 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     empty = options.get("empty", "default" if kinds[0] == "namespace" else "itself")
     note = note.strip()
     own = (path, role, kinds, form, default, False, section, note, line)
-    return Site(*own, plain, when, file, empty, releases)
+    return Site(*own, plain, when, file, empty, releases=releases)
 
 
 def _no_releases(words: str) -> str:
