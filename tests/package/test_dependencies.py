@@ -42,12 +42,11 @@ MODULES = {
 }
 # Modules that the package goes without, or that no key of rosdep is for.
 UNASKED = {"tomli", "tree_sitter", "tree_sitter_cpp"}
-# What the tests import before anything else, and the options of pytest in pyproject.toml need.
+# What the tests import before anything else.
 OF_TESTS = {
     "python3-hypothesis",
     "python3-numpy",
     "python3-pytest",
-    "python3-pytest-xdist",
     "python3-setuptools",
 }
 # The versions of Ubuntu 22.04, which is the oldest.
