@@ -52,6 +52,9 @@ ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
 DECLARED_KINDS = (*sorted(CLOSED_KINDS), "frame", "sensor", "light")
+# Stands for a robot in a text that is made to see what is the same for all. Letters alone are taken by
+# every file that takes a name.
+TWIN = "qzrobotzq"
 # Characters that are not part of a plain topic: a substitution or a placeholder is left alone.
 NOT_PLAIN = frozenset("{}$ ")
 
