@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
@@ -10,6 +11,9 @@ from typing import NamedTuple
 from multibot_rewrite.interfaces.nodes import facts_of
 from multibot_rewrite.interfaces.records import Class, Fact, Place
 from multibot_rewrite.interfaces.scope import Index
+
+# What a name that is made at run time depends on.
+_MODE = re.compile(r"(?:plugin|tree has) \w+")
 
 
 class NodeClasses(NamedTuple):
@@ -57,7 +61,7 @@ def _of_mode(
     found: dict[tuple[str, ...], Fact] = {}
     for root in _roots(index, mode):
         for fact in facts_of(index, node, root, own - {root.name}):
-            only = fact.condition if "<" in fact.name else ""
+            only = "; ".join(_MODE.findall(fact.condition)) if "<" in fact.name else ""
             key = (fact.role, fact.name, fact.type, fact.way, only)
             if key not in found or len(fact.condition) < len(found[key].condition):
                 found[key] = fact
