@@ -12,6 +12,7 @@ from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
+from multibot_rewrite.releases import NEWEST_LTS, chosen_release
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
 from multibot_rewrite.sources.job import Job, read_job, read_jobs
@@ -34,7 +35,7 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, own = self.job
+        data, file, naming, _, urdf, own, _ = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
         return pipeline.prepare(data, file, naming, tree, beside, own)
@@ -106,6 +107,7 @@ def rewrite(
     again: bool = False,
     file: str = "",
     trust: bool = False,
+    distro: str = NEWEST_LTS,
 ) -> Rewrite:
     """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
@@ -118,8 +120,9 @@ def rewrite(
     (the content does not allow it; ``.findings``), VocabularyError, ProofError.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    release = chosen_release(distro, {})
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
     return next(rewrite_job(job, [robot], again))
 
 
@@ -141,6 +144,7 @@ def rewrite_all(
     again: bool = False,
     file: str = "",
     trust: bool = False,
+    distro: str = NEWEST_LTS,
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -152,12 +156,14 @@ def rewrite_all(
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
-    read what is near them (SECURITY.md). Raises as ``rewrite`` does, before the first result.
+    read what is near them (SECURITY.md); ``distro`` is the ROS release whose facts
+    count. Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    release = chosen_release(distro, {})
     names = tuple(robots)
     _check_robots(names)
-    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file, trust)
+    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file, trust, release)
     return rewrite_jobs(jobs, again)
 
 
@@ -207,6 +213,7 @@ def explain(
     vocabulary: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
+    distro: str = NEWEST_LTS,
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``.
 
@@ -214,8 +221,9 @@ def explain(
     the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    release = chosen_release(distro, {})
     check_robot_name(robot)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust)
+    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
     urdf_declarations = job.urdf_declarations
@@ -242,6 +250,7 @@ def strip(
     vocabulary: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
+    distro: str = NEWEST_LTS,
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
@@ -251,13 +260,14 @@ def strip(
     expansion. Raises as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
+    release = chosen_release(distro, {})
     check_robot_name(robot)
     before = b""
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
-        of = read_job(made, naming, beside, xacro_args, vocabulary, words=[robot], trust=trust)
+        of = read_job(made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release)
         naming, before = of.naming, b"" if beside else of.data
-    job = read_job(source, naming, urdf, None, vocabulary, file, trust=trust)
+    job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release)
     beside_urdf = job.urdf_declarations
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
 

@@ -21,7 +21,8 @@ class Site(NamedTuple):
     ``itself``.
     ``namespaced`` is true where a ROS namespace reaches the value. ``whole_value_kind`` is the
     kind where the whole value is the name of a link or joint and of nothing else. ``when`` is
-    ``sibling=text`` where only that sibling's text makes the value a name.
+    ``sibling=text`` where only that sibling's text makes the value a name. ``below_model`` are the
+    releases in which a relative topic here stands below the namespace of the model.
     """
 
     path: str
@@ -37,6 +38,7 @@ class Site(NamedTuple):
     when: str = ""
     file: str = ""
     empty: str = "itself"
+    below_model: str = ""
 
 
 class Claim(NamedTuple):

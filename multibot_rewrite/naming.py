@@ -6,7 +6,7 @@ where to insert, and what is put before and after the robot's name.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypedDict
 
 from multibot_rewrite.model import UsageError
@@ -46,6 +46,8 @@ ROS_SEPARATORS = {
 FRAME_KINDS = frozenset({"link", "frame"})
 # A stem is a word topics are made of (camera_name); a subtopic is below a stem or namespace.
 TOPIC_KINDS = frozenset({"topic", "subtopic", "service"})
+# What a ROS namespace reaches, or is.
+ROS_KINDS = frozenset({*TOPIC_KINDS, "stem", "namespace"})
 # A use of one of these must be declared in the same file.
 CLOSED_KINDS = frozenset({"link", "joint", "model", "group"})
 # Declarations of these are looked up by name.
@@ -197,19 +199,27 @@ def affix(naming: Naming, kind: str, text: str, namespaced: bool = False) -> Aff
 
     ``namespaced`` is true where a ROS namespace reaches the value.
     """
-    if (kind, text) in naming.own:
+    if naming.own and (kind, text) in naming.own:
         return naming.own[kind, text]
     separator = naming.separators.get(kind)
-    in_namespace = namespaced and naming.topics == NAMESPACE
-    if separator is None or (kind == "stem" and in_namespace):
+    if separator is None:
         return None
-    if kind in TOPIC_KINDS:
-        return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
-    if kind == "namespace":
-        return _namespace_affix(separator, text)
+    if kind in ROS_KINDS:
+        in_namespace = namespaced and naming.topics == NAMESPACE
+        return _ros_affix(naming, separator, kind, text, in_namespace)
     if _is_shared_frame(naming, kind, text):
         return None
     return _name_affix(naming.affix, separator, text)
+
+
+def _ros_affix(
+    naming: Naming, separator: str, kind: str, text: str, in_namespace: bool
+) -> Affix | None:
+    if kind == "namespace":
+        return _namespace_affix(separator, text)
+    if kind == "stem":
+        return None if in_namespace else _name_affix(naming.affix, separator, text)
+    return _topic_affix(naming, separator, text, kind == "subtopic" or in_namespace)
 
 
 def _is_shared_frame(naming: Naming, kind: str, text: str) -> bool:
@@ -257,25 +267,36 @@ def removal(
     naming: Naming, robot: str, kind: str, text: str, namespaced: bool = False
 ) -> tuple[int, int] | None:
     """The part of ``text`` that ``affix`` put there for ``robot``; None where there is none."""
-    separator = naming.separators.get(kind)
-    if robot not in text or (kind, text) in naming.own:
+    if robot not in text:
         return None
-    for (of, stem), own in naming.own.items():
-        if of == kind and own is not None and own.spell(stem, robot) == text:
-            return own.at, own.at + len(text) - len(stem)
+    if naming.own:
+        if (kind, text) in naming.own:
+            return None
+        for (of, stem), own in naming.own.items():
+            if of == kind and own is not None and own.spell(stem, robot) == text:
+                return own.at, own.at + len(text) - len(stem)
+    separator = naming.separators.get(kind)
     if separator is None or _is_shared_frame(naming, kind, text):
         return None
-    lead = 1 if text.startswith("/") else 0
-    places = [(lead, robot + separator), (lead, robot)]
-    if (naming.topics if kind in TOPIC_KINDS else naming.affix) == POSTFIX:
-        places.insert(0, (len(text) - len(separator + robot), separator + robot))
-    for start, inserted in places:
-        if start >= 0 and text.startswith(inserted, start):
-            stem = text[:start] + text[start + len(inserted) :]
-            there = affix(naming, kind, stem, namespaced)
-            if there is not None and there.spell(stem, robot) == text:
-                return start, start + len(inserted)
+    for start, end in _affix_places(naming, robot, kind, separator, text):
+        stem = text[:start] + text[end:]
+        there = affix(naming, kind, stem, namespaced)
+        if there is not None and there.spell(stem, robot) == text:
+            return start, end
     return None
+
+
+def _affix_places(
+    naming: Naming, robot: str, kind: str, separator: str, text: str
+) -> Iterator[tuple[int, int]]:
+    """Where in ``text`` an affix may be, the likely place first."""
+    side = naming.topics if kind in TOPIC_KINDS else naming.affix
+    if side == POSTFIX and text.endswith(separator + robot):
+        yield len(text) - len(separator) - len(robot), len(text)
+    lead = 1 if text.startswith("/") else 0
+    for inserted in (robot + separator, robot):
+        if text.startswith(inserted, lead):
+            yield lead, lead + len(inserted)
 
 
 def overlap(naming: Naming, robots: Iterable[str]) -> list[tuple[str, str, str]]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import islice
+from itertools import chain, islice
 
 from lxml.etree import _Element
 
 from multibot_rewrite.checks.hazards import hazards
+from multibot_rewrite.checks.model_namespaces import ignored_namespaces, used_namespaces
 from multibot_rewrite.checks.problem import Problem, to_findings
 from multibot_rewrite.checks.references import (
     ambiguous,
@@ -32,16 +33,20 @@ __all__ = ["audit", "is_unknown", "other_ros", "unknown_hardware", "unknown_plug
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
     """All findings that do not depend on the robot's name, in source order."""
     document = inventory.document
+    errors = chain(leftover_xacro(inventory), worlds(inventory), duplicates(inventory))
+    warnings = chain(
+        undeclared(inventory, renames.naming),
+        ambiguous(inventory),
+        unknown_plugins(inventory, tree),
+        unknown_hardware(inventory, tree),
+        ignored_namespaces(inventory, tree),
+        used_namespaces(inventory, tree),
+        hazards(inventory, renames),
+    )
     found = [
-        *to_findings(document, leftover_xacro(inventory), ERROR),
-        *to_findings(document, worlds(inventory), ERROR),
-        *to_findings(document, duplicates(inventory), ERROR),
-        *to_findings(document, undeclared(inventory, renames.naming), WARNING),
-        *to_findings(document, ambiguous(inventory), WARNING),
-        *to_findings(document, unknown_plugins(inventory, tree), WARNING),
-        *to_findings(document, unknown_hardware(inventory, tree), WARNING),
+        *to_findings(document, errors, ERROR),
+        *to_findings(document, warnings, WARNING),
         *to_findings(document, other_ros(inventory, tree), NOTE),
-        *hazards(inventory, renames),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 
@@ -63,7 +68,7 @@ def leftover_xacro(inventory: Inventory) -> Iterator[Problem]:
 
 def _may_substitute(source: bytes) -> bool:
     """A cheap look before the search: in many files comments alone hold a substitution."""
-    if b"${" not in source and b"$(arg" not in source:
+    if b"$" not in source or (b"${" not in source and b"$(arg" not in source):
         return False
     rest = without_comments(source)
     return b"${" in rest or b"$(arg" in rest

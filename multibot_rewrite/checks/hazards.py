@@ -6,8 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from functools import partial
 
-from multibot_rewrite.checks.problem import Problem, about, to_findings
-from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.naming import (
     FRAME_KINDS,
     NAMESPACE,
@@ -18,18 +17,16 @@ from multibot_rewrite.naming import (
 )
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import split_remap
-from multibot_rewrite.steps.collect import Host, Inventory
+from multibot_rewrite.steps.collect import SRDF, Host, Inventory
 from multibot_rewrite.steps.renames import RenameMap
 
 
-def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Finding]:
+def hazards(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
     """All of them; they do not depend on the robots' names."""
-    of_naming = (prefix_only, leading_slashes, moved_tf, process_wide)
-    of_names = (hardwired, outside_frames, reordered)
-    found = [hazard(inventory, renames.naming) for hazard in of_naming]
-    found += [hazard(inventory, renames) for hazard in of_names]
-    for problems in found:
-        yield from to_findings(inventory.document, problems, WARNING)
+    for of_naming in (prefix_only, leading_slashes, moved_tf, process_wide):
+        yield from of_naming(inventory, renames.naming)
+    for of_names in (hardwired, outside_frames, reordered):
+        yield from of_names(inventory, renames)
 
 
 def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
@@ -150,14 +147,15 @@ def reordered(inventory: Inventory, renames: RenameMap) -> Iterator[Problem]:
         return
     siblings: dict[str, list[str]] = defaultdict(list)
     declared = inventory.declared["joint"]
-    for claim in inventory.claims:
-        parent = claim.element.find("parent") if declared.get(claim.value) is claim else None
+    # Those of an SRDF are in its URDF.
+    for name, claim in declared.items() if inventory.format != SRDF else ():
+        parent = next(claim.element.iterchildren("parent"), None)
         if parent is not None:
-            siblings[parent.get("link", "")].append(claim.value)
+            siblings[parent.get("link", "")].append(name)
     for link, names in siblings.items():
-        if len(names) < 2:
-            continue
         old = sorted(names)
+        if not any(map(str.startswith, old[1:], old)) and not renames.naming.own:
+            continue  # what is behind both names does not matter
         # The order may depend on the robot's name: try one that sorts first and one that sorts last.
         orders = [sorted(names, key=partial(renames.spelled, robot, "joint")) for robot in "\0~"]
         new = next((order for order in orders if order != old), None)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Collection, Iterator
+from functools import lru_cache
+from string import whitespace
 from typing import NamedTuple
 
 from lxml import etree
@@ -62,7 +64,7 @@ _FILES = (
         ".mcap",
     ),
 )
-_NUMBERS = lazy_compile(r"[-+0-9.eE\s]*$")
+_NUMERIC = "-+0123456789.eE" + whitespace
 
 
 # What was found out for elements: a root may have thousands of children.
@@ -119,9 +121,9 @@ def _telling(values: list[str], names: frozenset[str]) -> dict[str, str]:
     """The values that are names or hold one, and the name."""
     different = set(values)
     telling = {value: value for value in names & different}
-    others = [value for value in different - names if not _NUMBERS.match(value)]
-    # One look at all of them: mostly none holds a name.
-    if any(not names.isdisjoint(it.split(" ".join(others))) for it in _looks(names)):
+    others = [value for value in different - names if value.strip(_NUMERIC)]
+    # One look at all of them, then one without files: mostly none holds a name.
+    if _held(" ".join(others), names) and _held(" ".join(map(_without_files, others)), names):
         telling |= {value: name for value in others if (name := mentioned(value, names))}
     return telling
 
@@ -130,12 +132,19 @@ def mentioned(value: str, names: frozenset[str]) -> str:
     """The name that a value is or holds; empty if it has none."""
     if value in names:
         return value
-    if _NUMBERS.match(value):
-        return ""
-    text = _without_files(value)
-    return next((word for it in _looks(names) for word in it.split(text) if word in names), "")
+    return _held(_without_files(value), names) if value.strip(_NUMERIC) else ""
 
 
+def _held(text: str, names: frozenset[str]) -> str:
+    """A name that a text holds; empty if it has none."""
+    for it in _looks(names):
+        words = it.split(text)
+        if not names.isdisjoint(words):
+            return next(word for word in words if word in names)
+    return ""
+
+
+@lru_cache(maxsize=4)
 def _looks(names: frozenset[str]) -> tuple[re.Pattern[str], ...]:
     """The finest look finds every name but those that it would cut itself."""
     return _BETWEEN if any(map(_PARTED.search, names)) else _BETWEEN[-1:]

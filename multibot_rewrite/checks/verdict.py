@@ -23,6 +23,7 @@ REASONS = {
     "MB143": ("frame", "that an argument of the xacro misses"),
     "MB422": ("prefix parameter", "that no postfix reaches"),
     "MB428": ("name", "fixed in a plugin's code"),
+    "MB429": ("model namespace", "that not every Gazebo reads"),
 }
 
 

@@ -7,7 +7,7 @@ import os
 from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from multibot_rewrite.checks.verdict import not_proved
-from multibot_rewrite.cli.fleet import words_of
+from multibot_rewrite.cli.fleet import note_interfaces, words_of
 from multibot_rewrite.cli.folders import change_folder, check_inside, clear_leftovers, locked
 from multibot_rewrite.cli.output import detail, note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
@@ -37,6 +37,7 @@ def run(options: argparse.Namespace) -> int:
     _check_folder(options.output)
     check_report(options, printed=False)
     plan = plan_fleet(read_fleet(options.fleet), trust=options.trust)
+    note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)
@@ -66,6 +67,7 @@ def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Find
 def _read(plan: FleetPlan, files: Iterable[OutputFile]) -> dict[str, bytes]:
     """The files that a build was made from."""
     paths = {path for it in files for path in it.sources} | set(plan.file.files)
+    paths |= {it.interface for it in plan.fleet.facts if it.interface}
     return {path: read_file(path) for path in paths}
 
 

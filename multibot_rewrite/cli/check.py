@@ -8,6 +8,7 @@ from math import inf
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
+from multibot_rewrite.cli.fleet import note_interfaces
 from multibot_rewrite.cli.output import note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
@@ -19,7 +20,8 @@ from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.plan_file import from_yaml
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -65,7 +67,9 @@ def _plan(options: argparse.Namespace) -> Expectation:
     file = read_fleet(path)
     if options.output:
         check_target(options.output, input_files(file))
-    return expected(with_start_pose_nodes(plan_fleet(file, trust=options.trust)))
+    made = with_start_pose_nodes(plan_fleet(file, trust=options.trust))
+    note_interfaces(options, made.facts)
+    return expected(made)
 
 
 def conclude(
@@ -104,7 +108,7 @@ def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdi
 
 def _graph(options: argparse.Namespace) -> Snapshot:
     if options.snapshot:
-        return from_json(read_file(options.snapshot, MAX_FLEET_BYTES), options.snapshot)
+        return read_snapshot(options.snapshot)
     # Not only until the planned nodes are there: a twin or a leak may come after them.
     return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
 

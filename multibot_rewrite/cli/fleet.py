@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterable
 
+from multibot_rewrite.cli.output import note
 from multibot_rewrite.cli.report import About, check_report, chosen, report_beside
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -11,6 +13,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.remap.records import NodeFacts
 
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
@@ -19,6 +22,7 @@ OF_FLEET_FILE = {
     "robots": "--robots",
     "stack": "--stack",
     "nodes": "--nodes",
+    "nodl": "--nodl",
     "layout": "--layout",
     "affix": "--affix",
     "topics": "--topics",
@@ -40,7 +44,15 @@ def check_use(options: argparse.Namespace, printed: bool) -> None:
 
 def build(options: argparse.Namespace) -> Fleet:
     """Make the fleet that the options describe."""
-    return (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
+    made = (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
+    note_interfaces(options, made.facts)
+    return made
+
+
+def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> None:
+    """Say which nodes are as a NoDL file says."""
+    for name, file in dict.fromkeys((it.name, it.interface) for it in facts if it.interface):
+        note(options, f"note: {name} as in {file} (NoDL)")
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
@@ -71,6 +83,7 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         options.stack,
         policy(options),
         nodes=options.nodes,
+        nodl=options.nodl,
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,

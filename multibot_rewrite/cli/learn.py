@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli.live import INCONCLUSIVE, LOOK_SECONDS, NO_ROS, environ
-from multibot_rewrite.cli.output import deliver, note, say
+from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_without_owner, left_out
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
+from multibot_rewrite.graph.learning.nodl_file import NodlFile, file_name, to_nodl
 from multibot_rewrite.graph.live.child import RosUnusable, observe
 from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.snapshot import Snapshot, from_json
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.remap.node_library import NodeLibrary
+from multibot_rewrite.remap.nodl.lookup import SUFFIXES
 from multibot_rewrite.remap.stacks import built_in
-from multibot_rewrite.sources.read import read_file
+
+NODES, NODL = "nodes", "nodl"
 
 
 def run(options: argparse.Namespace) -> int:
@@ -37,10 +42,16 @@ def run(options: argparse.Namespace) -> int:
     names = choose_nodes(graph, options.node, namespace)
     library = built_in()
     learned = learn(graph, names, namespace, library)
-    deliver(options, to_yaml(learned, options.stack, library).encode())
-    for remark in _notes(graph, learned, options.namespace, bool(options.node)):
+    remarks = [*_notes(graph, learned, options.namespace, bool(options.node))]
+    as_nodl = _is_nodl(options)
+    if as_nodl:
+        remarks += _write_nodl(options, _as_nodl(options, graph, learned, library))
+    else:
+        deliver(options, to_yaml(learned, options.stack, library).encode())
+    for remark in remarks:
         note(options, f"note: {remark}")
-    note(options, f"{plural(len(learned), 'node')} learned as stack {options.stack}")
+    shape = "NoDL" if as_nodl else f"stack {options.stack}"
+    note(options, f"{plural(len(learned), 'node')} learned as {shape}")
     return INCONCLUSIVE if doubtful else DONE
 
 
@@ -52,7 +63,39 @@ def _graph(options: argparse.Namespace) -> Snapshot:
         raise UsageError("--timeout and --domain are for the live graph, leave out --snapshot")
     if options.output:
         check_target(options.output, [options.snapshot])
-    return from_json(read_file(options.snapshot, MAX_FLEET_BYTES), options.snapshot)
+    return read_snapshot(options.snapshot)
+
+
+def _is_nodl(options: argparse.Namespace) -> bool:
+    named = (options.output or "").endswith(SUFFIXES)
+    if named and options.form == NODES:
+        raise UsageError(f"{options.output} is the name of a NoDL file; leave out --form {NODES}")
+    return named or options.form == NODL
+
+
+def _as_nodl(
+    options: argparse.Namespace,
+    graph: Snapshot,
+    learned: Sequence[LearnedNode],
+    library: NodeLibrary,
+) -> list[NodlFile]:
+    in_json = (options.output or "").endswith(".json")
+    return [to_nodl(it, graph, options.namespace or "/", library, in_json) for it in learned]
+
+
+def _write_nodl(options: argparse.Namespace, found: Sequence[NodlFile]) -> Iterator[str]:
+    """Write a document to a file or standard output, several below a folder; what is left out."""
+    if not goes_to_file(options) or options.output.endswith(SUFFIXES):
+        if len(found) > 1:
+            hint = "name one with --node, or a folder with -o"
+            raise UsageError(f"a NoDL file is for one node, here are {len(found)}; {hint}")
+        deliver(options, found[0].text.encode())
+    else:
+        items = [(os.path.join(options.output, file_name(it.node)), it.text) for it in found]
+        write_files(options, [(path, text.encode()) for path, text in items])
+    for it in found:
+        if it.left_out:
+            yield f"{it.node}: NoDL has no form for {', '.join(it.left_out)}; left out"
 
 
 def _notes(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
@@ -34,6 +35,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import chosen_release
 
 SUFFIXES = (".urdf", ".xacro", ".srdf")
 STDIN = "-"
@@ -50,6 +52,8 @@ def run(options: argparse.Namespace) -> int:
         )
     check_use(options)
     config = with_options(configured(".", options.config), **given(options))
+    release = chosen_release(config.settings.distro, os.environ)
+    config = config._replace(settings=config.settings._replace(distro=release))
     paths, unreadable = _files(options, config)
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]

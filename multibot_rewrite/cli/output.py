@@ -18,7 +18,7 @@ MANY = 20
 STANDARD = "-"
 # Options and arguments that name files to read.
 READ = (
-    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes"),
+    *("input", "plan", "fleet", "snapshot", "urdf", "xacro", "vocabulary", "nodes", "nodl"),
     *("explained", "suggest", "config", "baseline"),
 )
 _T = TypeVar("_T")

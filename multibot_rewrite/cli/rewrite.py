@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
@@ -32,6 +33,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import name_robot
 from multibot_rewrite.sources.read import Source, read_source
 
@@ -77,6 +79,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         again=options.again,
         file=input_name(options),
         trust=options.trust,
+        distro=chosen_release(options.distro or "", os.environ),
     )
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
@@ -107,6 +110,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         vocabulary=vocabulary,
         file=name,
         trust=options.trust,
+        distro=chosen_release(options.distro or "", os.environ),
         **extra,
     )
 

@@ -13,6 +13,7 @@ from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder
 from multibot_rewrite.graph.live.child import RosUnusable, observe
 from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.rosgraph.writing import to_yaml
 from multibot_rewrite.graph.snapshot import QUIET, Caveat, Snapshot, incomplete, to_json
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import (
@@ -25,6 +26,7 @@ from multibot_rewrite.remap.records import (
     TOPIC,
 )
 
+ROSGRAPH = "rosgraph"
 COLUMNS = (
     ("publishes", TOPIC, PUBLISHES),
     ("subscribes", TOPIC, SUBSCRIBES),
@@ -46,10 +48,10 @@ def run(options: argparse.Namespace) -> int:
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
-    if options.output is None:
+    if options.output is None and options.form is None:
         deliver_report(options, report(snapshot))
     else:
-        deliver(options, to_json(snapshot))
+        deliver(options, to_yaml(snapshot) if options.form == ROSGRAPH else to_json(snapshot))
         note(options, _headline(snapshot))
     for caveat in snapshot.environment.caveats:
         _remark(options, caveat)

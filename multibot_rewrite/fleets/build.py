@@ -129,10 +129,19 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> FilesAndFindings:
     table = fleet.table
     # Relative to the fleet file: the same from every working directory.
     folder = os.path.dirname(os.path.abspath(plan.file.file))
-    sources = {node: os.path.relpath(place, folder) for node, place in fleet.sources.items()}
-    yield OutputFile(PLAN, to_yaml(expected(fleet._replace(sources=sources))).encode())
+    sources, origins = (
+        {node: _from(folder, text) for node, text in by_node.items()}
+        for by_node in (fleet.sources, fleet.origins)
+    )
+    planned = expected(fleet._replace(sources=sources, origins=origins))
+    yield OutputFile(PLAN, to_yaml(planned).encode())
     yield OutputFile(TABLE, _remappings(table).encode())
     yield OutputFile(TABLE_PYTHON, launch(table).encode())
+
+
+def _from(folder: str, text: str) -> str:
+    """A place (``file:line``) as seen from a folder; other texts as they are."""
+    return os.path.relpath(text, folder) if ":" in text else text
 
 
 def _remappings(table: Table) -> str:

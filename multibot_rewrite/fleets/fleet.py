@@ -13,7 +13,9 @@ from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.node_library import stack_of, with_included
+from multibot_rewrite.remap.node_library import with_included
+from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of
+from multibot_rewrite.remap.nodl.lookup import find_interfaces
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
@@ -29,7 +31,8 @@ NO_STATE_PUBLISHER = f"no_{STATE_PUBLISHER}"
 class Fleet(NamedTuple):
     """A fleet's remap table, what each robot's rewritten description holds, and the transforms that
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
-    description (``file:line``) of each plugin's node. ``tags`` are the robots whose prefix or postfix
+    description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
+    that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it."""
 
     table: Table
@@ -38,6 +41,7 @@ class Fleet(NamedTuple):
     edges: Edges
     facts: tuple[NodeFacts, ...]
     sources: dict[str, str]
+    origins: dict[str, str]
     tags: dict[str, str]
 
 
@@ -48,6 +52,7 @@ def make_fleet(
     policy: Policy,
     *,
     nodes: str | None = None,
+    nodl: Sequence[str] = (),
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
@@ -55,12 +60,19 @@ def make_fleet(
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
-    ``nodes`` is a file with more nodes and stacks; ``trust`` lets a xacro file do anything. Raises
-    as ``rewrite_all``, and UsageError for an unknown stack.
+    ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
+    ``trust`` lets a xacro file do anything. Raises as ``rewrite_all``, and UsageError for an unknown
+    stack.
     """
-    facts = facts_of(stacks, nodes, release)
+    facts = facts_of(stacks, nodes, release, nodl)
     found = rewrite_all(
-        source, robots, vocabulary=vocabulary, xacro_args=xacro_args, trust=trust, **policy
+        source,
+        robots,
+        vocabulary=vocabulary,
+        xacro_args=xacro_args,
+        trust=trust,
+        distro=release,
+        **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
     fleet = assemble(members, facts, make_naming(**policy))
@@ -68,7 +80,10 @@ def make_fleet(
 
 
 def facts_of(
-    stacks: Sequence[str], nodes: str | None = None, release: str = NEWEST_LTS
+    stacks: Sequence[str],
+    nodes: str | None = None,
+    release: str = NEWEST_LTS,
+    nodl: Sequence[str] = (),
 ) -> tuple[NodeFacts, ...]:
     """The nodes that a robot with these stacks runs in a release, each once.
 
@@ -77,16 +92,33 @@ def facts_of(
     Every robot runs robot_state_publisher: one of its stacks has it, or it is added. It is left out
     for the stack ``no_robot_state_publisher``.
     """
-    library = user_stack(nodes, release) if nodes else built_in(release)
-    found = dict.fromkeys(node for name in stacks for node in stack_of(library, name))
+    known = known_nodes(nodes, release, nodl)
+    library = known.library
+    runs = {name: list(nodes_of(known, name)) for name in stacks}
+    named = {node: name for name in reversed(stacks) for node in runs[name]}
+    order = dict.fromkeys(node for name in stacks for node in runs[name])
+    found = [node._replace(origin=_origin(node, named[node])) for node in order]
     has_publisher = any(node.package == STATE_PUBLISHER for node in found)
     if not any(NO_STATE_PUBLISHER in with_included(library, name) for name in stacks):
-        added = () if has_publisher else stack_of(library, STATE_PUBLISHER)
+        added = () if has_publisher else nodes_of(known, STATE_PUBLISHER)
         return (*found, *added)
     if has_publisher:
         hint = f"leave out one of the stacks, {NO_STATE_PUBLISHER} or the one that has it"
         raise UsageError(f"{STATE_PUBLISHER} is asked for and left out; {hint}")
     return tuple(found)
+
+
+def _origin(node: NodeFacts, stack: str) -> str:
+    described = f", described in {node.interface}" if node.interface else ""
+    return f"stack {stack}{described}"
+
+
+def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNodes:
+    """What is known of nodes in a release: built in, by NoDL, in the user's file ``nodes``."""
+    built = built_in(release)
+    library = user_stack(nodes, release) if nodes else built
+    own = (name for name, node in library.nodes.items() if node != built.nodes.get(name))
+    return KnownNodes(library, find_interfaces(nodl), frozenset(own))
 
 
 def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
@@ -97,13 +129,15 @@ def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Na
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
+    table = build_table([it.robot for it in members], facts, naming, plugins)
     return Fleet(
-        build_table([it.robot for it in members], facts, naming, plugins),
+        table,
         inventories,
         naming,
         edges,
         facts,
         _sources(members),
+        _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
     )
 
@@ -118,6 +152,16 @@ def _sources(members: Sequence[Member]) -> dict[str, str]:
     return found
 
 
+def _origins(table: Table, facts: tuple[NodeFacts, ...]) -> dict[str, str]:
+    """By full name: the file or stack that names a node."""
+    known = {it.name: it.origin for it in facts}
+    return {
+        f"{it.namespace.rstrip('/')}/{it.name}": origin
+        for it in table.nodes
+        if (origin := known.get(it.node, ""))
+    }
+
+
 def merge(fleets: Sequence[Fleet]) -> Fleet:
     """Robots of different descriptions as one fleet; their names may not collide either."""
     first, *others = fleets
@@ -129,6 +173,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.edges, **other.edges},
             tuple(dict.fromkeys((*first.facts, *other.facts))),
             {**first.sources, **other.sources},
+            {**first.origins, **other.origins},
             {**first.tags, **other.tags},
         )
     return first
@@ -146,6 +191,7 @@ def expected(fleet: Fleet) -> Expectation:
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     tags, places = fleet.tags, fleet.sources
     plan = expect(fleet.table, fleet.naming, frames, fleet.facts, named, places, tags)
+    plan = plan._replace(origins=tuple(fleet.origins.items()))
     nothing = vacuous(plan)
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple, cast
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
+from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, nodl_files, with_paths
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
 from multibot_rewrite.releases import RELEASES, chosen_release
@@ -22,12 +23,10 @@ from multibot_rewrite.sources.own_names import filled, name_robot
 SCHEMA = "fleet.schema.json"
 NOTHING: Mapping[str, str] = {}
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
-LISTS = ("include", "stack", "vocabulary", "shared_frames", "shared_topics")
+LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
-PATHS = ("include", "description", "srdf", "nodes", "parameters", "vocabulary")
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
-Places = Mapping[Path, tuple[str, int]]
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 # What follows ``robots:``, empty lines and comments aside.
 _ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
@@ -90,6 +89,7 @@ class FleetFile(NamedTuple):
     distro: str
     installed: str
     nodes: str
+    nodl: tuple[str, ...]
     parameters: str
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
@@ -119,7 +119,8 @@ def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOT
     _check_robots_differ(robots)
     _check_world(read, naming)
     nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
-    vocabulary = tuple(_listed(data.get("vocabulary", [])))
+    nodl = tuple(listed(data.get("nodl", [])))
+    vocabulary = tuple(listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
         policy,
@@ -127,10 +128,15 @@ def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOT
         release,
         data.get("installed", ""),
         nodes,
+        nodl,
         parameters,
         vocabulary,
         robots,
-        tuple(filter(None, (*read.files, nodes, parameters, *vocabulary))),
+        tuple(
+            filter(
+                None, (*read.files, nodes, *nodl_files(nodl, read.places), parameters, *vocabulary)
+            )
+        ),
     )
 
 
@@ -154,7 +160,7 @@ def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
         ring = " -> ".join(os.path.basename(it) for it in (*above, real))
         raise InputError(f"{path}: the file includes itself ({ring}); remove one include")
     read = _read(path)
-    for other in _listed(read.data.pop("include", [])):
+    for other in listed(read.data.pop("include", [])):
         under = _with_includes(other, (*above, real))
         both = {**under.data, **read.data}, {**under.places, **read.places}
         read = _Read(path, *both, (*read.files, *under.files))
@@ -168,26 +174,9 @@ def _read(path: str) -> _Read:
     wanted = {key: value for key, value in schema().items() if key != "required"}
     data, lines = read_checked(path, wanted, f"write {EXAMPLE}")
     places = {at: (path, line) for at, line in lines.items()}
-    resolved = _from(os.path.dirname(path), data)
-    _check_files(resolved, (), places)
+    resolved = with_paths(os.path.dirname(path), data)
+    check_files(resolved, (), places)
     return _Read(path, resolved, places, (path,))
-
-
-def _check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
-    """Check that every named file exists; its content is checked later."""
-    for key in (*PATHS, "companions", "robots"):
-        value = data.get(key, ())
-        if key == "robots":
-            for number, robot in enumerate(value):
-                _check_files(robot, ("robots", number), places)
-            continue
-        kinds = value.items() if key == "companions" and value else [("", value)]
-        for kind, paths in kinds:
-            here = (*at, key, kind) if kind else (*at, key)
-            for path in (it for it in _listed(paths) if not os.path.isfile(it)):
-                file, line = places[here]
-                what = "is a folder, not a file" if os.path.isdir(path) else "does not exist"
-                raise InputError(f"{file}:{line}: {path} {what}; correct the path")
 
 
 @cache
@@ -201,31 +190,8 @@ def schema() -> dict[str, Any]:
     return result
 
 
-def _from(folder: str, data: dict[str, Any]) -> dict[str, Any]:
-    """The data with every path relative to the working directory."""
-
-    def resolve(value: Any) -> Any:
-        return (
-            os.path.join(folder, value) if isinstance(value, str) else [resolve(it) for it in value]
-        )
-
-    result = dict(data)
-    for key in PATHS:
-        if key in result:
-            result[key] = resolve(result[key])
-    if "companions" in result:
-        result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
-    if "robots" in result:
-        result["robots"] = [_from(folder, robot) for robot in result["robots"]]
-    return result
-
-
 def _policy(key: str, value: Any) -> Any:
-    return tuple(_listed(value)) if key in LISTS else value
-
-
-def _listed(value: Any) -> Sequence[Any]:
-    return [value] if isinstance(value, str) else value
+    return tuple(listed(value)) if key in LISTS else value
 
 
 def _naming(read: _Read, policy: Policy) -> Naming:
@@ -254,7 +220,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
     if not description:
         raise InputError(f"{place}: robot {name!r} has no description; name its URDF or xacro")
     companions = {**data.get("companions", {}), **own.get("companions", {})}
-    stacks = tuple(_listed(own.get("stack", data.get("stack", []))))
+    stacks = tuple(listed(own.get("stack", data.get("stack", []))))
     _check_stacks(read, at, stacks, release)
     return RobotSpec(
         name,
@@ -267,7 +233,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         _pose(own, place),
         _colour(own, place),
         stacks,
-        {kind: tuple(_listed(it)) for kind, it in companions.items()},
+        {kind: tuple(listed(it)) for kind, it in companions.items()},
         file,
         line,
     )
@@ -275,10 +241,11 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
 
 def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:
     try:
-        facts_of(stacks, read.data.get("nodes") or None, release)
+        nodl = listed(read.data.get("nodl", []))
+        facts_of(stacks, read.data.get("nodes") or None, release, nodl)
     except UsageError as error:
         own: Path = ("robots", at, "stack")
-        found = (it for it in (own, ("stack",), ("nodes",)) if it in read.places)
+        found = (it for it in (own, ("stack",), ("nodes",), ("nodl",)) if it in read.places)
         file, line = read.places[next(found)]
         raise InputError(f"{file}:{line}: {error}") from None
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.fleets.fleet import Fleet, assemble, facts_of, merge
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.rewritten_robots import (
@@ -14,6 +15,7 @@ from multibot_rewrite.fleets.rewritten_robots import (
     read_jobs,
     rewrite_robots,
 )
+from multibot_rewrite.fleets.robot_nodes import NodeSources, node_sources, robot_nodes
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
 
@@ -38,21 +40,23 @@ def plan_fleet(
     """
     with gc_paused():
         naming = make_naming(**file.policy)
-        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust)
+        read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
         return FleetPlan(file, tuple(robots), _fleet(file, robots, naming), read)
 
 
 def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) -> Fleet:
-    stacks: dict[tuple[str, ...], list[RewrittenRobot]] = {}
+    groups: dict[NodeSources, list[RewrittenRobot]] = {}
     for robot in robots:
-        stacks.setdefault(robot.spec.stacks, []).append(robot)
-    fleets = [
-        assemble(
-            [it.member for it in group], facts_of(names, file.nodes or None, file.distro), naming
-        )
-        for names, group in stacks.items()
-    ]
+        groups.setdefault(node_sources(robot.spec), []).append(robot)
+    fleets: list[Fleet] = []
+    notes: list[Finding] = []
+    for group in groups.values():
+        nodes, findings = robot_nodes(group[0].spec, file)
+        fleets.append(assemble([it.member for it in group], nodes, naming))
+        notes += findings
     fleet = merge(fleets)
     members = [it.member for it in robots]
-    return fleet._replace(table=with_meetings(fleet.table, members, naming))
+    table = with_meetings(fleet.table, members, naming)
+    problems = tuple(dict.fromkeys((*table.problems, *notes)))
+    return fleet._replace(table=table._replace(problems=problems))

@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.rewrite import with_srdf
-from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_nodes import companion_nodes, robot_nodes, stack_nodes
 from multibot_rewrite.remap.records import NodeFacts
 
 
@@ -35,7 +35,9 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         key = spec.sources, spec.stacks, files
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
-        facts = facts_of(robots[0].spec.stacks, plan.file.nodes or None, plan.file.distro)
+        spec = robots[0].spec
+        nodes = robot_nodes(spec, plan.file).nodes
+        facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)
         context = with_srdf(context, robots[0].semantics)

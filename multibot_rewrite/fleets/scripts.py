@@ -16,6 +16,12 @@ from typing import Any, NoReturn
 from multibot_rewrite.arguments import checked
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.names.robot_topics import fleet_topics, robot_topic
+from multibot_rewrite.companions.params.rcl_parameters import (
+    Value,
+    check_values,
+    exact_nodes,
+    node_parameters,
+)
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.findings.finding import ERROR, Finding, RewriteRefused
 from multibot_rewrite.fleets import spawn, start_poses, teleop
@@ -25,12 +31,6 @@ from multibot_rewrite.fleets.fleet_file import FleetFile, Pose, Sources, read_fl
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
-from multibot_rewrite.fleets.rcl_parameters import (
-    Value,
-    check_values,
-    exact_nodes,
-    node_parameters,
-)
 from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import UsageError

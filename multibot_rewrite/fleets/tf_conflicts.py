@@ -1,13 +1,12 @@
 """Frames that two nodes publish: listeners see them jump between two places.
 
-What nodes publish is read from the written parameter files, else from their defaults.
+What a node publishes is what its parameters say, else its defaults (``evidence``).
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from typing import Any, NamedTuple
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.companions.params.sections import PARAMETERS, raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, read_yaml
@@ -16,19 +15,12 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
-from multibot_rewrite.fleets.rcl_parameters import node_parameters
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge, description_edges
-from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import NodeFacts
 
 DESCRIPTION = "the description"
-# Parameters that stop a node from publishing transforms.
-SWITCHES = ("publish_tf", "tf_broadcast", "enable_odom_tf", "publish_odom_tf", "broadcast_tf")
-# robot_localization: world_frame is one of the other two.
-WORLD, MAP, ODOM = "world_frame", "map_frame", "odom_frame"
 
 
 FRAME_TWICE = declare(
@@ -74,7 +66,7 @@ def tf_conflicts(plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText]) -> 
     for group in group_robots(plan):
         robot = group.robots[0]
         parsed = list(_parsed(it for it in files if it.path.startswith(f"{robot.spec.name}/")))
-        yield from _of_two_nodes(robot, list(_sent(fleet, group, parsed)), parsed)
+        yield from _of_two_nodes(robot, list(_sent(fleet, group)), parsed)
     yield from _of_two_robots(plan, fleet)
 
 
@@ -113,12 +105,11 @@ def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[s
     return robot.spec.file, robot.spec.line
 
 
-def _sent(fleet: Fleet, group: RobotGroup, files: Parsed) -> Iterator[SentTransform]:
+def _sent(fleet: Fleet, group: RobotGroup) -> Iterator[SentTransform]:
     robot = group.robots[0]
     name = robot.spec.namespace
     tree = list(description_edges(robot.member.inventory))
     yield from (SentTransform(edge, DESCRIPTION, "") for edge in tree)
-    facts = {it.name: it for it in group.facts if it.sends}
     full = {
         it.node: f"{it.namespace.rstrip('/')}/{it.name}"
         for it in fleet.table.nodes
@@ -126,37 +117,9 @@ def _sent(fleet: Fleet, group: RobotGroup, files: Parsed) -> Iterator[SentTransf
     }
     for (owner, node), edges in fleet.edges.items():
         if owner == name:
-            known = facts.get(node)
-            sent = _as_given(known, _given(files, full[node]), edges) if known else edges
             yield from (
-                SentTransform(it, node, full.get(node, "")) for it in sent if it not in tree
+                SentTransform(it, node, full.get(node, "")) for it in edges if it not in tree
             )
-
-
-def _as_given(node: NodeFacts, given: Mapping[str, Any], edges: Iterable[Edge]) -> list[Edge]:
-    """What a node publishes with these parameters."""
-    if any(given.get(it) is False for it in SWITCHES):
-        return []
-    defaults = list(edges)
-    pairs = node.sends
-    if WORLD in given and given[WORLD] == given.get(MAP):
-        pairs = ((MAP, ODOM),)
-    if len(pairs) != len(defaults):
-        return defaults
-    return [
-        Edge(str(given.get(above, it.parent)), str(given.get(below, it.child)), it.static)
-        for (above, below), it in zip(pairs, defaults, strict=True)
-    ]
-
-
-def _given(files: Parsed, full: str) -> dict[str, Any]:
-    """The parameters of a node."""
-    found: dict[str, Any] = {}
-    for _, document in files:
-        # Another step reports values that rcl rejects.
-        with suppress(InputError):
-            found.update(node_parameters(document, full))
-    return found
 
 
 def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:

@@ -56,7 +56,8 @@ class Expectation(NamedTuple):
     """The plan of a fleet.
 
     ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
-    ``sources`` has for a node ``file:line`` of the plugin that starts it.
+    ``sources`` has for a node ``file:line`` of the plugin that starts it, ``origins`` for any other
+    node the file (``file:line``) or stack (``stack nav2``) that names it.
     """
 
     layout: str
@@ -67,6 +68,7 @@ class Expectation(NamedTuple):
     endpoints: tuple[PlannedEndpoint, ...]
     ignored_nodes: tuple[str, ...] = ()
     sources: tuple[tuple[str, str], ...] = ()
+    origins: tuple[tuple[str, str], ...] = ()
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:

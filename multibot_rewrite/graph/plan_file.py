@@ -22,12 +22,15 @@ HEAD = """\
 # What the graph of this fleet is to look like. Endpoints: [role, kind, name, type, name in the code].
 # Take out what is not started, add what is: `multibot check` compares exactly this.
 # optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
-# patterns of nodes that may come and go, beside the usual tools. sources: what starts a node.
+# patterns of nodes that may come and go, beside the usual tools. sources: the plugin that starts a
+# node. from: the file or stack that names a node.
 # spelled: what stands for a robot in its frames, where that is not its name.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
-OPTIONAL_KEYS = ("ignored_nodes", "sources")
+# Node -> text; key -> field of Expectation.
+BY_NODE = {"sources": "sources", "from": "origins"}
+OPTIONAL_KEYS = ("ignored_nodes", *BY_NODE)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -59,8 +62,10 @@ def to_yaml(plan: Expectation) -> str:
     for robot in plan.robots:
         parts += _robot(robot, rows, quote)
     # One on each line, so that people find them.
-    parts += ["sources:\n"] * bool(plan.sources)
-    parts += [f"  {quote(node)}: {quote(place)}\n" for node, place in plan.sources]
+    for key, field in BY_NODE.items():
+        texts = getattr(plan, field)
+        parts += [f"{key}:\n"] * bool(texts)
+        parts += [f"  {quote(node)}: {quote(text)}\n" for node, text in texts]
     return "".join(parts)
 
 
@@ -119,7 +124,7 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         frames,
         tuple(endpoints),
         _texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
-        tuple(_sources(top.get("sources", {}), file)),
+        *(tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE),
     )
     nothing = vacuous(plan)
     if nothing:
@@ -160,10 +165,10 @@ def _rows(value: object, place: str) -> Sequence[object]:
     return value or []
 
 
-def _sources(value: object, file: str) -> Iterator[tuple[str, str]]:
-    for node, place in _mapping(value or {}, (), file, "sources").items():
+def _by_node(value: object, file: str, key: str) -> Iterator[tuple[str, str]]:
+    for node, place in _mapping(value or {}, (), file, key).items():
         if not isinstance(place, str):
-            raise InputError(f"{file}: sources.{node}: write file:line")
+            raise InputError(f"{file}: {key}.{node}: write file:line")
         yield str(node), place
 
 

@@ -171,22 +171,36 @@ def _plain_value(value: object) -> object:
 
 def from_json(data: bytes, file: str) -> Snapshot:
     """Read what ``to_json`` wrote; raises InputError with file, key, what is wrong, what to do."""
+    return from_value(json_value(data, file), file)
+
+
+def json_value(data: bytes, file: str) -> object:
+    """The value of a JSON file; raises InputError with file, what is wrong, what to do."""
     try:
-        value = load_json(data)
+        return load_json(data)
     except json.JSONDecodeError as error:
         place = f"{file}:{error.lineno}:{error.colno}"
         hint = "use the file that multibot snapshot -o wrote"
         raise InputError(f"{place}: not valid JSON: {error.msg}; {hint}") from None
     except ValueError as error:
         raise InputError(f"{file}: cannot be read as JSON: {error}") from None
+
+
+def from_value(value: object, file: str) -> Snapshot:
+    """The snapshot that a JSON value holds; raises InputError with file, key and what is wrong."""
     if not isinstance(value, dict):
         raise InputError(f"{file}: not a snapshot, but {_shown(value)}")
     schema = value.pop("schema", None)
     if schema != SCHEMA or isinstance(schema, bool):
         hint = "take the snapshot again with this version"
         raise InputError(f"{file}: schema: expected {SCHEMA}, not {_shown(schema)}; {hint}")
+    return cast(Snapshot, record_from(Snapshot, value, file))
+
+
+def record_from(kind: type, value: object, file: str) -> object:
+    """A value as the record ``kind``; raises InputError with file, key and what is wrong."""
     try:
-        return cast(Snapshot, _reader(Snapshot)(value))
+        return _reader(kind)(value)
     except _WrongValue as wrong:
         key = "".join(reversed(wrong.keys)).lstrip(".")
         raise InputError(f"{file}: {key}: {wrong.reason}") from None

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.naming import Naming, spelled
+from multibot_rewrite.remap.conditions import holds
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.steps.collect import Inventory
 
@@ -61,11 +62,12 @@ def description_edges(inventory: Inventory) -> Iterator[Edge]:
 def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:
     """The transforms that a node's parameters name.
 
-    With ``root`` that frame is the child, except for odometry frames.
+    With ``root`` that frame is the child, except for odometry frames and those that a file sets.
     """
     values = {frame.parameter: frame.default for frame in node.frames}
-    for parent, child in node.sends:
-        base = root and "odom" not in child
+    given = {frame.parameter for frame in node.frames if frame.given}
+    for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
+        base = root and "odom" not in child and child not in given
         yield Edge(values[parent], root if base else values[child], False)
 
 

@@ -32,7 +32,7 @@ def lint_files(
     """
     settings = among(paths, settings)
     # A faulty vocabulary is reported before anything is linted.
-    builtin_tree(settings.vocabulary)
+    builtin_tree(settings.vocabulary, settings.distro)
     found = _linted(paths, settings, jobs or os.cpu_count() or 1, watch)
     return _in_order(_once(it for its in found for it in its), paths)
 

@@ -13,6 +13,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.model import Site, UsageError
 from multibot_rewrite.naming import TOPIC_KINDS
+from multibot_rewrite.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.readback.xml import child_text, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
@@ -203,13 +204,19 @@ def _sends(
         yield own[0], base[0]
 
 
-def resolved(host: _Element, section: VocabularySection) -> Iterator[tuple[str, str, str]]:
+def resolved(
+    host: _Element, section: VocabularySection, release: str
+) -> Iterator[tuple[str, str, str]]:
     """Kind, name and parameter of the topics of something that is no ROS 2 node.
 
     Names are below the namespace that it puts in front, and below the word that topics are made of;
     none where those come from the model, whose name each robot has for itself.
     """
     above = _namespace(host, section)
+    if reads_it(section, release) and scoped_namespace(host) != "":
+        above = scoped_namespace(host)
+        # Its default topics are below it, too.
+        yield from [(TOPIC, above, "model@namespace")] if above else []
     stems = [site for site in section.sites if site.kinds[:1] == ("stem",) and site.form == "whole"]
     words = [(site.path, value) for site in stems for value in values_of(host, site)]
     if above is not None:

@@ -91,7 +91,7 @@ def _of_plugins(
 ) -> Iterator[RuntimeName]:
     for host in hosts:
         if host.number not in nodes:
-            yield from _topics(*host, "plugin")
+            yield from _topics(*host, "plugin", vocabulary.release)
         yield from _frames(host, "plugin")
         yield from _lookups(root, host, vocabulary)
 
@@ -100,7 +100,7 @@ def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName
     for number, system in enumerate(root.iter("ros2_control")):
         section = hardware_section(system, vocabulary)
         if section is not None:
-            yield from _topics(system, number, section, "ros2_control")
+            yield from _topics(system, number, section, "ros2_control", vocabulary.release)
             yield from _frames(_Host(system, number, section), "ros2_control")
             yield from _lookups(root, _Host(system, number, section), vocabulary)
 
@@ -108,7 +108,7 @@ def _of_hardware(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName
 def _of_sensors(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
     for number, sensor in enumerate(root.iter("sensor")):
         for section in sensor_sections(sensor, vocabulary):
-            yield from _topics(sensor, number, section, "sensor")
+            yield from _topics(sensor, number, section, "sensor", vocabulary.release)
 
 
 def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName]:
@@ -117,7 +117,7 @@ def _of_elements(root: _Element, vocabulary: Vocabulary) -> Iterator[RuntimeName
             continue
         (section,) = vocabulary.find("element", tag)
         for number, element in enumerate(root.iter(tag.rpartition(".")[2])):
-            yield from _topics(element, number, section, element.tag)
+            yield from _topics(element, number, section, element.tag, vocabulary.release)
 
 
 def _links(root: _Element) -> Iterator[RuntimeName]:
@@ -129,10 +129,10 @@ def _links(root: _Element) -> Iterator[RuntimeName]:
 
 
 def _topics(
-    host: _Element, number: int, section: VocabularySection, tag: str
+    host: _Element, number: int, section: VocabularySection, tag: str, release: str
 ) -> Iterator[RuntimeName]:
     """Topics that are no ROS 2 node's: below the namespace that the plugin puts in front."""
-    for kind, name, path in resolved(host, section):
+    for kind, name, path in resolved(host, section, release):
         yield RuntimeName(kind, name, tag, number, path)
 
 

@@ -14,11 +14,14 @@ from lxml.etree import _Element
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.vocabulary import split_path, split_step
 
+# Blanks between elements are most of a tree, and no text that a consumer reads.
+_PARSER = etree.XMLParser(resolve_entities=False, huge_tree=True, remove_blank_text=True)
+
 
 def read_xml(data: bytes, file: str) -> _Element:
     """The root element; raises InputError."""
     try:
-        return etree.fromstring(data, etree.XMLParser(resolve_entities=False, huge_tree=True))
+        return etree.fromstring(data, _PARSER)
     except etree.XMLSyntaxError as error:
         raise InputError(f"{file}: cannot be read again: {error}") from None
 
@@ -48,12 +51,12 @@ def values_at(element: _Element, path: str) -> Iterator[str]:
             yield value.strip()
 
 
-def _below(element: _Element, steps: list[str]) -> Iterator[_Element]:
+def _below(element: _Element, steps: tuple[str, ...]) -> Iterator[_Element]:
     if not steps:
         yield element
         return
     tag, attribute, wanted = split_step(steps[0])
-    for child in element.iterfind(tag):
+    for child in element.iterchildren(tag):
         if not attribute or child.get(attribute, "") == wanted:
             yield from _below(child, steps[1:])
 

@@ -70,7 +70,7 @@ def _node(node: NodeFacts, release: str) -> NodeFacts:
         endpoints=_endpoints(node.endpoints, node.package, release),
         when=_condition(node.when, node.releases, node.package, release),
         frames=frames,
-        sends=tuple(it for it in node.sends if known.issuperset(it)),
+        sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
     )
 
 

@@ -8,6 +8,7 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
+    condition_of,
     releases_of,
     source_of,
     variants,
@@ -33,7 +34,7 @@ from multibot_rewrite.remap.yaml_with_lines import (
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note")
-ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", *FACT_KEYS)
+ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", "if", *FACT_KEYS)
 _TYPE = lazy_compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 # Part of a name that is only known at run time.
 _MADE = lazy_compile(r"<[^<>/]+>")
@@ -58,6 +59,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         also=words_of(keys, "also"),
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper"),
+        condition=condition_of(keys),
         releases=releases_of(keys),
         source=source_of(keys),
     )

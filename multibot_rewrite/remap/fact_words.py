@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import RELEASES, has_release, is_release_words
+from multibot_rewrite.remap.conditions import parse_condition
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
     table,
@@ -72,3 +74,13 @@ def text_and_words(item: YamlItem, what: str, key: str) -> Mapping[str, YamlItem
     if key not in found:
         wrong(item, f"{what} has no {key}; add {key}:")
     return found
+
+
+def condition_of(keys: Mapping[str, YamlItem]) -> str:
+    """What ``if`` says; a text that is no condition is an error at its line."""
+    text = word_of(keys, "if")
+    try:
+        parse_condition(text)
+    except UsageError as error:
+        wrong(keys["if"], str(error))
+    return text

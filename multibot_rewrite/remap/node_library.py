@@ -10,13 +10,14 @@ from multibot_rewrite.remap.endpoint_entries import checked_endpoint, endpoints_
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
+    condition_of,
     releases_of,
     share_release,
     source_of,
     text_and_words,
     variants,
 )
-from multibot_rewrite.remap.records import ROLES, Endpoint, FrameParameter, NodeFacts
+from multibot_rewrite.remap.records import ROLES, Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
     entries,
@@ -33,7 +34,11 @@ from multibot_rewrite.remap.yaml_with_lines import (
 )
 from multibot_rewrite.rosnames import check_node_name
 
-NODE_WORDS = ("package", "host", "shared", "note", "with", "frames", "sends", "fixed")
+NODE_WORDS = (
+    *("package", "host", "shared", "note", "with", "frames", "sends", "ids", "fixed"),
+    "nodl",
+)
+SENT_KEYS = ("child", "if")
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
 STACK_KEYS = ("about", "include", "nodes", "releases")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps", "releases")
@@ -155,6 +160,8 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        nodl=words_of(keys, "nodl"),
+        ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
         releases=releases_of(keys),
         source=source_of(keys),
     )
@@ -173,13 +180,19 @@ def _frames(keys: Mapping[str, YamlItem]) -> Iterator[FrameParameter]:
 
 def _sends(
     keys: Mapping[str, YamlItem], frames: Iterable[FrameParameter]
-) -> Iterator[tuple[str, str]]:
+) -> Iterator[SentTransform]:
     """The transforms that a node publishes, as the parameters that hold their frames."""
     known = {frame.parameter: frame.parameter for frame in frames}
     for parent, item in table_of(keys, "sends").items():
         if parent not in known:
             wrong(item, unknown("frame", parent, known))
-        yield parent, _known(item, "frame", known)
+        if isinstance(item.value, str):
+            yield SentTransform(parent, _known(item, "frame", known))
+            continue
+        sent = table(item, f"sends {parent}", SENT_KEYS)
+        if "child" not in sent:
+            wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
+        yield SentTransform(parent, _known(sent["child"], "frame", known), condition_of(sent))
 
 
 def _taken_over(
@@ -227,6 +240,7 @@ def _placed(item: YamlItem, library: NodeLibrary) -> NodeFacts:
     _check_node_name(keys.get("as", item), name)
     return node._replace(
         name=name,
+        known=node.name,
         shared=flag_of(keys, "shared", node.shared),
         when=word_of(keys, "when", node.when),
         releases=releases_of(keys) or node.releases,
@@ -255,7 +269,8 @@ def _renamed(
         return
     for value in values:
         name = endpoint.name.replace(given, value)
-        yield checked_endpoint(item, endpoint._replace(name=name, fixed=""))
+        first = endpoint.named_from or endpoint.name
+        yield checked_endpoint(item, endpoint._replace(name=name, fixed="", named_from=first))
 
 
 def _has(endpoint: Endpoint, given: str) -> bool:

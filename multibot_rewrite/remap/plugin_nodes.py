@@ -6,7 +6,14 @@ from collections.abc import Iterator
 
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import Reading
-from multibot_rewrite.remap.records import Endpoint, FrameParameter, NodeFacts, NodeRule, NodeTable
+from multibot_rewrite.remap.records import (
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    NodeRule,
+    NodeTable,
+    SentTransform,
+)
 
 
 def plugin_nodes(reading: Reading, robot: str) -> Iterator[tuple[NodeFacts, NodeTable]]:
@@ -23,7 +30,8 @@ def _facts(node: ReadNode) -> NodeFacts:
     )
     frames = tuple(FrameParameter(*frame) for frame in node.frames)
     package = node.section.names[0]
-    return NodeFacts(node.name, package, tuple(endpoints), frames=frames, sends=node.sends)
+    sends = tuple(SentTransform(*it) for it in node.sends)
+    return NodeFacts(node.name, package, tuple(endpoints), frames=frames, sends=sends)
 
 
 def _rules(node: ReadNode, robot: str) -> Iterator[NodeRule]:

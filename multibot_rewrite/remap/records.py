@@ -22,8 +22,11 @@ class Endpoint(NamedTuple):
     ``when`` is the condition under which it exists, empty for always. ``helper`` is true if a helper
     node in the same process uses it: a rule for the whole process reaches it, one for this node does
     not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
-    rule must lead there, since only the first match counts. ``releases`` are release words (see
-    ``multibot_rewrite.releases``), ``source`` the places where it can be read.
+    rule must lead there, since only the first match counts. ``condition`` is what its node's parameters
+    must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
+    nodes.yaml calls it, if a stack gives it another name.
+    ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
+    can be read.
     """
 
     kind: str
@@ -38,6 +41,8 @@ class Endpoint(NamedTuple):
     when: str = ""
     helper: bool = False
     remapped: str = ""
+    condition: str = ""
+    named_from: str = ""
     releases: str = ""
     source: tuple[str, ...] = ()
 
@@ -45,6 +50,7 @@ class Endpoint(NamedTuple):
 class FrameParameter(NamedTuple):
     """A parameter that holds a frame id, and its default; no remap rule reaches frame ids.
 
+    ``given`` is true where a robot's own files set it.
     ``releases`` and ``source`` as in ``Endpoint``.
     """
 
@@ -52,6 +58,16 @@ class FrameParameter(NamedTuple):
     default: str
     releases: str = ""
     source: tuple[str, ...] = ()
+    given: bool = False
+
+
+class SentTransform(NamedTuple):
+    """A transform that a node publishes, as the parameters that hold its frames; ``condition`` as in
+    ``Endpoint``."""
+
+    parent: str
+    child: str
+    condition: str = ""
 
 
 class NodeFacts(NamedTuple):
@@ -60,8 +76,12 @@ class NodeFacts(NamedTuple):
     A name with slashes is a node in its own namespace below the robot's, such as a costmap.
     ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
-    always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes, as
-    the parameters that hold parent and child. ``releases`` and ``source`` as in ``Endpoint``.
+    always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
+    are words in <> of its names, with the parameter that lists what they stand for. ``known`` is its
+    name in nodes.yaml if it has another one. ``origin`` is where a robot's own files name it
+    (``file:line``), empty for a node of a stack. ``releases``, ``source``: see ``Endpoint``. ``nodl``
+    are further names of its NoDL document, such as its executable; ``interface`` is the NoDL file that
+    its endpoints are from, empty for the library.
     """
 
     name: str
@@ -73,9 +93,14 @@ class NodeFacts(NamedTuple):
     when: str = ""
     frames: tuple[FrameParameter, ...] = ()
     fixed: tuple[str, ...] = ()
-    sends: tuple[tuple[str, str], ...] = ()
+    sends: tuple[SentTransform, ...] = ()
+    ids: tuple[tuple[str, str], ...] = ()
+    known: str = ""
+    origin: str = ""
     releases: str = ""
     source: tuple[str, ...] = ()
+    nodl: tuple[str, ...] = ()
+    interface: str = ""
 
 
 class NodeRule(NamedTuple):

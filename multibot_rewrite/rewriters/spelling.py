@@ -47,11 +47,14 @@ Spelling = tuple[Renamed, ...]
 
 
 def resolved_names(claims: Iterable[Claim], declared: Declared) -> list[tuple[ResolvedName, ...]]:
-    """The names in each claimed value, resolved; claims of one key share theirs."""
+    """The names in each claimed value, resolved; claims of equal values share theirs."""
     known: dict[tuple[object, str], tuple[ResolvedName, ...]] = {}
     result = []
     for claim in claims:
-        key = spelling_key(claim)
+        site = claim.site
+        # A link or joint is the same at every site, others at each site.
+        of: object = site.whole_value_kind or id(site)
+        key = (of, scope_of(claim.element)) if site.form == "scoped" else of, claim.value
         names = known.get(key)
         if names is None:
             names = known[key] = _resolved(claim, declared)
@@ -63,6 +66,8 @@ def _resolved(claim: Claim, declared: Declared) -> tuple[ResolvedName, ...]:
     site, value = claim.site, claim.value
     if site.whole_value_kind and value in declared[site.whole_value_kind]:
         return (ResolvedName(0, value, site.whole_value_kind, site.kinds),)
+    if site.role == "declares" and site.form == "whole" and value and value == value.strip():
+        return (ResolvedName(0, value, site.kinds[0], site.kinds),)
     return tuple(
         ResolvedName(part.at, part.text, kind_of(part, site.role, declared), part.kinds)
         for part in names_in(claim, declared)
@@ -87,14 +92,6 @@ def is_reached(claim: Claim, naming: Naming) -> bool:
 def takes_empty(site: Site) -> bool:
     """An empty text is a value too: the prefix of names that have none yet."""
     return site.form == "prefix" and site.role == "uses" and "@" not in site.path.rpartition("]")[2]
-
-
-def spelling_key(claim: Claim) -> tuple[object, str]:
-    """Claims of one key hold the same names: a link or joint at every site, others at each site."""
-    site = claim.site
-    if site.form == "scoped":
-        return (id(site), scope_of(claim.element)), claim.value
-    return site.whole_value_kind or id(site), claim.value
 
 
 def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:

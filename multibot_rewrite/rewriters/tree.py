@@ -175,6 +175,7 @@ class Tree:
     def _place(self, name: str, parent: str) -> None:
         if parent == "/":
             self.formats[name] = self._nodes[name]
+            self.tags.add(_tag(name))
         elif parent in self._below:
             self._below[parent].append(name)
         else:

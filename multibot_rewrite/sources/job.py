@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import Naming, OwnNames
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
@@ -37,8 +38,8 @@ from multibot_rewrite.steps.plan import make_plan
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own. It holds no
-    parsed document, so it can be pickled."""
+    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is the
+    one whose facts count. It holds no parsed document, so it can be pickled."""
 
     data: bytes
     file: str
@@ -46,11 +47,12 @@ class Job(NamedTuple):
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
     own: OwnSource = OF_ALL
+    release: str = NEWEST_LTS
 
     @property
     def tree(self) -> Tree:
         """The rewriters; raises VocabularyError."""
-        return builtin_tree(self.vocabulary)
+        return builtin_tree(self.vocabulary, self.release)
 
     @property
     def urdf_declarations(self) -> Declared:
@@ -73,6 +75,7 @@ def read_job(
     file: str = "",
     words: Sequence[str] = (),
     trust: bool = False,
+    release: str = NEWEST_LTS,
 ) -> Job:
     """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
 
@@ -80,7 +83,7 @@ def read_job(
     and what they name after any of the words is the robot's own. ``trust`` lets xacro files do
     anything.
     """
-    read = reader(source, naming, urdf, tuple(vocabulary), file, trust)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
     return job_for(read, xacro_args or {}, words)
 
 
@@ -93,10 +96,11 @@ def read_jobs(
     vocabulary: Iterable[str],
     file: str,
     trust: bool = False,
+    release: str = NEWEST_LTS,
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
-    read = reader(source, naming, urdf, tuple(vocabulary), file, trust)
+    read = reader(source, naming, urdf, tuple(vocabulary), file, trust, release)
     named = [robot for robot in robots if name_robot(given, [robot])]
     others = [robot for robot in robots if robot not in named]
     jobs = {robot: job_for(read, given, [robot]) for robot in named}
@@ -126,6 +130,7 @@ def reader(
     vocabulary: tuple[str, ...],
     file: str,
     trust: bool = False,
+    release: str = NEWEST_LTS,
 ) -> Reader:
     """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
 
@@ -134,7 +139,7 @@ def reader(
         args = dict(pairs)
         data, name = read_source(source, args_for(source, urdf, args), trust)
         beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
-        return Job(data, file or name, naming, vocabulary, beside)
+        return Job(data, file or name, naming, vocabulary, beside, OF_ALL, release)
 
     return lambda args: read(frozenset(args.items()))
 

@@ -11,6 +11,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, InputError, Site
 from multibot_rewrite.naming import DECLARED_KINDS
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.model_namespaces import below_models
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
@@ -48,20 +49,17 @@ def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHIN
     """
     claims: list[Claim] = []
     hosts: list[Host] = []
-    walk = zip(document.elements, document.starts, strict=True)
-    root, _ = next(walk)
     format_ = _format(document, tree, SRDF if urdf_declarations else "")
-    node = tree.formats[format_]
     nothing: dict[str, TreeNode] = {}
-    below: dict[etree._Element, dict[str, TreeNode]] = {root: node.active}
-    _claim(claims, node, root, document.starts[0])
+    below: dict[etree._Element | None, dict[str, TreeNode]]
+    below = {None: {str(document.root.tag): tree.formats[format_]}}
     known = tree.tags
-    for element, start in walk:
+    for element, start in zip(document.elements, document.starts, strict=True):
         tag = element.tag
         # Most elements hold numbers: one look decides that nothing anywhere asks for them.
         if tag not in known:
             continue
-        found = below.get(element.getparent(), nothing).get(tag)  # type: ignore[arg-type]
+        found = below.get(element.getparent(), nothing).get(tag)
         if found is None:
             continue
         if found.select is not None:
@@ -70,8 +68,13 @@ def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHIN
                 hosts.append(Host(element, start, found))
         if found.active:
             below[element] = found.active
-        if found.attributes or found.text is not None:
-            _claim(claims, found, element, start)
+        for attribute, site in found.attributes:
+            value = element.get(attribute)
+            if value is not None:
+                claims.append(Claim(site, element, start, attribute, value))
+        if found.text is not None:
+            claims += _text_claim(found.text, element, start)
+    claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
     names = resolved_names(claims, declared)
     return Inventory(document, claims, hosts, declared, format_, names)
@@ -92,17 +95,10 @@ def _format(document: Document, tree: Tree, likely: str) -> str:
     return found
 
 
-def _claim(claims: list[Claim], node: TreeNode, element: etree._Element, start: int) -> None:
-    for attribute, site in node.attributes:
-        value = element.get(attribute)
-        if value is not None:
-            claims.append(Claim(site, element, start, attribute, value))
-    own = node.text
-    if own is None:
-        return
+def _text_claim(site: Site, element: etree._Element, start: int) -> list[Claim]:
     text = text_of(element)
-    if (text or takes_empty(own)) and _applies(own, element):
-        claims.append(Claim(own, element, start, "", text))
+    is_name = (text or takes_empty(site)) and _applies(site, element)
+    return [Claim(site, element, start, "", text)] if is_name else []
 
 
 def _applies(site: Site, element: etree._Element) -> bool:

@@ -156,10 +156,10 @@ def value_slot(source: bytes, start: int, attribute: str, value: str) -> tuple[i
     # The common spelling, inside this tag and not inside another value; else the exact way.
     written = f' {attribute}="{value}"'.encode()
     begin = source.find(written, start, start + _NEAR)
-    if begin < 0 or source.find(b">", start, begin) >= 0:
+    earlier = source[start:begin]
+    if begin < 0 or b">" in earlier:
         return attribute_slot(source, start, attribute, value)
-    earlier = source.find(b"=", start, begin) >= 0
-    if earlier and (b"'" in source[start:begin] or source.count(b'"', start, begin) % 2):
+    if b"=" in earlier and (b"'" in earlier or earlier.count(b'"') % 2):
         return attribute_slot(source, start, attribute, value)
     return begin + len(attribute) + 3, begin + len(written) - 1
 
@@ -171,18 +171,17 @@ def value_places(
     slot = value_slot(source, start, attribute, value)
     if slot is None:
         return None
-    begin, end = slot
-    # As many bytes as characters: nothing is escaped.
-    if end - begin == len(value):
-        return [begin + at for at in characters]
-    places = [_place(source, slot, value, at) for at in characters]
+    places = [place_in(source, slot, value, at) for at in characters]
     found = [place for place in places if place is not None]
     return found if len(found) == len(places) else None
 
 
-def _place(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
+def place_in(source: bytes, slot: tuple[int, int], value: str, at: int) -> int | None:
     """The byte offset of character ``at`` of the value in ``slot``; None where escapes hide it."""
     begin, end = slot
+    # As many bytes as characters: nothing is escaped.
+    if end - begin == len(value):
+        return begin + at
     raw = source[begin:end]
     head, tail = value[:at].encode(), value[at:].encode()
     if raw.endswith(tail) and b";" not in tail:

@@ -16,7 +16,7 @@ from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.insert import Insertion, insertions
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.steps.collect import Inventory
-from multibot_rewrite.steps.document import fillable, finding, value_places, value_slot
+from multibot_rewrite.steps.document import fillable, finding, place_in, value_slot
 from multibot_rewrite.steps.inserted import insertion_edits, slot_edits
 from multibot_rewrite.steps.renames import RenameMap, make_renames, respeller
 
@@ -114,13 +114,12 @@ def _edits(inventory: Inventory, renames: RenameMap) -> tuple[list[Edit], list[F
             edits.append(_filled(inventory, claim, spelling[0].affix))
             continue
         # White space alone would be a part of the prefix: nothing takes it off (component_parser.cpp).
-        at = [name.affix.at for name in spelling]
-        places = value_places(source, start, attribute, value, at) if value else None
-        if places is None:
-            findings.append(_not_editable(inventory, claim))
-            continue
-        for place, name in zip(places, spelling, strict=True):
-            _, before, after = name.affix
+        slot = value_slot(source, start, attribute, value) if value else None
+        for *_, (at, before, after) in spelling:
+            place = slot and place_in(source, slot, value, at)
+            if place is None:
+                findings.append(_not_editable(inventory, claim))
+                break
             edits.append(Edit(place, place, before.encode(), after.encode()))
     return edits, findings
 

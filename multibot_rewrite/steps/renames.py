@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.naming import Affix, Naming, affix
@@ -43,30 +43,38 @@ class RenameMap(NamedTuple):
 
 def make_renames(inventory: Inventory, naming: Naming) -> RenameMap:
     """Ask the naming once for every distinct name of a description."""
-    # Claims share the names of equal values, so few are different.
-    pairs = zip(inventory.claims, inventory.names, strict=True)
-    at = [(id(names), claim.site.namespaced) for claim, names in pairs]
-    different = dict(zip(at, inventory.names, strict=True))
     declared = inventory.declared.items()
-    keys: set[NameKey] = {(kind, name, False) for kind, names in declared for name in names}
-    keys |= {(n.kind, n.text, reach) for (_, reach), names in different.items() for n in names}
-    asked = ((key, affix(naming, *key)) for key in keys)
-    affixes = {key: there for key, there in asked if there is not None}
-    known = {key: _spelling(names, key[1], affixes) for key, names in different.items()}
-    reached = (is_reached(claim, naming) for claim in inventory.claims)
-    values = [known[key] if it else () for key, it in zip(at, reached, strict=True)]
+    asked: dict[NameKey, Affix | None] = {
+        (kind, name, False): affix(naming, kind, name) for kind, names in declared for name in names
+    }
+    # Claims share the names of equal values, so few are different.
+    known: dict[tuple[int, bool], Spelling] = {}
+    values: list[Spelling] = []
+    for claim, names in zip(inventory.claims, inventory.names, strict=True):
+        namespaced = claim.site.namespaced
+        spelling = known.get((id(names), namespaced))
+        if spelling is None:
+            spelling = tuple(_renamed(names, namespaced, naming, asked))
+            known[id(names), namespaced] = spelling
+        values.append(spelling if is_reached(claim, naming) else ())
+    affixes = {key: there for key, there in asked.items() if there is not None}
     return RenameMap(naming, affixes, values)
 
 
-def _spelling(
-    names: tuple[ResolvedName, ...], namespaced: bool, affixes: Mapping[NameKey, Affix]
-) -> tuple[Renamed, ...]:
-    found = ((name, affixes.get((name.kind, name.text, namespaced))) for name in names)
-    return tuple(
-        renamed_at(name.at, name.kind, name.text, namespaced, there)
-        for name, there in found
-        if there is not None
-    )
+def _renamed(
+    names: tuple[ResolvedName, ...],
+    namespaced: bool,
+    naming: Naming,
+    asked: dict[NameKey, Affix | None],
+) -> Iterator[Renamed]:
+    """The names that change; ``asked`` is what the naming said before, and takes what it says now."""
+    for at, text, kind, _ in names:
+        key = kind, text, namespaced
+        if key not in asked:
+            asked[key] = affix(naming, *key)
+        there = asked[key]
+        if there is not None:
+            yield renamed_at(at, *key, there)
 
 
 def respeller(renames: RenameMap, robot: str) -> Respell:

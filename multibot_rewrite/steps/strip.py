@@ -64,10 +64,11 @@ def strip_edits(
 
 def stripped(claim: Claim, names: tuple[ResolvedName, ...], naming: Naming, robot: str) -> str:
     """A claimed value without its affixes."""
-    value = claim.value
-    if is_reached(claim, naming):
-        for start, end in reversed(_spans(names, claim.site.namespaced, naming, robot)):
-            value = value[:start] + value[end:]
+    value, namespaced = claim.value, claim.site.namespaced
+    for name in reversed(names) if is_reached(claim, naming) else ():
+        span = removal(naming, robot, name.kind, name.text, namespaced)
+        if span is not None:
+            value = value[: name.at + span[0]] + value[name.at + span[1] :]
     return value
 
 

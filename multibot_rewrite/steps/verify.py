@@ -7,7 +7,8 @@ made of it.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterator
+from collections.abc import Collection, Iterator
+from operator import attrgetter
 from typing import NamedTuple
 
 from lxml import etree
@@ -34,6 +35,7 @@ from multibot_rewrite.steps.plan import Plan
 from multibot_rewrite.steps.strip import Place, inside_of, own_places, strip_edits, stripped
 
 Names = tuple[ResolvedName, ...]
+_KIND = attrgetter("kind")
 
 
 class Evidence(NamedTuple):
@@ -120,9 +122,11 @@ def _expected(inventory: Inventory, naming: Naming) -> Iterator[str]:
 
 
 def _named(claim: Claim, names: Names, naming: Naming) -> str:
-    value = claim.value
+    value, namespaced = claim.value, claim.site.namespaced
+    if names[0].text == value:
+        return spelled(naming, ROBOT_SLOT, names[0].kind, value, namespaced)
     for name in reversed(names):
-        new = spelled(naming, ROBOT_SLOT, name.kind, name.text, claim.site.namespaced)
+        new = spelled(naming, ROBOT_SLOT, name.kind, name.text, namespaced)
         value = value[: name.at] + new + value[name.at + len(name.text) :]
     return value
 
@@ -140,7 +144,7 @@ def _collisions(inventory: Inventory, naming: Naming) -> dict[tuple[int, str], s
 
 def same_targets(it: Evidence) -> None:
     """Every name means what it meant: a use finds what it named, and nothing else does."""
-    file = it.inventory.document.file
+    file, own = it.inventory.document.file, it.naming.own
     # Claims share the names of equal values, so few are different.
     seen: set[tuple[int, int]] = set()
     for names, (new, now) in zip(it.inventory.names, it.found, strict=True):
@@ -148,14 +152,17 @@ def same_targets(it: Evidence) -> None:
         if pair in seen:
             continue
         seen.add(pair)
-        kept = {at for at, name in enumerate(names) if (name.kind, name.text) in it.naming.own}
-        same = _kinds(names, kept) == _kinds(now, kept)
-        if not same or any(_left_behind(name, it.inventory) for name in now if not name.kind):
+        kept = {at for at, name in enumerate(names) if (name.kind, name.text) in own} if own else ()
+        kinds = _kinds(now, kept)
+        lost = any(_left_behind(name, it.inventory) for name in now) if "" in kinds else False
+        if lost or kinds != _kinds(names, kept):
             raise ProofError(f"{file}: {new.value!r} does not name what it named before")
 
 
-def _kinds(names: Names, kept: Container[int]) -> list[str]:
+def _kinds(names: Names, kept: Collection[int]) -> list[str]:
     """The kinds of names; a frame that an argument of the xacro names may become that of a link."""
+    if not kept:
+        return [*map(_KIND, names)]
     return [
         "frame" if at in kept and name.kind in FRAME_KINDS else name.kind
         for at, name in enumerate(names)
@@ -163,8 +170,9 @@ def _kinds(names: Names, kept: Container[int]) -> list[str]:
 
 
 def _left_behind(name: ResolvedName, inventory: Inventory) -> bool:
-    """Was there something of this name that leads nowhere now?"""
-    return any(name.text in inventory.declared.get(kind, ()) for kind in name.kinds)
+    """Does this name lead nowhere now, though there was something called so?"""
+    kinds = () if name.kind else name.kinds
+    return any(name.text in inventory.declared.get(kind, ()) for kind in kinds)
 
 
 def robots_own(it: Evidence) -> None:
@@ -260,7 +268,7 @@ def _planned(source: bytes, edits: list[Edit], robot: bytes) -> Iterator[bytes]:
 
 def a_slot_each(it: Evidence) -> None:
     """Each name of this robot was put into a slot: any other robot gets its own at the same places."""
-    values = sum(value.count(ROBOT_SLOT) for value in it.expected)
+    values = "".join(it.expected).count(ROBOT_SLOT)
     wanted = values + len(list(_inserted_names(it))) + len(it.markers)
     if it.slots != wanted:
         file = it.inventory.document.file

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any, cast
 
 import pytest
 from paths import ROOT
@@ -51,14 +52,24 @@ def test_the_fix_makes_just_what_is_shown(code: str, tmp_path: Path) -> None:
     rule = RULES[code]
     (finding,) = found(rule, rule.bad, tmp_path)
     bad = Path(finding.file).read_bytes()
-    text, left = fix(finding.file, bad, Settings(select=(code,)))
+    text, left = fix(finding.file, bad, Settings(select=(code,), **cast(Any, rule.options)))
     assert text.decode() == whole(rule.fixed)
     assert left == []
 
 
 def test_the_codes_with_a_fix() -> None:
     fixed = {code for code, it in RULES.items() if it.fixed}
-    assert fixed == {"MB002", "MB140", "MB141", "MB142", "MB301"}
+    assert fixed == {
+        "MB002",
+        "MB126",
+        "MB128",
+        "MB133",
+        "MB134",
+        "MB140",
+        "MB141",
+        "MB142",
+        "MB301",
+    }
 
 
 @pytest.mark.parametrize("rule", RULES.values(), ids=RULES)

@@ -18,8 +18,8 @@ from paths import FIXTURES, SUPPORT
 
 from multibot_rewrite import InputError, RewriteRefused, UsageError, load_fleet
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.companions.params.rcl_parameters import node_parameters, typed
 from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.fleets.rcl_parameters import node_parameters, typed
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot
 
 ROVER = FIXTURES / "robots" / "rover.urdf"
@@ -165,7 +165,9 @@ def test_a_robot_without_a_pose_has_no_start_parameters(tmp_path: Path) -> None:
 
 def test_arguments_of_programs(tmp_path: Path) -> None:
     text = FLEET.replace("[nav2, robot_state]", "robot_state")
-    first, second = fleet(tmp_path, "L2", text).robots
+    # Without localisation: neither the stack nor the parameters have a node for it.
+    own = "my_node:\n  ros__parameters: {frame: odom}\n"
+    first, second = fleet(tmp_path, "L2", text, own).robots
     assert first.spawn_arguments[:4] == ["-name", "robot1", "-topic", "/robot1/robot_description"]
     assert second.spawn_arguments[:2] == ["-name", "second"]
     assert first.classic_arguments[:2] == ["-entity", "robot1"]

@@ -267,7 +267,9 @@ def test_a_description_reads_back_whatever_is_in_it(odd: str, fleet: str, contex
 
 
 def test_a_spawner_and_a_place(fleet: str, context: Any) -> None:
+    # Nothing that localises the robot: it gets a place by a static transform.
     Path(fleet).write_text(FLEET.replace("[nav2, robot_state]", "robot_state"))
+    Path(fleet).with_name("params.yaml").write_text("own:\n  ros__parameters: {rate: 5}\n")
     robot = load_fleet(fleet).robot("robot1")
     (gz,) = run(context, launch.spawn("gz", "robot1", fleet))
     (classic,) = run(context, launch.spawn("classic", "robot1", fleet))

@@ -137,7 +137,7 @@ CASES = [
     pytest.param(robot(HARD.replace("0.1 0.1 0.1", "80 60 40")), "MB614:1", id="millimetres"),
     pytest.param(robot("<collision><geometry/></collision>"), "MB615:1", id="empty geometry"),
     pytest.param(
-        robot('<visual><geometry><capsule radius="1" length="1"/></geometry></visual>'), "MB615:1"
+        robot('<visual><geometry><cone radius="1" length="1"/></geometry></visual>'), "MB615:1"
     ),
     pytest.param(robot("<visual><geometry><!-- a --><box size='1 1 1'/></geometry></visual>"), ""),
     pytest.param("<gazebo><visual/><link name='a'/></gazebo><link name='a'/>", "", id="not URDF's"),
@@ -194,17 +194,6 @@ def test_what_is_found_and_what_is_not(body: str, expected: str, tmp_path: Path)
 )
 def test_the_robot_as_a_whole(body: str, expected: str, tmp_path: Path) -> None:
     assert reported(found(body, tmp_path, WHOLE)) == expected
-
-
-@pytest.mark.parametrize(("version", "expected"), [("1.0", "MB615:1"), ("1.2", "")])
-def test_a_capsule_is_known_from_version_1_1_on(
-    version: str, expected: str, tmp_path: Path
-) -> None:
-    file = tmp_path / "robot.urdf"
-    shape = '<capsule radius="1" length="1"/>'
-    link = f'<link name="a"><visual><geometry>{shape}</geometry></visual></link>'
-    file.write_text(f'<robot name="r" version="{version}">{link}</robot>')
-    assert reported(lint_file(str(file), GROUP)) == expected
 
 
 def test_how_much_gazebo_leaves_out_is_told(tmp_path: Path) -> None:

@@ -9,6 +9,8 @@ from counted_steps import growth
 
 from multibot_rewrite.lint.schema.faults import Fault, read_faults
 from multibot_rewrite.lint.schema.sections import schema
+from multibot_rewrite.lint.schema.values import FINE
+from multibot_rewrite.lint.schema.versions import NEWEST
 from multibot_rewrite.steps.document import read_document
 
 LINKS = '<link name="a"/><link name="b"/>'
@@ -50,7 +52,10 @@ NO_FAULT = {
     "forms of numbers": shape('<box size="1. .5 +1e-3"/>'),
     "too small for a double": shape('<sphere radius="1e-400"/>'),
     "many digits": shape(f'<sphere radius="0.{"1" * 300}"/>'),
-    "capsule": shape('<capsule radius="1" length="1"/>'),
+    "capsule": '<robot name="r" version="1.1">'
+    + shape('<capsule radius="1" length="1"/>')
+    + "</robot>",
+    "version 1.2": '<robot name="r" version="1.2"/>',
     "shapes of others": shape('<ellipsoid radii="1 1 1"/>'),
     "shape of a namespace": '<robot name="r" xmlns:drake="d">'
     + shape('<drake:ellipsoid a="1"/>')
@@ -222,12 +227,12 @@ def test_hints_name_what_is_meant(body: str, hint: str) -> None:
 
 
 def test_the_schema_is_whole() -> None:
-    sections = schema().sections
+    sections = schema(NEWEST).sections
     for name, section in sections.items():
         for tag, child in section.children.items():
             assert not child.section or child.section in sections, (name, tag)
         types = {kind.type for kind in section.attributes.values()}
-        assert types <= {"", "number", "numbers", "rgba", "version", "one"}, name
+        assert types <= {"", *FINE, "one"}, name
     reached = {child.section for it in sections.values() for child in it.children.values()}
     assert set(sections) - reached == {"robot"}
 

@@ -27,7 +27,7 @@ FLOORS = (
     ("readback", "steps"),
     ("checks", "sources", "remap"),
     ("pipeline", "reports", "graph", "lint", "companions", "interfaces"),
-    ("library",),
+    ("library", "evidence"),
     ("fleets",),
     ("__init__", "launch", "catalogue"),
     ("cli",),

@@ -80,7 +80,7 @@ def test_an_endpoint_may_differ_from_release_to_release(release: str, type_: str
 def test_a_frame_that_a_release_lacks_is_not_sent_there() -> None:
     assert [it.parameter for it in dock("jazzy").frames] == ["base_frame"]
     assert dock("jazzy").sends == ()
-    assert dock("kilted").sends == (("fixed_frame", "base_frame"),)
+    assert [it[:2] for it in dock("kilted").sends] == [("fixed_frame", "base_frame")]
 
 
 @pytest.mark.parametrize(

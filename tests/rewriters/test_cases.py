@@ -40,7 +40,7 @@ BLOCKS = load_vocabulary().sections("block")
 LEAST_CASES = 1050
 LEAST_REFEREED = 980
 # Not a word of rewrite's naming policy.
-NO_POLICY = ("again", "file", "urdf")
+NO_POLICY = ("again", "file", "urdf", "distro")
 # Rows of the vocabulary, by section and path, at which no case renames anything.
 UNEXERCISED: set[tuple[str, str]] = set()
 # A plugin's parameter may be called <joint> or <link> too.
@@ -62,6 +62,11 @@ def _run(name: str, source: bytes) -> Rewrite:
 def policy(case: Case) -> Policy:
     """The options of the case that say how names are made."""
     return cast(Policy, {key: it for key, it in case.options.items() if key not in NO_POLICY})
+
+
+def release(case: Case) -> str:
+    """The release that the case is about; empty where it is none."""
+    return str(case.options.get("distro", ""))
 
 
 def beside(case: Case) -> dict[str, bytes]:
@@ -109,13 +114,16 @@ def test_refused_with_that_code(case: Case) -> None:
 
 def nothing_renamed_is_the_input(case: Case) -> None:
     naming = make_naming(**policy(case))._replace(separators={}, topics=POSTFIX)
-    template = pipeline.prepare(case.source, case.name, naming, builtin_tree(), outside(case))
+    tree = builtin_tree((), release(case))
+    template = pipeline.prepare(case.source, case.name, naming, tree, outside(case))
     assert fill(template.pieces, ROBOTS[0]) == case.source
     assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)
 
 
 def strip_gives_the_input_back(case: Case) -> None:
-    stripped = strip(run(case).data, ROBOTS[0], **policy(case), **beside(case))
+    stripped = strip(
+        run(case).data, ROBOTS[0], **policy(case), distro=release(case), **beside(case)
+    )
     assert stripped == case.source
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    DISTRO,
     EXPLAIN_OPTION,
     FINDINGS,
     FINDINGS_OUTPUT,
@@ -60,6 +61,7 @@ POSTFIX = Command(
                 ROBOTS,
                 URDF,
                 VOCABULARY,
+                DISTRO,
                 TRUST,
             ),
         ),
@@ -138,6 +140,7 @@ LINT = Command(
                 several("--roots", "A,B", "folders to look for package://NAME and $(find NAME) in"),
                 URDF,
                 VOCABULARY,
+                DISTRO,
                 TRUST,
             ),
         ),

@@ -46,6 +46,12 @@ _DESCRIPTION = OptionGroup(
             [],
         ),
         value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
+        several(
+            "--nodl",
+            "PATH",
+            "NoDL files or folders of them, besides those of installed packages; none: use no NoDL",
+            [],
+        ),
         VOCABULARY,
         TRUST,
     ),

@@ -18,6 +18,7 @@ from multibot_rewrite.cli.options import (
     Example,
     OptionGroup,
     argument,
+    choice,
     output,
     output_group,
     several,
@@ -45,7 +46,8 @@ CHECK = Command(
                 value(
                     "--snapshot",
                     metavar="FILE",
-                    about="what multibot snapshot wrote, instead of the live graph",
+                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
+                    " the live graph",
                     type=values.path,
                 ),
                 TRUST,
@@ -73,6 +75,7 @@ LEARN = Command(
     (
         Example("multibot learn --node /my_driver,/my_planner --stack mine -o mine.yaml"),
         Example("multibot learn --namespace /robot1 --stack mine -o mine.yaml", "a whole robot"),
+        Example("multibot learn --node /my_driver -o my_driver.nodl.yaml", "as NoDL"),
         Example("multibot learn --snapshot graph.json --stack mine", "needs no ROS"),
         Example("multibot remap rover.urdf robot1 robot2 --nodes mine.yaml --stack mine"),
     ),
@@ -96,7 +99,8 @@ LEARN = Command(
                 value(
                     "--snapshot",
                     metavar="FILE",
-                    about="what multibot snapshot wrote, instead of the live graph",
+                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
+                    " the live graph",
                     type=values.path,
                 ),
             ),
@@ -109,6 +113,13 @@ LEARN = Command(
                 about="name of the new stack; default: learned",
                 type=values.word,
                 default="learned",
+            ),
+            choice(
+                "--form",
+                "FORM",
+                ("nodes", "nodl"),
+                "a file of nodes and stacks, or NoDL interface files: nodes, nodl; default: nodl if -o"
+                " ends in .nodl.yaml, else nodes; with nodl, -o may be a folder for several nodes",
             ),
         ),
         LIVE,
@@ -128,10 +139,18 @@ SNAPSHOT = Command(
         Example(
             "multibot snapshot -o graph.json --expect /robot1/amcl", "JSON, for multibot check"
         ),
+        Example("multibot snapshot --form rosgraph -o graph.yaml", "for other tools"),
     ),
     (
         output_group(
             output("write JSON there (- is standard output), not a table"),
+            choice(
+                "--form",
+                "FORM",
+                ("json", "rosgraph"),
+                "the snapshot as JSON, or as a message of the type rosgraph_msgs/Graph (YAML, as ros2"
+                " topic echo prints it): json, rosgraph",
+            ),
         ),
         LIVE._replace(
             options=(

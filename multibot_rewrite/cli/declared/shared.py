@@ -13,6 +13,7 @@ from multibot_rewrite.naming import (
     SHARED_FRAMES,
     SHARED_TOPICS,
 )
+from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="
@@ -69,6 +70,12 @@ URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to",
 TRUST = switch(
     "--trust",
     about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",
+)
+DISTRO = value(
+    "--distro",
+    metavar="NAME",
+    about=f"the ROS release: {', '.join(RELEASES)}; default: ROS_DISTRO, else {NEWEST_LTS}",
+    type=values.one_of(RELEASES),
 )
 FINDINGS = OptionGroup(
     "findings",

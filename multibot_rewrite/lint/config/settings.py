@@ -39,7 +39,8 @@ class Settings(NamedTuple):
     linted together with them. ``included`` are xacro files that are linted through those which
     include them. ``seconds`` is the time limit for one file. ``trust`` lets xacro
     files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
-    looks in: a configuration gives them no folder outside of its own.
+    looks in: a configuration gives them no folder outside of its own. ``distro`` is the release whose
+    facts count, the newest LTS where it is empty.
     """
 
     select: tuple[str, ...] = ALL
@@ -58,6 +59,7 @@ class Settings(NamedTuple):
     seconds: float = TIME_LIMIT
     trust: bool = False
     readable: tuple[str, ...] = ()
+    distro: str = ""
 
 
 def matches(path: str, pattern: str) -> bool:

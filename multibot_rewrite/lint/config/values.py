@@ -14,6 +14,7 @@ from multibot_rewrite.lint.config.patterns import anchored, with_folders
 from multibot_rewrite.lint.config.settings import EVERY_FILE, TARGETS, ArgumentSet
 from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.rosnames.names import check_robot_name
 
 
@@ -206,6 +207,7 @@ READERS: Mapping[str, Callable[[Given], object]] = {
     "baseline": _path,
     "fail-on": _level,
     "seconds": _seconds,
+    "distro": lambda given: _one_of(given, RELEASES),
 }
 # Keys whose field has another name.
 FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}

@@ -122,7 +122,9 @@ def _stem(path: str) -> str:
 
 def _read(path: str, srdf: Inventory, settings: Settings) -> Pair:
     data, name = _described(path, settings)
-    inventory = collect(read_document(data, name), builtin_tree(settings.vocabulary))
+    inventory = collect(
+        read_document(data, name), builtin_tree(settings.vocabulary, settings.distro)
+    )
     declared = inventory.declared
     known = declared["link"].keys() | declared["joint"].keys()
     misses = sum(it not in known for it in _names(srdf))

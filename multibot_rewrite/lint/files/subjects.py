@@ -102,7 +102,7 @@ def _local(element: _Element) -> str:
 
 
 def _subject(document: Document, settings: Settings) -> Subject:
-    tree = builtin_tree(settings.vocabulary)
+    tree = builtin_tree(settings.vocabulary, settings.distro)
     called = SRDF_MARK in os.path.basename(document.file)
     inventory = collect(document, tree, NO_URDF if called else NOTHING)
     elements, robot = Elements(document), read_robot(document.root)

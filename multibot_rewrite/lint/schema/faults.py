@@ -13,6 +13,7 @@ from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.schema.sections import (
     ROBOT,
     Kind,
+    Schema,
     Section,
     is_own,
     schema,
@@ -21,7 +22,8 @@ from multibot_rewrite.lint.schema.sections import (
     sections_once,
     typed_attributes,
 )
-from multibot_rewrite.lint.schema.values import COUNTS, FINE, is_fine, shortened, wrong_numbers
+from multibot_rewrite.lint.schema.values import COUNTS, is_fine, shortened, wrong_numbers
+from multibot_rewrite.lint.schema.versions import is_known, version_of
 from multibot_rewrite.nearest import nearest
 from multibot_rewrite.steps.document import Document, tag_end
 
@@ -62,47 +64,53 @@ def read_faults(document: Document) -> tuple[Fault, ...]:
     root = document.root
     if root.tag != ROBOT:
         return ()
-    faults = [*_stray_texts(root), *_broken_numbers(document)]
+    known = schema(version_of(root))
+    faults = [*_stray_texts(root, known), *_broken_numbers(document, known)]
     level = {ROBOT: [root]}
     while level:
         below: dict[str, list[etree._Element]] = defaultdict(list)
         for name, elements in level.items():
-            for element in _to_check(name, elements):
-                faults += _attributes(element, schema().sections[name])
-            faults += _sorted_children(name, elements, below)
+            for element in _to_check(known, name, elements):
+                faults += _attributes(element, known.sections[name])
+            faults += _sorted_children(known, name, elements, below)
         level = below
     return tuple(faults)
 
 
 def _sorted_children(
-    name: str, parents: Iterable[etree._Element], below: dict[str, list[etree._Element]]
+    known: Schema,
+    name: str,
+    parents: Iterable[etree._Element],
+    below: dict[str, list[etree._Element]],
 ) -> Iterator[Fault]:
     """Sorts the children of elements into their sections; yields what is wrong with the children."""
     families: dict[tuple[str, ...], list[list[etree._Element]]] = defaultdict(list)
-    for parent in parents if name in schema().parents else filter(len, parents):
+    for parent in parents if name in known.parents else filter(len, parents):
         family = [parent, *parent]
         families[tuple([it.tag for it in family])].append(family)
-    for (_, *tags), alike in families.items():
-        known = tuple(tags)
-        sections = sections_below(name, known)
+    for (_, *found), alike in families.items():
+        tags = tuple(found)
+        sections = sections_below(known.version, name, tags)
         above, *columns = zip(*alike, strict=True)
         if sections is None:
             for parent in above:
-                yield from _children(parent, schema().sections[name])
-            sections = sections_once(name, known)
+                yield from _children(parent, known.sections[name], known)
+            sections = sections_once(known.version, name, tags)
         for section, children in zip(sections, columns, strict=True):
             if section:
                 below[section] += children
 
 
-def _to_check(name: str, elements: Iterable[etree._Element]) -> Iterable[etree._Element]:
+def _to_check(
+    known: Schema, name: str, elements: Iterable[etree._Element]
+) -> Iterable[etree._Element]:
     """The elements whose attributes may have a fault."""
     kinds: dict[tuple[str, ...], list[etree._Element]] = defaultdict(list)
     for element in elements:
         kinds[tuple(element.keys())].append(element)  # type: ignore[arg-type]
     found: list[etree._Element] = []
     for keys, alike in kinds.items():
-        typed = typed_attributes(name, keys)
+        typed = typed_attributes(known.version, name, keys)
         if typed is None:
             found += alike
         elif typed:
@@ -132,6 +140,13 @@ def _attributes(element: etree._Element, section: Section) -> Iterator[Fault]:
         kind = section.attributes.get(key)
         if kind is not None and kind.type:
             yield from _value(element, kind, key, element.get(key, ""))
+        if kind is not None and kind.instead_of in keys:
+            message = f"<{element.tag}> has both {kind.instead_of} and {key}"
+            yield Fault("rotation-twice", element, key, message)
+        since = section.later.get(f"@{key}")
+        if since and section.name != "limit":  # MB129 reports those of a limit together
+            message = f"{key} of <{element.tag}> is not read: it needs URDF {since}"
+            yield Fault("needs-later-version", element, key, message)
 
 
 def _unknown_attributes(
@@ -161,13 +176,16 @@ def _unknown_attributes(
         yield Fault("missing", element, None, f"<{element.tag}> has no {key!r}")
 
 
-def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
-    """Children that are missing, repeated, or that no parser knows."""
+def _children(element: etree._Element, section: Section, schema: Schema) -> Iterator[Fault]:
+    """Children that are missing, repeated, or that no parser knows, or not yet."""
     known = section.children
     tags = [child.tag for child in element.iterchildren("*")]
     count = Counter(tags)
     missing = [tag for tag in known if known[tag].times == "required" and tag not in count]
     for child in element.iterchildren("*"):
+        if child.tag in section.later:
+            message = f"<{child.tag}> is not read: it needs URDF {section.later[str(child.tag)]}"
+            yield Fault("needs-later-version", child, None, message)
         if child.tag in known or not is_own(child.tag):
             continue
         meant = _near(str(child.tag), _CORE if section.name == ROBOT else known)
@@ -176,7 +194,7 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
             message = f"<{element.tag}> has no <{meant}>"
             yield Fault("missing", child, None, message, f"is <{child.tag}> misspelled?")
         else:
-            yield from _unknown_child(element, child, section, meant)
+            yield from _unknown_child(element, child, section, schema, meant)
     for tag in missing:
         yield Fault("missing", element, None, f"<{element.tag}> has no <{tag}>")
     yield from _repeated(element, section, count)
@@ -184,7 +202,11 @@ def _children(element: etree._Element, section: Section) -> Iterator[Fault]:
 
 
 def _unknown_child(
-    element: etree._Element, child: etree._Element, section: Section, meant: str
+    element: etree._Element,
+    child: etree._Element,
+    section: Section,
+    schema: Schema,
+    meant: str,
 ) -> Iterator[Fault]:
     """A child that the schema does not have in its parent."""
     message = f"no parser reads <{child.tag}> inside <{element.tag}>"
@@ -195,8 +217,8 @@ def _unknown_child(
         return  # MB615 reports it
     elif meant:
         yield Fault("misspelled-element", child, None, message, hint)
-    elif child.tag in schema().tags:
-        homes = [it.name for it in schema().sections.values() if child.tag in it.children]
+    elif child.tag in schema.tags:
+        homes = [it.name for it in schema.sections.values() if child.tag in it.children]
         tags = sorted({home.rpartition("_")[2] for home in homes})
         hint = f"it belongs in {' or '.join(f'<{tag}>' for tag in tags)}"
         yield Fault("misplaced-element", child, None, message, hint)
@@ -248,12 +270,9 @@ def _value(element: etree._Element, kind: Kind, attribute: str, value: str) -> I
             message = f"{where}, not one of {', '.join(kind.choices)}"
             yield Fault("bad-choice", element, attribute, message, hint)
     elif kind.type == "version":
-        if FINE["version"].fullmatch(value):
-            return
-        message = f"{where}, urdfdom knows only 1.0"
-        yield Fault(
-            "bad-choice", element, attribute, message, 'write version="1.0", or leave it out'
-        )
+        if not is_known(value):
+            message = f"{where}, urdfdom reads 1.0, 1.1 and 1.2"
+            yield Fault("bad-choice", element, attribute, message, "leave it out for 1.0")
     elif not _is_unread(element):
         named, problem, hint = wrong_numbers(value, kind.type)
         if named:
@@ -267,10 +286,10 @@ def _is_unread(element: etree._Element) -> bool:
     return element.tag == "axis" and joint is not None and joint.get("type") in _AXIS_FREE
 
 
-def _stray_texts(root: etree._Element) -> Iterator[Fault]:
+def _stray_texts(root: etree._Element, known: Schema) -> Iterator[Fault]:
     """Text where no parser expects any, mostly a stray ``>``."""
     for element in (it for top in _found(_TOPS, root) for it in _elements_with_text(top)):
-        section = section_of(element)
+        section = section_of(element, known)
         if section is None or section.text:
             continue
         pieces = [element.text, *(child.tail for child in element)]
@@ -288,7 +307,7 @@ def _found(path: etree.XPath, element: etree._Element) -> list[etree._Element]:
     return path(element)  # type: ignore[return-value]
 
 
-def _broken_numbers(document: Document) -> Iterator[Fault]:
+def _broken_numbers(document: Document, known: Schema) -> Iterator[Fault]:
     """Line breaks and tabs after a number: white space for XML, but not for urdfdom."""
     source, elements, starts = document.source, document.elements, document.starts
     seen: set[int] = set()
@@ -297,7 +316,7 @@ def _broken_numbers(document: Document) -> Iterator[Fault]:
         if number < 0 or number in seen or tag_end(source, starts[number]) <= at:
             continue
         seen.add(number)
-        section = section_of(elements[number])
+        section = section_of(elements[number], known)
         found = _ASSIGNED.search(source, starts[number], at)
         key = found[1].decode() if found else ""
         if section and key in section.attributes and section.attributes[key].type in COUNTS:

@@ -10,15 +10,35 @@ from multibot_rewrite.lazy import lazy_compile
 
 _SCALAR = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d\d?)?"
 _UNIT = r"(?:0+\.?\d*|\.\d+|1\.?0*)"
+# Digits that are not all 0.
+_ABOVE = r"\+?(?=[\d.]*[1-9])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d)?"
 # What most values look like. urdfdom accepts spaces before a single number and none after it.
 FINE = {
     "number": lazy_compile(rf" *{_SCALAR}", re.ASCII),
     "numbers": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{2}} *", re.ASCII),
     "rgba": lazy_compile(rf" *{_UNIT}(?: +{_UNIT}){{3}} *", re.ASCII),
-    "version": lazy_compile(r"0*1\.0+", re.ASCII),
+    "quaternion": lazy_compile(rf" *{_SCALAR}(?: +{_SCALAR}){{3}} *", re.ASCII),
+    "unsigned": lazy_compile(rf" *(?!-){_SCALAR}", re.ASCII),
+    "positive": lazy_compile(rf" *{_ABOVE}", re.ASCII),
+    "positives": lazy_compile(rf" *{_ABOVE}(?: +{_ABOVE}){{2}} *", re.ASCII),
+    "version": lazy_compile(r"1\.[0-2]", re.ASCII),
 }
 _LONG = 200
-COUNTS = {"number": 1, "numbers": 3, "rgba": 4}
+COUNTS = {
+    "number": 1,
+    "numbers": 3,
+    "rgba": 4,
+    "quaternion": 4,
+    "unsigned": 1,
+    "positive": 1,
+    "positives": 3,
+}
+# What is asked of numbers of these types.
+_ASKED = {
+    "unsigned": "refuses numbers below 0",
+    "positive": "refuses 0 and less",
+    "positives": "refuses 0 and less",
+}
 _NUMBER = lazy_compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?", re.ASCII)
 _INFINITE = lazy_compile(r"[-+]?(?:nan|inf|infinity)", re.IGNORECASE)
 _UNITS = lazy_compile(r"[-+.\deE]*\d\.?\s*[A-Za-z°%]+", re.ASCII)
@@ -59,8 +79,10 @@ def _miscounted(value: str, numbers: Sequence[float], kind: str) -> tuple[str, s
         return "wrong-count", f": {count} of {wanted}", ""
     if kind == "rgba" and not all(0 <= it <= 1 for it in numbers):
         return kind, ": outside of 0 to 1", "divide by 255" if max(numbers) > 1 else ""
-    if kind == "number" and value.endswith(" "):
+    if wanted == 1 and value.endswith(" "):
         return "space-after-number", ", with a space after it", "delete the space"
+    if kind in _ASKED and (min(numbers) < 0 or (kind != "unsigned" and 0 in numbers)):
+        return "out-of-range", f": URDF 1.2 {_ASKED[kind]}", ""
     return "", "", ""
 
 

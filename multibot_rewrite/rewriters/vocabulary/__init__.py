@@ -62,6 +62,7 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     insert: yes | no       no where the consumer throws on children it does not know (default: yes)
     unique: KIND           bare names of this kind are looked up in the whole world
     hardwired: KIND:NAME... names it looks for whatever the file says: a rename hides them
+    model_namespace: RELEASES  its relative topics stand below the <model namespace> in these (kilted+)
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
     about: TEXT            what it is
     source: TEXT           where in which source that can be read
@@ -81,6 +82,7 @@ from functools import lru_cache
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.vocabulary.grammar import (
     FORMS,
     KINDS,
@@ -118,11 +120,14 @@ __all__ = [
 class Vocabulary:
     """The sections of several files, parsed on demand; build with ``load_vocabulary``.
 
-    ``extended`` tells that some of them are not built in.
+    ``extended`` tells that some of them are not built in. ``release`` is the one they are read for.
     """
 
-    def __init__(self, texts: Mapping[str, str], extended: bool = False) -> None:
+    def __init__(
+        self, texts: Mapping[str, str], extended: bool = False, release: str = NEWEST_LTS
+    ) -> None:
         self.extended = extended
+        self.release = release
         self._raw: dict[tuple[str, str], list[Raw]] = {}
         self._names: dict[str, dict[str, None]] = {type_: {} for type_ in TYPES}
         self._found: dict[tuple[str, str], tuple[VocabularySection, ...]] = {}
@@ -214,8 +219,11 @@ class Vocabulary:
 
 
 @lru_cache(maxsize=8)
-def load_vocabulary(extra: tuple[str, ...] = (), *, packages: bool = True) -> Vocabulary:
-    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``.
+def load_vocabulary(
+    extra: tuple[str, ...] = (), *, packages: bool = True, release: str = NEWEST_LTS
+) -> Vocabulary:
+    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as
+    they are read for ``release``.
 
     Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
     else in a section that is used.
@@ -225,7 +233,7 @@ def load_vocabulary(extra: tuple[str, ...] = (), *, packages: bool = True) -> Vo
     texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
     try:
         texts |= {name: _text(name, path) for name, path in more.items()}
-        vocabulary = Vocabulary(texts, extended=bool(more))
+        vocabulary = Vocabulary(texts, bool(more), release)
         vocabulary.sections_in(more)
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None

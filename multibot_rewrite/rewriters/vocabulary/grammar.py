@@ -6,11 +6,13 @@ The grammar is in the docstring of the package.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
+from multibot_rewrite.releases import is_release_words
 
 TYPES = ("element", "plugin", "hardware", "sensor", "block")
 SETTINGS = (
@@ -28,6 +30,7 @@ SETTINGS = (
     "unique",
     "process_wide",
     "hardwired",
+    "model_namespace",
 )
 # Settings that are one word out of few.
 VALUES = {
@@ -54,6 +57,8 @@ FORMS = (
     "argument",
     "collision",
 )
+# A vocabulary has hundreds of paths, which are asked for again with every plugin.
+PATHS = 4096
 _NAME = r"[A-Za-z_][\w.:-]*"
 _STEP = rf"{_NAME}(?:\[@{_NAME}=[^\[\]]+\])?"
 _ONE_STEP = lazy_compile(_STEP)
@@ -70,7 +75,8 @@ class VocabularySection(NamedTuple):
     ``inserts`` is false where the consumer throws on children it does not know.
     ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
     tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
-    for whatever the file says, each as ``kind:name``.
+    for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
+    its relative topics stand below the namespace of the model.
     """
 
     type: str
@@ -88,6 +94,7 @@ class VocabularySection(NamedTuple):
     unique: str
     process_wide: bool
     hardwired: tuple[str, ...]
+    model_namespace: str
     about: str
     source: str
     file: str
@@ -159,6 +166,7 @@ def assemble(
             f"{file}:{line}: [{' '.join(header)}] needs at: the elements it is in"
         )
     namespaced = any("namespace" in site.kinds for site in sites)
+    below = settings.get("model_namespace", "")
 
     def words(key: str) -> tuple[str, ...]:
         return tuple(settings.get(key, "").split())
@@ -166,7 +174,7 @@ def assemble(
     return VocabularySection(
         header[0],
         header[1:],
-        tuple(site._replace(namespaced=namespaced) for site in sites),
+        tuple(site._replace(namespaced=namespaced, below_model=below) for site in sites),
         words("at"),
         words("with"),
         settings.get("select", ""),
@@ -179,6 +187,7 @@ def assemble(
         settings.get("unique", ""),
         settings.get("process_wide", "no") == "yes",
         words("hardwired"),
+        below,
         settings.get("about", ""),
         settings.get("source", ""),
         file,
@@ -198,8 +207,11 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
             raise VocabularyError(
                 f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
             )
+    below = _either(first, second, "model_namespace")
+    sites = first.sites + tuple(new)
     return first._replace(
-        sites=first.sites + tuple(new),
+        sites=tuple(site._replace(below_model=below) for site in sites),
+        model_namespace=below,
         at=first.at + tuple(name for name in second.at if name not in first.at),
         blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
         select=_either(first, second, "select"),
@@ -236,6 +248,10 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     if not value or (allowed and value not in allowed):
         raise VocabularyError(
             f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
+        )
+    if key == "model_namespace" and not is_release_words(value):
+        raise VocabularyError(
+            f"{place}: {key}: {value!r} names no releases; write rolling or kilted+"
         )
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
@@ -293,14 +309,16 @@ def is_step(text: str) -> bool:
     return _ONE_STEP.fullmatch(text) is not None
 
 
-def split_path(path: str) -> tuple[list[str], str]:
+@lru_cache(maxsize=PATHS)
+def split_path(path: str) -> tuple[tuple[str, ...], str]:
     """The child steps of a path, and the attribute at its end or an empty string."""
     bracket = path.rfind("]") + 1
     steps, _, attribute = path[bracket:].partition("@")
     whole = path[:bracket] + steps
-    return (whole.split("/") if whole else []), attribute
+    return (tuple(whole.split("/")) if whole else ()), attribute
 
 
+@lru_cache(maxsize=PATHS)
 def split_step(step: str) -> tuple[str, str, str]:
     """Tag, attribute and wanted value of a step: ``param[@name=mimic]``; empty where not asked."""
     tag, _, ask = step.partition("[@")

@@ -1,5 +1,5 @@
 """MB1: what a file is, how it is encoded, and the shape of its XML."""
 
-from multibot_rewrite.lint.rules.files import materials, reading, shape, text, values
+from multibot_rewrite.lint.rules.files import materials, reading, shape, text, values, versions
 
-THEMES = (reading, shape, values, materials, text)
+THEMES = (reading, shape, values, versions, materials, text)

@@ -28,7 +28,8 @@ wrong_count = rule(
     what="A value has too many or too few numbers: a scale of one number, an xyz of two.",
     why="urdfdom rejects the file if it is in a joint, and drops the remaining visuals and "
     "collisions of the link if it is in a link.",
-    fix="Write all the numbers: three for xyz, rpy, size and scale, one for the rest.",
+    fix="Write all the numbers: three for xyz, rpy, size and scale, four for quat_xyzw, one for the "
+    "rest.",
     bad='<link name="a">\n'
     "  <visual>\n"
     '    <geometry><mesh filename="file:///a.stl" scale="0.001"/></geometry>\n'
@@ -74,7 +75,7 @@ bad_choice = rule(
     what="A value is not one of those that the parser knows: the type of a ros2_control, or the "
     "version of the URDF.",
     why="Hardware of an unknown type is not loaded, and ros2_control's resource manager does not "
-    "report it; urdfdom rejects every version but 1.0.",
+    "report it; urdfdom rejects every version but 1.0, 1.1 and 1.2.",
     fix="Use one of the values in the message, in lower case.",
     bad='<ros2_control name="c" type="System">\n'
     "  <hardware><plugin>p/P</plugin></hardware>\n"

@@ -3,6 +3,7 @@
 from multibot_rewrite.lint.rules.multirobot import (
     frames,
     meeting,
+    model_namespaces,
     named_robots,
     namespaces,
     prefixes,
@@ -10,4 +11,4 @@ from multibot_rewrite.lint.rules.multirobot import (
     topics,
 )
 
-THEMES = (topics, namespaces, frames, resources, prefixes, named_robots, meeting)
+THEMES = (topics, namespaces, model_namespaces, frames, resources, prefixes, named_robots, meeting)

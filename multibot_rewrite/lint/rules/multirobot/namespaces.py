@@ -57,7 +57,7 @@ def hard_coded_namespace(subject: Subject) -> Iterator[Problem]:
     "creates no node for the second plugin, and parameters and services respond for one robot "
     "only.",
     fix="Spawn each robot with -robot_namespace, or give the plugins a <namespace>: a xacro argument, "
-    "or urdf-postfix. ros_gz_sim's create has no such option.",
+    "or urdf-postfix. ros_gz_sim's create has no such option, in no release (ros_gz#925 is open).",
     bad="<gazebo>\n"
     '  <plugin name="d" filename="libgazebo_ros_joint_state_publisher.so">\n'
     "    <joint_name>j</joint_name>\n"

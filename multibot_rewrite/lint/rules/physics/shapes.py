@@ -23,11 +23,11 @@ from multibot_rewrite.lint.rules.physics.shared import (
     sizes_of,
     visual,
 )
+from multibot_rewrite.lint.schema.versions import KNOWN, version_of
 
+REFUSING = KNOWN[2]
 LONG_SHAPE = 50.0
 LARGE_SCALE, SMALL_SCALE, UNEVEN = 50.0, 1e-5, 100.0
-# What urdfdom takes without a <capsule>; it reads one from version 1.1 on.
-OLD_VERSIONS = ("1.0", "1")
 
 
 @rule(
@@ -76,7 +76,9 @@ def _bodies_with(subject: Subject, tag: str) -> dict[str, None]:
     line=3,
 )
 def shape_size(subject: Subject) -> Iterator[Problem]:
-    """Shapes with a size of 0 or less."""
+    """Shapes with a size of 0 or less; from URDF 1.2 on they are refused, which MB125 reports."""
+    if version_of(subject.document.root) >= REFUSING:
+        return
     for shape, sizes in _shapes(subject):
         if min(sizes) <= 0:
             words = " x ".join(f"{it:g}" for it in sizes)
@@ -121,8 +123,8 @@ def shape_missing(subject: Subject) -> Iterator[Problem]:
     root = subject.document.root
     if root.tag != "robot":
         return
-    later = () if root.get("version", "1.0") in OLD_VERSIONS else ("capsule",)
-    known = {*SHAPES, "mesh", *later}
+    # MB128 reports a capsule in a file of URDF 1.0.
+    known = {*SHAPES, "mesh", "capsule"}
     for element in subject.elements.every("visual", "collision"):
         parent = element.getparent()
         if parent is None or parent.tag != "link":

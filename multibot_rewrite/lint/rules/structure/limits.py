@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from math import pi
 
 from lxml.etree import _Element
@@ -13,13 +13,16 @@ from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.numbers import number, value_of
 from multibot_rewrite.lint.facts.robot import Joint, Robot
 from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.lint.rules.examples import block
 from multibot_rewrite.lint.rules.structure.shared import (
     BOUNDED,
     LIMIT,
     ONE_AXIS,
+    TYPES,
     joints_with,
     one_joint,
 )
+from multibot_rewrite.lint.schema.versions import KNOWN, version_of
 
 # Above DEGREES[0] radians (more than two turns) and up to DEGREES[1] degrees (two turns); ENDLESS are
 # numbers that people write for "no limit".
@@ -27,6 +30,13 @@ DEGREES = (4.5 * pi, 720.0)
 ENDLESS = frozenset((50.0, 100.0, 200.0, 500.0, 999.0))
 # Metres; a gripper moves so many millimetres.
 LONG_WAY = 25.0
+# From this version on bounds are needed, effort and velocity are not, and a negative limit is refused.
+STRICT = KNOWN[2]
+
+
+def _newest(limit: str) -> str:
+    """An example: a joint of a robot of URDF 1.2, with its limit in line 6."""
+    return block(f'<robot name="r" version="{STRICT}">', one_joint("revolute", limit))
 
 
 @rule(
@@ -51,15 +61,18 @@ def limit_missing(subject: Subject) -> Iterator[Problem]:
     "MB510",
     "limit-incomplete",
     ERROR,
-    what="A <limit> has no effort or no velocity.",
+    what="A <limit> has no effort or no velocity, in a file of URDF 1.0 or 1.1.",
     why="urdfdom rejects the whole file ('joint limit: no effort'), whatever the joint's type.",
-    fix="Add the attribute, or delete a <limit> that the type does not need.",
+    fix="Add the attribute, or delete a <limit> that the type does not need. In URDF 1.2 both may be "
+    "left out: without them there is no limit.",
     bad=one_joint("revolute", '<limit lower="-1" upper="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
     line=5,
 )
 def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     """Limits without the attributes that urdfdom requires."""
+    if _is_strict(subject):
+        return
     for joint, limit in joints_with(subject.robot, "limit"):
         missing = [it for it in ("effort", "velocity") if limit.get(it) is None]
         if missing:
@@ -74,15 +87,16 @@ def limit_incomplete(subject: Subject) -> Iterator[Problem]:
     ERROR,
     what="A joint's lower limit is above its upper one.",
     why="No position is inside: MoveIt finds every state out of bounds, MuJoCo drops the limits, "
-    "sdformat swaps them.",
+    "sdformat swaps them. In a file of URDF 1.2 urdfdom rejects it, whatever the joint's type.",
     fix="Swap them, or correct the sign.",
     bad=one_joint("revolute", '<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
     good=one_joint("revolute", LIMIT),
     line=5,
 )
 def limits_inverted(subject: Subject) -> Iterator[Problem]:
-    """Lower limits above the upper one."""
-    for joint, limit, lower, upper in _bounds(subject.robot):
+    """Lower limits above the upper one; in URDF 1.2 of any joint."""
+    types = TYPES if _is_strict(subject) else BOUNDED
+    for joint, limit, lower, upper in _bounds(subject.robot, types):
         if lower > upper:
             message = f"joint {joint.name!r}: lower {lower:g} is above upper {upper:g}"
             yield Problem(limit, message, "lower")
@@ -125,7 +139,28 @@ def limits_zero_range(subject: Subject) -> Iterator[Problem]:
 )
 def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     """Missing bounds, which are read as 0."""
-    for joint, limit in joints_with(subject.robot, "limit"):
+    return iter(()) if _is_strict(subject) else _unbounded(subject.robot)
+
+
+@rule(
+    "MB535",
+    "bounds-required",
+    ERROR,
+    what="A revolute or prismatic joint's <limit> has no lower or no upper, in a file of URDF 1.2.",
+    why="urdfdom rejects the file ('revolute and prismatic joints must have both lower and upper "
+    "position limits').",
+    fix="Write both.",
+    bad=_newest('<limit upper="1"/>'),
+    good=_newest('<limit lower="0" upper="1"/>'),
+    line=6,
+)
+def bounds_required(subject: Subject) -> Iterator[Problem]:
+    """Missing bounds, where urdfdom takes none for granted."""
+    return _unbounded(subject.robot) if _is_strict(subject) else iter(())
+
+
+def _unbounded(robot: Robot) -> Iterator[Problem]:
+    for joint, limit in joints_with(robot, "limit"):
         if joint.type not in BOUNDED:
             continue
         missing = [it for it in ("lower", "upper") if limit.get(it) is None]
@@ -148,7 +183,9 @@ def limit_without_bounds(subject: Subject) -> Iterator[Problem]:
     line=5,
 )
 def negative_limit(subject: Subject) -> Iterator[Problem]:
-    """Each such attribute."""
+    """Each such attribute; from URDF 1.2 on they are refused, which MB125 reports."""
+    if _is_strict(subject):
+        return
     for joint, limit in joints_with(subject.robot, "limit"):
         for name in ("effort", "velocity"):
             if limit.get(name, "").lstrip().startswith("-") and (value_of(limit, name) or 0) < 0:
@@ -250,10 +287,16 @@ def _is_degrees(angle: float) -> bool:
     return DEGREES[0] < size <= DEGREES[1] and size % 0.5 == 0 and size not in ENDLESS
 
 
-def _bounds(robot: Robot) -> Iterator[tuple[Joint, _Element, float, float]]:
-    """The joints that need bounds and have both."""
+def _is_strict(subject: Subject) -> bool:
+    return version_of(subject.document.root) >= STRICT
+
+
+def _bounds(
+    robot: Robot, types: Collection[str] = BOUNDED
+) -> Iterator[tuple[Joint, _Element, float, float]]:
+    """The joints of these types that have both bounds; by default of those that need them."""
     for joint, limit in joints_with(robot, "limit"):
-        if joint.type in BOUNDED:
+        if joint.type in types:
             lower, upper = number(limit.get("lower")), number(limit.get("upper"))
             if lower is not None and upper is not None:
                 yield joint, limit, lower, upper

@@ -64,10 +64,10 @@ def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str
         if isinstance(node, yaml.MappingNode):
             yield from _flat(document, node, f"{name}.")
         else:
-            yield name, _value(document, node)
+            yield name, value_of(document, node)
 
 
-def _value(document: YamlText, node: yaml.Node) -> Value:
+def value_of(document: YamlText, node: yaml.Node) -> Value:
     if isinstance(node, yaml.ScalarNode):
         return _scalar(document, node)
     assert isinstance(node, yaml.SequenceNode)

@@ -1,0 +1,1 @@
+"""What a robot's own files say of the nodes that it runs: facts with file and line."""

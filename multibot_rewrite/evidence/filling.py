@@ -1,0 +1,170 @@
+"""A known node and the parameters that it gets -> the node as it runs with them.
+
+Endpoints whose name a parameter sets get that name, conditions are decided, frames get their values.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.evidence.records import Given, GivenNode
+from multibot_rewrite.remap.conditions import Values, holds
+from multibot_rewrite.remap.records import Endpoint, FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.rosnames import check_topic_name
+
+_ID = re.compile(r"<([a-z_ ]+)>")
+# What stands for a number in the name of a parameter: odomN is odom0, odom1 and so on.
+_NUMBER = "N"
+Ids = Mapping[str, str]
+
+
+def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) -> NodeFacts:
+    """``node`` with the names that its parameters set, under the name that it has there.
+
+    ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
+    the stack says stays.
+    """
+    values = given.values
+    whole = known or node
+    made = [it for raw in whole.endpoints for it in _endpoint(node, raw, values)]
+    made += [it for it in node.endpoints if _of_stack_alone(it, whole)]
+    with_frames = node._replace(frames=tuple(_frame(it, values) for it in node.frames))
+    return with_frames._replace(
+        name=given.name,
+        endpoints=tuple(dict.fromkeys(made)),
+        sends=tuple(_sent(with_frames, values)),
+        origin=str(given.place),
+    )
+
+
+def _of_stack_alone(endpoint: Endpoint, known: NodeFacts) -> bool:
+    """Does a part that the stack adds have it?"""
+    key = endpoint.role, endpoint.named_from or endpoint.name
+    return all((it.role, it.name) != key for it in known.endpoints)
+
+
+def _sent(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
+    """The transforms that it sends with these parameters."""
+    value_of = _lookup(node, values)
+    yield from (it._replace(condition="") for it in node.sends if holds(it.condition, value_of))
+
+
+def _lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
+    defaults = {it.parameter: it.default for it in node.frames}
+    return lambda name: values[name].value if name in values else defaults.get(name)
+
+
+def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter:
+    given = values.get(frame.parameter)
+    if given is None or given.value == "":
+        return frame
+    return frame._replace(default=str(given.value), given=True)
+
+
+def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
+    """The endpoint once for each binding of its ids, with the names that are set."""
+    ids = dict(node.ids)
+    texts = (raw.name, raw.parameter, raw.condition)
+    wanted = [it for it in dict.fromkeys(_ID.findall(" ".join(texts))) if it in ids]
+    of_stack = [it for it in node.endpoints if _is_from(it, raw)]
+    remapped = next((it.remapped for it in of_stack), "")
+    if not _is_decided(raw, [ids[it] for it in wanted], values, of_stack):
+        yield from of_stack
+        return
+    for binding in _bindings(ids, wanted, values):
+        bound = _bound(raw._replace(remapped=remapped), binding)
+        if holds(bound.condition, _lookup(node, values)):
+            decided = bool(binding or bound.condition)
+            yield from _named(bound._replace(when="" if decided else bound.when), values)
+
+
+def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
+    return endpoint.role == raw.role and (endpoint.named_from or endpoint.name) == raw.name
+
+
+def _is_decided(
+    raw: Endpoint,
+    lists: Iterable[str],
+    values: Mapping[str, Given],
+    of_stack: Iterable[Endpoint],
+) -> bool:
+    """Do the parameters say whether it exists, or how it is called?"""
+    needed = [_pattern(it) for it in lists]
+    if needed:
+        return all(any(it.fullmatch(name) for name in values) for it in needed)
+    if raw.condition or any(_set_names(raw.parameter, values)):
+        return True
+    return "<" in raw.name and all("<" in it.name for it in of_stack)
+
+
+def _bindings(
+    ids: Mapping[str, str], wanted: Iterable[str], values: Mapping[str, Given]
+) -> Iterator[Ids]:
+    """Every choice of the wanted ids; a list may depend on another id (``<layer>.sources``)."""
+    found: list[dict[str, str]] = [{}]
+    for name in _in_order(ids, wanted):
+        found = [
+            {**binding, name: word}
+            for binding in found
+            for word in _words(values.get(_put(ids[name], binding)))
+        ]
+    yield from found
+
+
+def _in_order(ids: Mapping[str, str], wanted: Iterable[str]) -> list[str]:
+    """The wanted ids and those that their lists need, the needed ones first."""
+    order: list[str] = []
+    for name in wanted:
+        needed = [it for it in _ID.findall(ids[name]) if it in ids]
+        order += [it for it in (*_in_order(ids, needed), name) if it not in order]
+    return order
+
+
+def _words(given: Given | None) -> list[str]:
+    """The items of a list; a text is a list of its words."""
+    if given is None:
+        return []
+    value = given.value
+    return [str(it) for it in value] if isinstance(value, list) else str(value).split()
+
+
+def _put(text: str, binding: Ids) -> str:
+    return _ID.sub(lambda found: binding.get(found[1], found[0]), text)
+
+
+def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
+    if not binding:
+        return endpoint
+    return endpoint._replace(
+        name=_put(endpoint.name, binding),
+        parameter=_put(endpoint.parameter, binding),
+        condition=_put(endpoint.condition, binding),
+    )
+
+
+def _named(endpoint: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
+    """The endpoint under the names that its parameter sets; under its own where none is set."""
+    names = list(_set_names(endpoint.parameter, values))
+    for name in filter(None, names):
+        yield endpoint._replace(name=name, fixed="", when="", condition="")
+    if not names and "<" not in endpoint.name:
+        fixed = endpoint.fixed if endpoint.fixed and not endpoint.parameter else ""
+        yield endpoint._replace(condition="", fixed=fixed)
+
+
+def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[str]:
+    """The topics in a parameter: of all that match where it is a pattern, of a list each. An empty
+    text is one, too: it stands for no topic."""
+    pattern = _pattern(parameter)
+    for name, given in values.items():
+        if pattern.fullmatch(name):
+            words = _words(given) if isinstance(given.value, list) else [str(given.value)]
+            yield from (it for it in words if not it or not check_topic_name(it))
+
+
+def _pattern(parameter: str) -> re.Pattern[str]:
+    text = re.escape(parameter).replace(r"\*", r"[^.]+")
+    if parameter.endswith(_NUMBER) and parameter[:-1].islower():
+        text = rf"{text[: -len(_NUMBER)]}\d+"
+    return re.compile(re.sub(r"<[^<>]+>", r"[^.]+", text))

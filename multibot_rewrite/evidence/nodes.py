@@ -1,0 +1,165 @@
+"""The nodes of a stack and what a robot's own files say of them -> the nodes that the robot runs.
+
+A file and a stack that disagree: the file wins, and the disagreement is a note.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.evidence.filling import filled
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.remap.records import NodeFacts
+
+MANAGER = "controller_manager"
+NOT_DECLARED = declare(
+    "MF801",
+    "controller-not-declared",
+    NOTE,
+    what="A stack has a controller that none of the robot's parameter files declares, though they "
+    "declare others; it is left out of the plan.",
+    why="The controller manager loads what its parameters name. A plan with another controller would "
+    "report it as missing.",
+    fix="Nothing, if the files are right. Else declare the controller below controller_manager.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    base: {type: diff_drive_controller/DiffDriveController}
+base:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    update_rate: 100
+    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
+""",
+    line=4,
+    formats=("params",),
+    options={"stack": "ros2_control"},
+)
+UNKNOWN_TYPE = declare(
+    "MF802",
+    "controller-type-not-known",
+    WARNING,
+    what="A controller is of a type that is not known, so its topics, frames and interfaces are not "
+    "in the plan.",
+    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
+    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: acme_controllers/ArmController}
+arm:
+  ros__parameters: {rate: 50}
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+arm:
+  ros__parameters: {rate: 50}
+""",
+    line=3,
+    formats=("params",),
+)
+
+
+class RobotNodes(NamedTuple):
+    """The nodes that a robot runs, each with its origin, and where files and stacks disagree."""
+
+    nodes: tuple[NodeFacts, ...]
+    findings: tuple[Finding, ...]
+
+
+def nodes_of(
+    stack: Sequence[NodeFacts], given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+) -> RobotNodes:
+    """The nodes of a robot: those of its stacks as its files have them, and those of its files alone.
+
+    ``known`` are the known nodes by name.
+    """
+    sections = {it.name: _section_of(it, given) for it in stack}
+    left, kept = _left_out(stack, given, sections)
+    nodes = [
+        filled(it, section, known.get(it.known))._replace(name=it.name)
+        if (section := sections[it.name])
+        else it
+        for it in kept
+    ]
+    names = {it.name for it in filter(None, sections.values())}
+    of_stack = {it.place.file for it in given if it.name in names}
+    sent = {child for node in kept for child in _children(node)}
+    for it in (it for it in given if it.name not in names and _may_run(it, known)):
+        node = _added(it, known)
+        doubtful = not it.manager and (it.place.file in of_stack or sent & {*_children(node)})
+        nodes.append(node._replace(sends=()) if doubtful else node)
+    return RobotNodes(tuple(nodes), (*left, *_unknown(given)))
+
+
+def _section_of(node: NodeFacts, given: Sequence[GivenNode]) -> GivenNode | None:
+    """What the files set for a node of a stack; its section may be below a namespace."""
+    exact = (it for it in given if it.name == node.name)
+    below = (it for it in given if it.name.endswith(f"/{node.name}"))
+    return next(exact, None) or next(below, None)
+
+
+def _left_out(
+    stack: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    sections: Mapping[str, GivenNode | None],
+) -> tuple[list[Finding], list[NodeFacts]]:
+    """Notes of the nodes that the files contradict, and the other nodes of the stacks."""
+    controllers = [it for it in given if it.manager]
+    findings: list[Finding] = []
+    kept = []
+    for node in stack:
+        if sections[node.name] is None and node.host == MANAGER and controllers:
+            findings += [] if node.when else [_not_declared(node, controllers[0])]
+        # A file may have it under another name, as ekf_node for ekf_filter_node.
+        elif sections[node.name] or not any(it.known == node.name for it in given):
+            kept.append(node)
+    return findings, kept
+
+
+def _children(node: NodeFacts) -> Iterator[str]:
+    """The frames that a node sends."""
+    frames = {it.parameter: it.default for it in node.frames}
+    yield from (frames[it.child] for it in node.sends)
+
+
+def _may_run(given: GivenNode, known: Mapping[str, NodeFacts]) -> bool:
+    """Is it a controller that a file declares, or a known node with a process of its own?"""
+    node = known.get(given.known)
+    return bool(given.manager) or (node is not None and not node.host)
+
+
+def _added(given: GivenNode, known: Mapping[str, NodeFacts]) -> NodeFacts:
+    """A controller that a file declares runs, another node that has parameters may run."""
+    node = known.get(given.known)
+    if node is None:
+        package = given.type.partition("/")[0]
+        return NodeFacts(given.name, package, (), host=MANAGER, origin=str(given.place))
+    when = "" if given.manager else f"its parameters are in {given.place.file}"
+    return filled(node, given)._replace(when=when)
+
+
+def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
+    file, line = beside.place
+    message = f"{node.name} of the stack is declared in no file; it is left out"
+    hint = f"declare it beside {beside.name}, or name a stack without it"
+    return NOT_DECLARED.finding(message, hint, file=file, line=line, column=1)
+
+
+def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
+    for it in given:
+        if it.manager and not it.known:
+            message = f"controller {it.name} is of type {it.type}, which is not known"
+            hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
+            yield UNKNOWN_TYPE.finding(
+                message, hint, file=it.place.file, line=it.place.line, column=1
+            )

@@ -1,0 +1,107 @@
+"""Parameter files -> the nodes they are for, with all values that each node gets.
+
+Sources: rcl_yaml_param_parser (a later section wins; wildcards count for every node that they match);
+ros2_control controller_manager.cpp (a controller manager's ``NAME.type`` makes a controller NAME).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+from typing import NamedTuple
+
+import yaml
+
+from multibot_rewrite.companions.params.known_nodes import KnownNodes
+from multibot_rewrite.companions.params.rcl_parameters import value_of
+from multibot_rewrite.companions.params.sections import (
+    ANY,
+    MANAGER,
+    RawSection,
+    identify_node,
+    pattern_of,
+    raw_sections,
+)
+from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
+from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.model import InputError
+
+TYPE = ".type"
+
+
+class _Section(NamedTuple):
+    file: str
+    raw: RawSection
+    values: dict[str, Given]
+
+    @property
+    def place(self) -> Place:
+        return Place(self.file, line_of(self.raw.keys[0]))
+
+    @property
+    def name(self) -> str:
+        """The node's name without wildcards in front; "" for a section of every node."""
+        tokens = self.raw.path.strip("/").split("/")
+        while tokens and tokens[0] in ANY:
+            tokens.pop(0)
+        return "/".join(tokens) if not set(tokens) & set(ANY) else ""
+
+
+def given_nodes(documents: Iterable[YamlText], known: KnownNodes) -> list[GivenNode]:
+    """The nodes that these files have sections for, and the controllers that they declare.
+
+    Raises InputError for a file that is not a parameter file.
+    """
+    sections = [_section(document, it) for document in documents for it in raw_sections(document)]
+    controllers = dict(_controllers(sections))
+    names = dict.fromkeys((*(it.name for it in sections if it.name), *controllers))
+    return [_node(name, sections, controllers.get(name), known) for name in names]
+
+
+def _section(document: YamlText, raw: RawSection) -> _Section:
+    return _Section(document.file, raw, dict(_flat(document, raw.body, "")))
+
+
+def _flat(document: YamlText, body: yaml.Node, above: str) -> Iterator[tuple[str, Given]]:
+    for key, node in pairs(body):
+        name = f"{above}{key.value}"
+        if isinstance(node, yaml.MappingNode):
+            yield from _flat(document, node, f"{name}.")
+            continue
+        # What rcl rejects is reported where the file is rewritten.
+        with suppress(InputError):
+            yield name, Given(value_of(document, node), Place(document.file, line_of(key)))
+
+
+class _Controller(NamedTuple):
+    type: Given
+    manager: str
+
+
+def _controllers(sections: Sequence[_Section]) -> Iterator[tuple[str, _Controller]]:
+    """Controller -> its type, below the name of the manager's namespace."""
+    for section in sections:
+        above, _, last = section.name.rpartition("/")
+        if last != MANAGER:
+            continue
+        for name, given in section.values.items():
+            if name.endswith(TYPE):
+                controller = name.removesuffix(TYPE)
+                full = f"{above}/{controller}" if above else controller
+                yield full, _Controller(given, section.name)
+
+
+def _node(
+    name: str, sections: Sequence[_Section], controller: _Controller | None, known: KnownNodes
+) -> GivenNode:
+    own = [it for it in sections if re.fullmatch(pattern_of(it.raw.path), f"/{name}")]
+    values = {key: given for it in own for key, given in it.values.items()}
+    named = [it for it in own if it.name]
+    last = name.rpartition("/")[2]
+    type_ = str(controller.type.value) if controller else ""
+    body = named[-1].raw.body if named else None
+    found = identify_node(last, body, known, {last: type_} if type_ else {})
+    place = controller.type.place if controller else named[0].place
+    manager = controller.manager if controller else ""
+    return GivenNode(name, found.name if found else "", type_, values, place, manager)

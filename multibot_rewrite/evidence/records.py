@@ -1,0 +1,41 @@
+"""Records of evidence: what a robot's files say of its nodes, each with its place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from multibot_rewrite.companions.params.rcl_parameters import Value
+
+
+class Place(NamedTuple):
+    """Where something is written; lines count from 1."""
+
+    file: str
+    line: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}"
+
+
+class Given(NamedTuple):
+    """The value of a parameter, with the type that rcl gives it, and where it is set."""
+
+    value: Value
+    place: Place
+
+
+class GivenNode(NamedTuple):
+    """What a robot's parameter files set for one node.
+
+    ``name`` is its name without the robot, ``known`` the known node that it is (empty for none),
+    ``type`` the plugin type of a controller. ``values`` are its parameters by dotted name, those of
+    wildcard sections with them. ``manager`` is the controller manager that has it as a controller.
+    """
+
+    name: str
+    known: str
+    type: str
+    values: Mapping[str, Given]
+    place: Place
+    manager: str = ""

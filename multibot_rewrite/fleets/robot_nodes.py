@@ -1,0 +1,46 @@
+"""The nodes that a robot of a fleet file runs: its stacks, as its own files have them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
+from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.fleets.fleet import facts_of, known_nodes
+from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleets.output_file import yaml_of
+from multibot_rewrite.remap.nodl.facts import declared
+from multibot_rewrite.remap.records import NodeFacts
+
+# What decides the nodes of a robot.
+NodeSources = tuple[tuple[str, ...], tuple[str, ...]]
+
+
+def node_sources(spec: RobotSpec) -> NodeSources:
+    """Robots for which this is equal run the same nodes."""
+    return spec.stacks, spec.companions.get("params", ())
+
+
+def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotNodes:
+    """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
+    known = load_known_nodes(file.parameters, file.distro)
+    documents = [yaml_of(path) for path in spec.companions.get("params", ())]
+    given = given_nodes(documents, known)
+    facts = known_nodes(file.nodes, file.distro, file.nodl)
+    nodes = dict(facts.library.nodes)
+    named = {it.known for it in given} & nodes.keys()
+    nodes |= {name: declared(facts, nodes[name]) for name in named}
+    return nodes_of(stack_nodes(spec, file), given, nodes)
+
+
+def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:
+    """The nodes of a robot's stacks, as their usual files have them."""
+    return facts_of(spec.stacks, file.nodes or None, file.distro, file.nodl)
+
+
+def companion_nodes(nodes: Sequence[NodeFacts], stack: Sequence[NodeFacts]) -> Iterator[NodeFacts]:
+    """The nodes for which companion files are rewritten, with the names of their code: those in
+    parameters are what is rewritten."""
+    bare: Mapping[str, NodeFacts] = {it.name: it for it in stack}
+    yield from (bare.get(it.name, it) for it in nodes if it.name in bare or it.host)

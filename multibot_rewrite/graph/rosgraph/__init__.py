@@ -1,0 +1,1 @@
+"""Snapshots as messages of the type ``rosgraph_msgs/Graph``."""

@@ -1,0 +1,1 @@
+"""Between versions of URDF: edits that keep every pose and shape, and the proof that they do."""

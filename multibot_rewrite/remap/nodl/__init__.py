@@ -1,0 +1,1 @@
+"""NoDL interface files (ros-tooling/nodl): what a package says of its own nodes."""

@@ -1,0 +1,94 @@
+"""``--distro`` of the commands about descriptions: the option, the configuration, or ROS_DISTRO."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.cli import urdf_lint, urdf_postfix
+
+MODEL = """<sdf version="1.12"><model name="rover" namespace="fleet"><link name="base"/>
+<plugin filename="gz-sim-diff-drive-system" name="d"><topic>cmd_vel</topic></plugin></model></sdf>
+"""
+URDF = (
+    '<robot name="r"><link name="base"/><gazebo>\n<model name="m" namespace="n"/></gazebo></robot>'
+)
+OWN = 'namespace="fleet/robot1"'
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.delenv("ROS_DISTRO", raising=False)
+    (tmp_path / "m.sdf").write_text(MODEL)
+    (tmp_path / "m.urdf").write_text(URDF)
+    return tmp_path
+
+
+def rewritten(folder: Path, *words: str) -> str:
+    assert urdf_postfix.main(["m.sdf", "robot1", "-o", "out.sdf", "-q", *words]) == 0
+    return (folder / "out.sdf").read_text()
+
+
+def test_the_option_comes_before_the_variable(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert OWN not in rewritten(folder)
+    monkeypatch.setenv("ROS_DISTRO", "rolling")
+    assert OWN in rewritten(folder)
+    assert OWN not in rewritten(folder, "--distro", "humble")
+
+
+def test_a_rewrite_is_taken_back_for_its_release(folder: Path) -> None:
+    made = rewritten(folder, "--distro", "rolling")
+    (folder / "made.sdf").write_text(made)
+    words = ["made.sdf", "robot1", "--strip", "-q", "-o", "back.sdf", "--distro", "rolling"]
+    assert urdf_postfix.main(words) == 0
+    assert (folder / "back.sdf").read_text() == MODEL
+
+
+def test_why_answers_for_the_release(capsys: pytest.CaptureFixture[str]) -> None:
+    for release, kind in (("rolling", "subtopic"), ("lyrical", "topic")):
+        assert urdf_postfix.main(["--why", "m.sdf:2", "--distro", release]) == 0
+        assert f" {kind}" in capsys.readouterr().out.replace("topic>", "")
+
+
+def test_a_release_that_is_not_known(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        urdf_postfix.main(["m.sdf", "robot1", "--distro", "jazy"])
+    assert "did you mean 'jazzy'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("config", "variable", "words", "found"),
+    [
+        ("", "", (), True),
+        ("", "rolling", (), False),
+        ('distro = "jazzy"', "rolling", (), True),
+        ('distro = "rolling"', "", (), False),
+        ('distro = "rolling"', "", ("--distro", "kilted"), True),
+    ],
+)
+def test_the_lint_reads_option_configuration_and_variable(
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    config: str,
+    variable: str,
+    words: tuple[str, ...],
+    found: bool,
+) -> None:
+    (folder / "urdf-lint.toml").write_text(config)
+    if variable:
+        monkeypatch.setenv("ROS_DISTRO", variable)
+    urdf_lint.main(["m.urdf", "--select", "MB419", *words])
+    assert ("MB419" in capsys.readouterr().out) == found
+
+
+def test_a_configuration_names_a_release_that_is_known(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "urdf-lint.toml").write_text('distro = "noetic"')
+    assert urdf_lint.main(["m.urdf"]) == 2
+    assert "distro is 'noetic', use one of humble, " in capsys.readouterr().err
