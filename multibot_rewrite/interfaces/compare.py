@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.interfaces.records import Fact
@@ -83,7 +83,9 @@ def same_name(one: str, other: str, node: str) -> bool:
 def _plain(name: str, node: str) -> str:
     """With the node's own name as ``~``."""
     name = re.sub(r"^(<get_name>|<this>)/", "~/", name)
-    own = node.rpartition("/")[2]
+    above, _, own = node.rpartition("/")
+    if above:  # nodes.yaml has names of the namespace above it as absolute ones.
+        name = name.lstrip("/")
     return name.replace("<getName>", f"<{own}>") if name.startswith("~") else name
 
 
@@ -93,3 +95,31 @@ def _pattern(name: str) -> re.Pattern[str]:
 
 def _sample(name: str) -> str:
     return _MADE.sub("x", name)
+
+
+class Excepted(NamedTuple):
+    """Differences that may stay: node, role and name are patterns with ``*``."""
+
+    node: str
+    role: str
+    name: str
+    what: str
+    reason: str
+
+
+def exceptions_of(text: str) -> tuple[Excepted, ...]:
+    """The exceptions of a table with a head line."""
+    return tuple(Excepted(*line.split("\t")) for line in text.splitlines()[1:])
+
+
+def excepted(found: Difference, exceptions: Iterable[Excepted]) -> str:
+    """The reason why a difference may stay; empty for none."""
+    for it in exceptions:
+        pairs = zip(it[:3], found[:3], strict=True)
+        if it.what == found.what and all(_fits(pattern, text) for pattern, text in pairs):
+            return it.reason
+    return ""
+
+
+def _fits(pattern: str, text: str) -> bool:
+    return re.fullmatch(re.escape(pattern).replace(r"\*", ".*"), text) is not None

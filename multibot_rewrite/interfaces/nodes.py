@@ -44,7 +44,9 @@ class Visit(NamedTuple):
     function: str = ""
 
 
-def facts_of(index: Index, node: str, root: Class, others: frozenset[str]) -> Iterator[Fact]:
+def facts_of(
+    index: Index, node: str, root: Class, others: frozenset[tuple[str, str]]
+) -> Iterator[Fact]:
     """What a node declares. ``others`` are classes that are nodes of their own."""
     seen: set[tuple[str, ...]] = set()
     waiting = deque([Visit(root, {}, bound_types(root, ""))])
@@ -63,7 +65,11 @@ def facts_of(index: Index, node: str, root: Class, others: frozenset[str]) -> It
         scope = _scope(index, visit)
         for call in _calls(index, visit):
             yield from _declared(index, node, visit, scope, call)
-        waiting.extend(it for it in _below(index, visit, scope) if it.found.name not in others)
+        waiting.extend(it for it in _below(index, visit, scope) if _key(it.found) not in others)
+
+
+def _key(found: Class) -> tuple[str, str]:
+    return found.place.package, found.name
 
 
 def _scope(index: Index, visit: Visit) -> Scope:
@@ -205,7 +211,11 @@ def _visits(
     for it in found:
         own = bound_types(it, f"{name}<{', '.join(types)}>")
         yield Visit(it, bound(index, name, given), own, only, visit.way, above)
-    if not found and name.startswith(FACTORY) and nearest(index.functions.get(name, ()), visit.found.place):
+    if (
+        not found
+        and name.startswith(FACTORY)
+        and nearest(index.functions.get(name, ()), visit.found.place)
+    ):
         free = Class("", (), (), {}, visit.found.place)
         yield Visit(free, bound(index, name, given), {}, only, visit.way, (*above, name), name)
 
