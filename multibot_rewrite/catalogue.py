@@ -67,6 +67,8 @@ HOMES: tuple[Home, ...] = (
             "companions.params.name_checks",
             "companions.params.unknown_parameters",
             "companions.params.shared_defaults",
+            "companions.params.slashes",
+            "companions.params.release_checks",
         ),
     ),
     Home(
@@ -114,7 +116,7 @@ HOMES: tuple[Home, ...] = (
         GRAPH_INTRO,
     ),
     Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
-    Home("MR1", "remap tables", ("remap.table_checks",)),
+    Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 
 

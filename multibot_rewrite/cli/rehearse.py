@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 
 from multibot_rewrite.cli import fleet, live, pictures
@@ -27,6 +27,7 @@ from multibot_rewrite.graph.snapshot import Snapshot, to_json
 from multibot_rewrite.graph.transforms import Edges, with_odometry
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.plural import plural
+from multibot_rewrite.remap.ways import WAYS
 
 # Below the ports that a system gives away by itself.
 _DOMAINS = 100
@@ -37,7 +38,7 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     made = fleet.build(options)
     plan, table = expected(made), fleet.findings(options, made)
-    nodes = list(stub_nodes(made.table, _edges(options, made), not options.without_rules))
+    nodes = list(stub_nodes(made.table, _edges(options, made), _left_out(options)))
     environ = stage(options.domain)
     try:
         with _running(split_over_processes(nodes), environ) as replaced:
@@ -50,6 +51,11 @@ def run(options: argparse.Namespace) -> int:
         write_files(options, [(options.save_snapshot, to_json(graph))])
     _note_substitutes(options, replaced)
     return conclude(options, with_substitutes(plan, replaced), graph, table)
+
+
+def _left_out(options: argparse.Namespace) -> Sequence[str]:
+    """The ways of which no rules are given."""
+    return WAYS if options.without_rules else list(options.without_rules_at)
 
 
 def _check_use(options: argparse.Namespace) -> None:

@@ -12,7 +12,7 @@ from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, Fleet
 from multibot_rewrite.remap.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.table_formats import EVERY_ROBOT, FORMS
+from multibot_rewrite.remap.table_formats import FORMS, given_to, standing_by_robot
 
 TABLE, BRIDGE = "table", "bridge"
 
@@ -51,8 +51,9 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
 def _parts(table: Table) -> Iterator[str | Grid]:
     yield f"layout {table.layout}"
     rows = [
-        (node.robot or EVERY_ROBOT, node.node, f"{node.namespace.rstrip('/')}/{node.name}", text)
-        for node in table.nodes
-        for text in ([f"{rule.source} -> {rule.target}" for rule in node.rules] or ["no rule"])
+        (robot, it.node.node, it.node.full_name, text, given_to(it))
+        for robot, given in standing_by_robot(table)
+        for it in given
+        for text in ([f"{source} -> {target}" for source, target in it.rules] or ["no rule"])
     ]
-    yield Grid(("robot", "node", "runs as", "rule"), rows)
+    yield Grid(("robot", "node", "runs as", "rule", "given to"), rows)

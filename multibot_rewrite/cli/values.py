@@ -57,6 +57,12 @@ def one_of(known: Collection[str]) -> Callable[[str], str]:
     return read
 
 
+def some_of(known: Collection[str]) -> Callable[[str], list[str]]:
+    """Some of the words that are known, with commas between."""
+    read = one_of(known)
+    return lambda text: [read(it) for it in names(text)]
+
+
 def word(text: str) -> str:
     """One word, as the name of a stack is."""
     if not _WORD.fullmatch(text):

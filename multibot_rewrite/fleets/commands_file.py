@@ -1,13 +1,16 @@
-"""``commands.md``: the commands that place, spawn and drive each robot of a fleet, and open RViz."""
+"""``commands.md``: what places, spawns and drives each robot, loads its controllers, opens RViz."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import shlex
+from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
+from multibot_rewrite.remap.started import SPAWN, arguments, started
+from multibot_rewrite.remap.ways import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 
@@ -26,6 +29,7 @@ def commands_file(each: Iterable[FleetPlan], windows: Iterable[str]) -> FilesAnd
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
         rows += [f"{command(it)}\n" for it in poses.transforms]
         rows += [spawn.either(it, robot) for it in spawned]
+        rows += _controllers(one)
         rows += [*(f"{teleop.command(it)}\n" for it in teleop.teleops(one)), "```\n"]
         for pose in poses.initial:
             path = path_for(robot, START)
@@ -34,6 +38,16 @@ def commands_file(each: Iterable[FleetPlan], windows: Iterable[str]) -> FilesAnd
     if lines := [f"{it}\n" for it in windows]:
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
+
+
+def _controllers(plan: FleetPlan) -> Iterator[str]:
+    """The command that loads each controller, with the condition under which the robot has it."""
+    when = {it.name: it.when for it in plan.fleet.facts if it.when}
+    for it in started(plan.fleet.table):
+        if it.way == SPAWNER:
+            condition = when.get(it.node.node, "")
+            line = shlex.join(["ros2", "run", *SPAWN, *arguments(it)])
+            yield f"{line}  # {condition}\n" if condition else f"{line}\n"
 
 
 def _start_parameters(plan: FleetPlan, pose: InitialPose) -> bytes:

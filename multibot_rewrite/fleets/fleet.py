@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -75,7 +76,7 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, facts, make_naming(**policy))
+    fleet = assemble(members, facts, make_naming(**policy), release)
     return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
 
 
@@ -109,8 +110,9 @@ def facts_of(
 
 
 def _origin(node: NodeFacts, stack: str) -> str:
-    described = f", described in {node.interface}" if node.interface else ""
-    return f"stack {stack}{described}"
+    # Without its folder: a plan is the same from every working directory.
+    file = os.path.basename(node.interface)
+    return f"stack {stack}, described in {file}" if file else f"stack {stack}"
 
 
 def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNodes:
@@ -121,15 +123,20 @@ def known_nodes(nodes: str | None, release: str, nodl: Sequence[str]) -> KnownNo
     return KnownNodes(library, find_interfaces(nodl), frozenset(own))
 
 
-def assemble(members: Sequence[Member], facts: tuple[NodeFacts, ...], naming: Naming) -> Fleet:
-    """The fleet of robots that run the same nodes."""
+def assemble(
+    members: Sequence[Member],
+    facts: tuple[NodeFacts, ...],
+    naming: Naming,
+    release: str = NEWEST_LTS,
+) -> Fleet:
+    """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
     plugins = {it.robot: list(plugin_nodes(it.reading, it.robot)) for it in members}
     edges: dict[tuple[str, str], list[Edge]] = {}
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
-    table = build_table([it.robot for it in members], facts, naming, plugins)
+    table = build_table([it.robot for it in members], facts, naming, plugins, release)
     return Fleet(
         table,
         inventories,

@@ -115,11 +115,12 @@ def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOT
     release = chosen_release(distro or data.get("distro", ""), environment)
     policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
     naming = _naming(read, policy)
+    nodl = tuple(listed(data.get("nodl", [])))
+    described = nodl_files(nodl, read.places)
     robots = tuple(_robot(read, naming, at, release) for at in range(len(data["robots"])))
     _check_robots_differ(robots)
     _check_world(read, naming)
     nodes, parameters = data.get("nodes", ""), data.get("parameters", "")
-    nodl = tuple(listed(data.get("nodl", [])))
     vocabulary = tuple(listed(data.get("vocabulary", [])))
     return FleetFile(
         path,
@@ -132,11 +133,7 @@ def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOT
         parameters,
         vocabulary,
         robots,
-        tuple(
-            filter(
-                None, (*read.files, nodes, *nodl_files(nodl, read.places), parameters, *vocabulary)
-            )
-        ),
+        tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
     )
 
 

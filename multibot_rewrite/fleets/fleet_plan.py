@@ -53,7 +53,7 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
     notes: list[Finding] = []
     for group in groups.values():
         nodes, findings = robot_nodes(group[0].spec, file)
-        fleets.append(assemble([it.member for it in group], nodes, naming))
+        fleets.append(assemble([it.member for it in group], nodes, naming, file.distro))
         notes += findings
     fleet = merge(fleets)
     members = [it.member for it in robots]

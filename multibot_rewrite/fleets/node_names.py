@@ -2,41 +2,68 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 from multibot_rewrite.arguments import checked
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.remap.records import NodeFacts, NodeTable, Table
+from multibot_rewrite.remap.records import NodeTable, Table
+from multibot_rewrite.remap.started import Started, launch_arguments, started
+from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
 from multibot_rewrite.remap.yaml_with_lines import unknown
 
 Rules = list[tuple[str, str]]
+SPAWNED = "is a controller: its spawner takes its remappings, robot.spawner({node!r})"
 
 
 class NodeNames(NamedTuple):
     """Names and remappings of a robot's nodes, by their names in the stacks.
 
-    ``hosted`` maps a node to those that always run in its process, as costmaps do.
+    ``started`` is what is started for the nodes, with all rules that it takes.
     """
 
     robot: str
     nodes: Mapping[str, NodeTable]
-    hosted: Mapping[str, tuple[str, ...]]
+    started: Mapping[str, Started]
 
     @checked
     def for_node(self, node: str) -> Rules:
-        """The node's remappings, as ``launch_ros.actions.Node`` takes them.
+        """The node's remappings, as ``launch_ros.actions.Node`` and ``ComposableNode`` take them.
 
-        Rules for nodes that it hosts come first: rcl applies the first rule that matches. Raises
-        UsageError for a node that no stack of the fleet has.
+        Rules for nodes in its process come first: rcl applies the first rule that matches. Raises
+        UsageError for a node that no stack of the fleet has, and for a controller.
         """
         own = self._found(node)
-        rules = [
-            (f"{self.nodes[it].name}:{rule.source}", rule.target)
-            for it in self.hosted.get(node, ())
-            for rule in self.nodes[it].rules
-        ]
-        return [*rules, *((rule.source, rule.target) for rule in own.rules)]
+        it = self.started.get(node)
+        if it is None:
+            return [(rule.source, rule.target) for rule in own.rules]
+        if it.way == SPAWNER:
+            raise UsageError(f"node {node!r} {SPAWNED.format(node=node)}")
+        return list(it.rules)
+
+    @checked
+    def spawner(self, node: str) -> dict[str, Any]:
+        """Package, executable, namespace and arguments of the program that loads a controller.
+
+        ``launch_ros.actions.Node`` takes them as they are. Raises as ``for_node``, and UsageError for
+        a node that is no controller.
+        """
+        self._found(node)
+        it = self.started.get(node)
+        if it is None or it.way != SPAWNER:
+            controllers = [name for name, it in self.started.items() if it.way == SPAWNER]
+            raise UsageError(f"{unknown('controller', node, controllers)}")
+        return launch_arguments(it)
+
+    def is_controller(self, node: str) -> bool:
+        """Is this node a controller, which a spawner loads? Raises nothing."""
+        return node in self.started and self.started[node].way == SPAWNER
+
+    def container(self, node: str) -> str:
+        """The full name of the container that this node is loaded into, empty for other nodes; raises
+        nothing."""
+        it = self.started.get(node)
+        return self.full_name(it.node.home.container) if it and it.way == COMPONENT else ""
 
     @checked
     def name(self, node: str) -> str:
@@ -61,14 +88,12 @@ class NodeNames(NamedTuple):
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
 
 
-def names_of(table: Table, facts: Iterable[NodeFacts], robot: str) -> NodeNames:
+def names_of(table: Table, robot: str) -> NodeNames:
     """The nodes of one robot in a fleet's table; of those for all robots if it is empty."""
     nodes: dict[str, NodeTable] = {}
-    for it in table.nodes:
-        if it.robot == robot:
-            nodes.setdefault(it.node, it)
-    hosted: dict[str, tuple[str, ...]] = {}
-    for fact in facts:
-        if fact.host in nodes and fact.name in nodes:
-            hosted[fact.host] = (*hosted.get(fact.host, ()), fact.name)
-    return NodeNames(robot, nodes, hosted)
+    own = [it for it in table.nodes if it.robot == robot]
+    for it in own:
+        nodes.setdefault(it.node, it)
+    names = tuple(it for it in table.names if it.robot == robot)
+    found = started(table._replace(nodes=tuple(own), names=names))
+    return NodeNames(robot, nodes, {it.node.node: it for it in found})

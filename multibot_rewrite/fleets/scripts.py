@@ -80,15 +80,15 @@ class LoadedRobot:
     def table(self) -> NodeNames:
         """Names and remappings of its nodes: ``remappings=robot.table.for_node("amcl")``. Raises
         nothing."""
-        fleet = self._fleet.planned
-        return names_of(fleet.table, fleet.facts, self._graph)
+        return names_of(self._fleet.planned.table, self._graph)
 
     @checked
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
 
         ``files`` are parameter files of the fleet; amcl gets its start pose as well.
-        Raises UsageError for a node that no stack has, and as ``params`` for a file.
+        Raises UsageError for a node that no stack has and for a controller (``spawner``), and as
+        ``params`` for a file.
         """
         given = [self.params(file, node) for file in files]
         return {
@@ -97,6 +97,17 @@ class LoadedRobot:
             "remappings": self.table.for_node(node),
             "parameters": [it for it in (*given, self.start_parameters(node)) if it],
         }
+
+    @checked
+    def spawner(self, controller: str, *paths: str) -> dict[str, Any]:
+        """What loads a controller of its stacks, with its remappings, for ``Node(**...)``.
+
+        ``paths`` are parameter files for it. Raises UsageError for a node that is no controller or
+        that no stack has.
+        """
+        made = self.table.spawner(controller)
+        files = (word for path in paths for word in ("-p", path))
+        return {**made, "arguments": [*made["arguments"], *files]}
 
     @checked
     def params(self, file: str, node: str) -> dict[str, Value]:
@@ -227,7 +238,7 @@ class LoadedFleet:
     @cached_property
     def table(self) -> NodeNames:
         """Names and remappings of the nodes that serve all robots; raises nothing."""
-        return names_of(self.planned.table, self.planned.facts, "")
+        return names_of(self.planned.table, "")
 
     @cached_property
     def planned(self) -> Fleet:

@@ -17,7 +17,6 @@ from multibot_rewrite.remap.records import (
     EndpointName,
     NodeFacts,
     NodeTable,
-    Table,
 )
 from multibot_rewrite.remap.table import joined, names_of, node_table
 
@@ -34,7 +33,7 @@ def with_start_pose_nodes(plan: FleetPlan) -> Fleet:
     tables = [node_table(it.robot, POSE_NODE, fleet.naming) for it in held]
     names = tuple(names_of([(POSE_NODE, table) for table in tables]))
     edges = {(it.robot, NODE): [Edge(it.parent, it.child, True)] for it in held}
-    more = Table(fleet.table.layout, tuple(tables), names, ())
+    more = fleet.table._replace(nodes=tuple(tables), names=names, problems=())
     return fleet._replace(
         table=joined(fleet.table, more, fleet.naming), edges={**fleet.edges, **edges}
     )

@@ -1,16 +1,24 @@
 """A remap table -> stub nodes: each has the names of its node's code, rcl gets the remap rules.
 
+A stub has the rules that reach its node in the table's release: a controller those that its manager
+hands on and those of its spawner, a component those of its container, a plugin those of its tag.
 Pure; ``graph.live.stub_nodes`` runs them. Parameters are taken to be set as the layout needs them,
 QoS is the default, and endpoints that depend on a condition are left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.transforms import Edge, Edges
+from multibot_rewrite.remap.applied_rules import (
+    RunningNode,
+    bound_to,
+    is_stand_in,
+    running_nodes,
+)
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -20,11 +28,12 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     EndpointName,
-    NodeTable,
     Table,
 )
-from multibot_rewrite.remap.table_formats import arguments
+from multibot_rewrite.remap.started import ros_arguments
 from multibot_rewrite.remap.targets import ACTION_PARTS
+from multibot_rewrite.remap.ways import Pair
+from multibot_rewrite.rosnames import resolve_bound
 
 TF = "tf2_msgs/msg/TFMessage"
 # The types used in place of one that is not installed.
@@ -51,44 +60,53 @@ class StubEndpoint(NamedTuple):
 
 
 class StubNode(NamedTuple):
-    """A stub: its name in the code, its arguments for rcl, its endpoints, what it sends on tf."""
+    """A stub: its name in the code, its arguments for rcl and those of its process, which are a
+    helper node's, its endpoints, what it sends on tf."""
 
     name: str
     arguments: tuple[str, ...]
+    process_arguments: tuple[str, ...]
     endpoints: tuple[StubEndpoint, ...]
     edges: tuple[Edge, ...]
 
 
-def stub_nodes(table: Table, edges: Edges, rules: bool = True) -> Iterator[tuple[str, StubNode]]:
+def stub_nodes(
+    table: Table, edges: Edges, left_out: Collection[str] = ()
+) -> Iterator[tuple[str, StubNode]]:
     """The stub nodes, each with its robot (empty for all robots).
 
-    ``edges`` are by robot and node. Without ``rules`` a node gets only its namespace and its name.
+    ``edges`` are by robot and node. Rules that stand at one of the ways ``left_out`` are not given;
+    without any a node gets only its namespace and its name.
     """
     types = {name.name: name.endpoint.type for name in table.names if name.endpoint.type}
-    endpoints: dict[str, list[StubEndpoint]] = {}
+    names: dict[str, list[EndpointName]] = {}
     for name in table.names:
         if not name.endpoint.when:
-            endpoints.setdefault(name.node, []).append(_stub_endpoint(name, types))
-    for node in _merged(table.nodes):
-        started = node if rules else node._replace(rules=())
-        own = tuple(dict.fromkeys(endpoints.get(_full_name(node), ())))
-        sent = tuple(edges.get((node.robot, node.node), ()))
-        short = node.node.rpartition("/")[2]
-        yield node.robot, StubNode(short, tuple(arguments(started)), own, sent)
+            names.setdefault(name.node, []).append(name)
+    for it in running_nodes(table, left_out):
+        node, own = it.node, names.get(it.node.full_name, [])
+        yield (
+            node.robot,
+            StubNode(
+                node.code_name,
+                tuple(ros_arguments(node.namespace, node.other_name, _rules(it, own))),
+                tuple(ros_arguments(it.process_namespace, "", it.process_rules)),
+                tuple(dict.fromkeys(_stub_endpoint(name, types) for name in own)),
+                tuple(edges.get((node.robot, node.node), ())),
+            ),
+        )
 
 
-def _full_name(node: NodeTable) -> str:
-    return f"{node.namespace.rstrip('/')}/{node.name}"
-
-
-def _merged(nodes: Iterable[NodeTable]) -> Iterable[NodeTable]:
-    """A node that a plugin and the stack both have is one node, with the rules of both."""
-    found: dict[str, NodeTable] = {}
-    for node in nodes:
-        before = found.setdefault(_full_name(node), node)
-        if before is not node:
-            found[_full_name(node)] = before._replace(rules=(*before.rules, *node.rules))
-    return found.values()
+def _rules(running: RunningNode, names: Iterable[EndpointName]) -> tuple[Pair, ...]:
+    """The rules of a node; a controller manager that stands in for its controllers has theirs."""
+    node = running.node
+    theirs = {it.endpoint.name for it in names if is_stand_in(node, it.endpoint)}
+    if not theirs:
+        return running.rules
+    bare = bound_to(node, ())
+    full = {resolve_bound(it, TOPIC, bare) for it in theirs}
+    own = (it for it in running.rules if resolve_bound(it[0], TOPIC, bare) not in full)
+    return (*own, *running.handed_on)
 
 
 def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint:
@@ -157,8 +175,9 @@ def from_order(value: Sequence[Any]) -> list[StubNode]:
         StubNode(
             name,
             tuple(words),
+            tuple(process),
             tuple(StubEndpoint(*end) for end in endpoints),
             tuple(Edge(*edge) for edge in edges),
         )
-        for name, words, endpoints, edges in value
+        for name, words, process, endpoints, edges in value
     ]

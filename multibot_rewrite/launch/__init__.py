@@ -1,15 +1,14 @@
 """Launch files with a fleet file: substitutions, and actions for each robot.
 
-``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values
-that are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers
-it to XML and YAML launch files. The only module that imports launch and launch_ros, when needed.
-A robot or fleet that is not given is that of the enclosing group (``each_robot``). Files for nodes are
-in a folder that is removed at the end of the launch. Source: launch, launch_ros jazzy.
+``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values that
+are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers it to
+XML and YAML. The only module that imports launch and launch_ros, when needed. A robot or fleet that is
+not given is that of the enclosing group (``each_robot``). Files for nodes are in a folder that is
+removed at the end of the launch. Source: launch, launch_ros jazzy.
 """
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache
@@ -17,9 +16,11 @@ from tempfile import TemporaryDirectory
 from types import MappingProxyType
 from typing import Any, NamedTuple
 
+from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets import spawn as spawning
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
+from multibot_rewrite.launch.node_options import node_options
 from multibot_rewrite.launch.robot_words import WORDS
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.yaml_with_lines import unknown
@@ -37,8 +38,6 @@ _FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logg
 FILE = "file"
 SPAWNERS = MappingProxyType({"gz": spawning.GZ, "classic": spawning.CLASSIC})
 PLACER = ("tf2_ros", "static_transform_publisher")
-# Characters that JSON allows unescaped, but YAML does not.
-_ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF)}
 # The file of a node's description and start pose.
 _OWN = "multibot.yaml"
 
@@ -130,8 +129,7 @@ def value(word: Text, name: Text = "", robot: Text = None, fleet: Text = None) -
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
     """An action that runs what ``make`` returns for every robot, each robot in its own group.
 
-    ``robots`` are names separated by commas, to choose some robots; ``action`` are options of any
-    action, such as a condition.
+    ``robots`` are some robots' names, with commas; ``action`` are options such as a condition.
 
         each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])
     """
@@ -157,9 +155,9 @@ def node(
 ) -> Action:
     """A node of a robot's stacks: launch_ros's Node with its names, remappings and parameters.
 
-    ``name`` is its name in the stack; ``files`` are parameter files of the fleet, a list or separated
-    by commas; ``describe`` adds ``robot_description``. ``options`` are Node's own: its remappings
-    come first and its parameters last, so that they override.
+    For a controller it is that of its spawner, with its parameter files as ``-p``.
+    ``name`` is its name in the stack; ``files`` are parameter files of the fleet, with commas or as
+    a list; ``describe`` adds ``robot_description``. ``options`` are Node's own, and override.
     """
     of = RobotRef(robot, fleet)
 
@@ -240,20 +238,22 @@ def expose(substitutions: Mapping[str, Any], actions: Mapping[str, Any]) -> None
 
 
 def _node(robot: LoadedRobot, name: str, files: list[str], options: Mapping[str, Any]) -> Action:
-    """The Node; its own remappings come first and its parameters last, since rcl applies the first
-    rule that matches and the last value."""
-    given = {
-        "name": robot.table.name(name),
-        "namespace": robot.table.namespace(name),
-        "remappings": [*(options.get("remappings") or ()), *robot.table.for_node(name)],
-        "parameters": [*files, *(options.get("parameters") or ())],
-    }
-    return node_class()(**{**options, **given})
+    """The Node; a component is loaded into its container."""
+    given, container = node_options(robot, name, files, options), robot.table.container(name)
+    return _loaded(container, given) if container else node_class()(**given)
+
+
+def _loaded(container: str, options: Mapping[str, Any]) -> Action:
+    """A component, loaded into the container that the robot runs."""
+    from launch_ros.actions import LoadComposableNodes
+    from launch_ros.descriptions import ComposableNode
+
+    loaded = {"composable_node_descriptions": [ComposableNode(**options)]}
+    return LoadComposableNodes(target_container=container, **loaded)
 
 
 def _program(found: tuple[str, str], arguments: list[str]) -> Action:
-    package, executable = found
-    return node_class()(package=package, executable=executable, arguments=arguments)
+    return node_class()(package=found[0], executable=found[1], arguments=arguments)
 
 
 def _own_file(context: Context, robot: LoadedRobot, node: str, describe: bool) -> list[str]:
@@ -263,10 +263,8 @@ def _own_file(context: Context, robot: LoadedRobot, node: str, describe: bool) -
         values["robot_description"] = robot.description
     if not values:
         return []
-    # rcl reads JSON as YAML, and never takes its strings for another type.
-    data = {robot.table.full_name(node): {"ros__parameters": values}}
-    text = json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
-    return [_written(context, robot, f"{node.replace('/', '_')}.{_OWN}", text)]
+    name, text = node.replace("/", "_"), parameters_text(robot.table.full_name(node), values)
+    return [_written(context, robot, f"{name}.{_OWN}", text)]
 
 
 def _group(fleet: LoadedFleet, robot: LoadedRobot, actions: Iterable[Action]) -> Action:

@@ -35,12 +35,13 @@ from multibot_rewrite.remap.yaml_with_lines import (
 from multibot_rewrite.rosnames import check_node_name
 
 NODE_WORDS = (
-    *("package", "host", "shared", "note", "with", "frames", "sends", "ids", "fixed"),
+    *("package", "host", "plugin", "shared", "note"),
+    *("with", "frames", "sends", "ids", "fixed"),
     "nodl",
 )
 SENT_KEYS = ("child", "if")
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
-STACK_KEYS = ("about", "include", "nodes", "releases")
+STACK_KEYS = ("about", "include", "container", "nodes", "releases")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps", "releases")
 FILE_KEYS = ("parts", "nodes", "stacks")
 NOTHING: Mapping[str, str] = {}
@@ -49,12 +50,16 @@ Known = TypeVar("Known")
 
 class Stack(NamedTuple):
     """Nodes that are started together; ``include`` are stacks that it contains, ``releases`` the
-    words for the releases that have it."""
+    words for the releases that have it.
+
+    ``container`` is the node among them that all others are loaded into as components, if any.
+    """
 
     about: str
     include: tuple[str, ...]
     nodes: tuple[NodeFacts, ...]
     releases: str = ""
+    container: str = ""
 
 
 class NodeLibrary(NamedTuple):
@@ -112,9 +117,16 @@ def with_included(library: NodeLibrary, name: str) -> Iterator[str]:
 def _gathered(library: NodeLibrary, name: str, above: tuple[str, ...]) -> Iterator[NodeFacts]:
     if name in above:
         raise UsageError(f"stack {name!r} includes itself: {' -> '.join((*above, name))}")
-    for other in library.stacks[name].include:
-        yield from _gathered(library, other, (*above, name))
-    yield from library.stacks[name].nodes
+    stack = library.stacks[name]
+    for other in stack.include:
+        yield from (_loaded(it, stack) for it in _gathered(library, other, (*above, name)))
+    yield from (_loaded(it, stack) for it in stack.nodes)
+
+
+def _loaded(node: NodeFacts, stack: Stack) -> NodeFacts:
+    """The node as a component, if the stack has a container for it."""
+    kept = node.host or node.shared or node.name == stack.container or not stack.container
+    return node if kept else node._replace(container=stack.container)
 
 
 def extend(library: NodeLibrary, text: str, file: str) -> NodeLibrary:
@@ -164,6 +176,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
         releases=releases_of(keys),
         source=source_of(keys),
+        plugin=word_of(keys, "plugin"),
     )
 
 
@@ -224,6 +237,7 @@ def _stack(item: YamlItem, library: NodeLibrary, stacks: Iterable[str]) -> Stack
         tuple(_known(entry, "stack", known) for entry in entries_of(keys, "include")),
         tuple(_placed(entry, library) for entry in entries_of(keys, "nodes")),
         releases_of(keys),
+        word_of(keys, "container"),
     )
 
 

@@ -9,6 +9,7 @@ from multibot_rewrite.readback.reading import Reading
 from multibot_rewrite.remap.records import (
     Endpoint,
     FrameParameter,
+    Home,
     NodeFacts,
     NodeRule,
     NodeTable,
@@ -20,7 +21,9 @@ def plugin_nodes(reading: Reading, robot: str) -> Iterator[tuple[NodeFacts, Node
     """Each ROS 2 plugin of ``robot``'s rewritten description: its endpoints, its names and rules."""
     for node in reading.nodes:
         rules = tuple(_rules(node, robot))
-        yield _facts(node), NodeTable(robot, node.name, node.namespace, node.name, rules)
+        section = node.section
+        home = Home("", "", section.names[0], written=True, process_wide=section.process_wide)
+        yield _facts(node), NodeTable(robot, node.name, node.namespace, node.name, rules, home)
 
 
 def _facts(node: ReadNode) -> NodeFacts:
@@ -37,4 +40,5 @@ def _facts(node: ReadNode) -> NodeFacts:
 def _rules(node: ReadNode, robot: str) -> Iterator[NodeRule]:
     for rule, line in node.rules:
         why = f"in the description, line {line}"
-        yield NodeRule(robot, node.name, rule.source, rule.target, "", why)
+        lead = f"{rule.node}:" if rule.node else ""
+        yield NodeRule(robot, node.name, f"{lead}{rule.source}", rule.target, "", why)

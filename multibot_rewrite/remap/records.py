@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.releases import NEWEST_LTS
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -83,7 +84,8 @@ class NodeFacts(NamedTuple):
     name in nodes.yaml if it has another one. ``origin`` is where a robot's own files name it
     (``file:line``), empty for a node of a stack. ``releases``, ``source``: see ``Endpoint``. ``nodl``
     are further names of its NoDL document, such as its executable; ``interface`` is the NoDL file that
-    its endpoints are from, empty for the library.
+    its endpoints are from, empty for the library. ``container`` is the node whose process it is
+    loaded into as a component, ``plugin`` the plugin of the simulator that makes it.
     """
 
     name: str
@@ -103,6 +105,20 @@ class NodeFacts(NamedTuple):
     source: tuple[str, ...] = ()
     nodl: tuple[str, ...] = ()
     interface: str = ""
+    container: str = ""
+    plugin: str = ""
+
+
+class Home(NamedTuple):
+    """Where a node runs if not in a process of its own: ``host``, ``container`` and ``plugin`` as in
+    ``NodeFacts``. ``written`` is true for a plugin of a description, ``process_wide`` if its rules
+    hold for its whole process."""
+
+    host: str = ""
+    container: str = ""
+    plugin: str = ""
+    written: bool = False
+    process_wide: bool = False
 
 
 class NodeRule(NamedTuple):
@@ -133,13 +149,29 @@ class EndpointName(NamedTuple):
 
 
 class NodeTable(NamedTuple):
-    """One node of one robot: its namespace, its name, and its rules in order."""
+    """One node of one robot: its namespace, its name, its rules in order, and where it runs."""
 
     robot: str
     node: str
     namespace: str
     name: str
     rules: tuple[NodeRule, ...]
+    home: Home = Home()
+
+    @property
+    def full_name(self) -> str:
+        """Namespace and name."""
+        return f"{self.namespace.rstrip('/')}/{self.name}"
+
+    @property
+    def code_name(self) -> str:
+        """The name in its code."""
+        return self.node.rpartition("/")[2]
+
+    @property
+    def other_name(self) -> str:
+        """Its name if it is another than that in its code, else empty."""
+        return self.name if self.name != self.code_name else ""
 
 
 # Nodes with their tables.
@@ -147,9 +179,10 @@ Pairs: TypeAlias = Sequence[tuple[NodeFacts, NodeTable]]
 
 
 class Table(NamedTuple):
-    """The remap table of a fleet, and what it cannot do or does wrongly."""
+    """The remap table of a fleet for a release of ROS, and what it cannot do or does wrongly."""
 
     layout: str
     nodes: tuple[NodeTable, ...]
     names: tuple[EndpointName, ...]
     problems: tuple[Finding, ...]
+    release: str = NEWEST_LTS

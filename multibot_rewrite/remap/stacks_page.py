@@ -70,7 +70,8 @@ def page(library: NodeLibrary) -> str:
 
 def _stack(name: str, stack: Stack) -> str:
     lines = [f"\n### {name}\n\n{stack.about}.\n\n"]
-    lines += [f"- all nodes of {other}\n" for other in stack.include]
+    within = f", in the container `{stack.container}`" if stack.container else ""
+    lines += [f"- all nodes of {other}{within}\n" for other in stack.include]
     lines += [f"- {_member(node)}\n" for node in stack.nodes]
     return "".join(lines)
 

@@ -10,10 +10,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,
     TOPIC,
     EndpointName,
+    Home,
     NodeFacts,
     NodeRule,
     NodeTable,
@@ -22,6 +25,8 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.remap.table_checks import PROBE, collisions, unreachable, useless_rules
 from multibot_rewrite.remap.targets import expanded, placed, target_of
+from multibot_rewrite.remap.way_checks import not_taken
+from multibot_rewrite.remap.ways import MANAGER, controller_way
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 SAME = "all robots would share this name otherwise"
@@ -33,25 +38,32 @@ def build_table(
     nodes: Sequence[NodeFacts],
     naming: Naming,
     plugins: Mapping[str, Pairs] = NOTHING,
+    release: str = NEWEST_LTS,
 ) -> Table:
     """The remap table of a fleet with its problems; nodes for all robots are in it once.
 
     ``nodes`` run once for each robot; ``plugins`` are those of each robot's rewritten description.
     """
     with gc_paused():
-        return _build(robots, nodes, naming, plugins)
+        made = _build(robots, nodes, naming, plugins, release)
+        return made._replace(problems=(*made.problems, *not_taken(made)))
 
 
 def _build(
-    robots: Sequence[str], nodes: Sequence[NodeFacts], naming: Naming, plugins: Mapping[str, Pairs]
+    robots: Sequence[str],
+    nodes: Sequence[NodeFacts],
+    naming: Naming,
+    plugins: Mapping[str, Pairs],
+    release: str,
 ) -> Table:
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's table differs only in the robot's name.
     others = frozenset(node.name for node in nodes if not node.shared)
     own = [(node, node_table(PROBE, node, naming, others)) for node in nodes if not node.shared]
     meant = list(names_of(own))
+    apart = {robot: _without_stand_ins(pairs, nodes) for robot, pairs in plugins.items()}
     names = {
-        robot: [*_renamed(meant, robot), *names_of(plugins.get(robot, ()))]
+        robot: [*_renamed(meant, robot), *names_of(apart.get(robot, ()))]
         for robot in ([*robots, PROBE] if len(robots) == 1 else robots)
     }
     problems = [
@@ -59,12 +71,36 @@ def _build(
         *useless_rules(own),
         *collisions(names, naming),
     ]
-    problems += [found for robot in robots for found in useless_rules(plugins.get(robot, ()))]
+    for robot in robots:
+        controllers = _given_by_plugins(own, robot, release)
+        problems += useless_rules(plugins.get(robot, ()), controllers)
     kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]
     for robot in robots:
         tables += [*_copies(own, robot), *(table for _, table in plugins.get(robot, ()))]
-    return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems))
+    return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems), release)
+
+
+def _given_by_plugins(own: Pairs, robot: str, release: str) -> Pairs | None:
+    """The controllers that get the rules of their plugin; None where no stack names them."""
+    way = controller_way(release)
+    if not (way.forwarded or way.process_wide):
+        return ()
+    found = [pair for pair in own if pair[0].host == MANAGER]
+    facts = [node for node, _ in found]
+    return list(zip(facts, _copies(found, robot), strict=True)) or None
+
+
+def _without_stand_ins(pairs: Pairs, nodes: Iterable[NodeFacts]) -> Pairs:
+    """The plugins of a description, without what their controllers publish if a stack names those."""
+    if all(node.host != MANAGER for node in nodes):
+        return pairs
+    return [(_without_controllers(facts, table), table) for facts, table in pairs]
+
+
+def _without_controllers(facts: NodeFacts, table: NodeTable) -> NodeFacts:
+    kept = (it for it in facts.endpoints if not is_stand_in(table, it))
+    return facts._replace(endpoints=tuple(kept))
 
 
 def joined(table: Table, other: Table, naming: Naming) -> Table:
@@ -77,7 +113,8 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
     known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
     met = (it for it in collisions(by_robot, naming) if (it.code, it.message) not in known)
     problems = tuple(dict.fromkeys((*table.problems, *other.problems, *met)))
-    return Table(table.layout, tuple(dict.fromkeys((*table.nodes, *other.nodes))), names, problems)
+    nodes = tuple(dict.fromkeys((*table.nodes, *other.nodes)))
+    return Table(table.layout, nodes, names, problems, table.release)
 
 
 def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:
@@ -90,7 +127,7 @@ def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:
 
 def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
     """The probe's nodes, renamed for another robot."""
-    for _, (_, node, namespace, name, rules) in pairs:
+    for _, (_, node, namespace, name, rules, home) in pairs:
         own = tuple(
             NodeRule(
                 robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why
@@ -98,7 +135,7 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
             for rule in rules
         )
         yield NodeTable(
-            robot, node, namespace.replace(PROBE, robot), name.replace(PROBE, robot), own
+            robot, node, namespace.replace(PROBE, robot), name.replace(PROBE, robot), own, home
         )
 
 
@@ -127,7 +164,8 @@ def node_table(
                 why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
                 match = expand(source, namespace, name)
                 rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
-    return NodeTable(robot, node.name, namespace, name, tuple(rules.values()))
+    home = Home(node.host, node.container, node.plugin)
+    return NodeTable(robot, node.name, namespace, name, tuple(rules.values()), home)
 
 
 def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:

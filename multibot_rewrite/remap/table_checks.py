@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -13,10 +14,12 @@ from multibot_rewrite.remap.records import (
     Endpoint,
     EndpointName,
     NodeFacts,
+    NodeRule,
+    NodeTable,
     Pairs,
 )
 from multibot_rewrite.remap.targets import expanded, target_of
-from multibot_rewrite.rosnames import bind, resolve_bound
+from multibot_rewrite.rosnames import BoundNode, bind, resolve_bound
 
 # A stand-in for a second robot: names of a single robot cannot collide.
 PROBE = "multibot_probe"
@@ -206,22 +209,56 @@ LATER_RULE = declare(
 )
 
 
-def useless_rules(pairs: Pairs) -> Iterator[Finding]:
-    """Rules that match no name of their node, and rules after one that matches first."""
+class _Names(NamedTuple):
+    """A node without its rules, and the full names that it asks for."""
+
+    bare: BoundNode
+    full: frozenset[tuple[str, str]]
+
+
+def useless_rules(pairs: Pairs, controllers: Pairs | None = ()) -> Iterator[Finding]:
+    """Rules that match no name of their node, and rules after one that matches first.
+
+    ``controllers`` are those that a plugin hands its rules on to; None if they are not known.
+    """
+    others = [_names(*pair) for pair in controllers or ()]
     for node, table in pairs:
-        bare = bind(table.name, table.namespace, ())
+        own = _names(node, table)
+        wide = table.home.process_wide
+        asked = [own, *(others if wide else ())]
         robot = "" if table.robot == PROBE else table.robot
-        asked = {pair for endpoint in node.endpoints for pair in expanded(endpoint)}
-        full = {(kind, resolve_bound(name, kind, bare)) for kind, name in asked}
-        seen: set[str] = set()
+        seen: set[tuple[str, str]] = set()
         for rule in table.rules:
-            match = resolve_bound(rule.source, rule.kind or TOPIC, bare)
-            kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
             text = f"{rule.source}:={rule.target}"
+            whose, source = _split(rule.source)
+            match = (whose, resolve_bound(source, rule.kind or TOPIC, own.bare))
             if match in seen:
                 message = f"{text} has no effect: an earlier rule matches first"
                 yield LATER_RULE.finding(message, "remove it", robot=robot, node=node.name)
-            elif full.isdisjoint((kind, match) for kind in kinds):
+            elif not any(_matches(rule, it) for it in asked) and not (wide and controllers is None):
                 message = f"{text} matches no name of this node"
                 yield RULE_WITHOUT_NAME.finding(message, "remove it", robot=robot, node=node.name)
             seen.add(match)
+
+
+def _names(node: NodeFacts, table: NodeTable) -> _Names:
+    bare = bind(table.name, table.namespace, ())
+    # What is known of a controller manager only by its rules proves none of them.
+    known = [it for it in node.endpoints if it.role or not table.home.process_wide]
+    asked = {pair for endpoint in known for pair in expanded(endpoint)}
+    return _Names(bare, frozenset((kind, resolve_bound(name, kind, bare)) for kind, name in asked))
+
+
+def _matches(rule: NodeRule, names: _Names) -> bool:
+    whose, source = _split(rule.source)
+    if whose not in ("", names.bare.node):
+        return False
+    match = resolve_bound(source, rule.kind or TOPIC, names.bare)
+    kinds = (rule.kind,) if rule.kind else (TOPIC, SERVICE)
+    return not names.full.isdisjoint((kind, match) for kind in kinds)
+
+
+def _split(source: str) -> tuple[str, str]:
+    """The node that the left side of a rule asks for, and the name."""
+    whose, colon, name = source.rpartition(":")
+    return (whose, name) if colon else ("", source)

@@ -7,7 +7,18 @@ import shlex
 from collections.abc import Callable, Iterator
 from xml.sax.saxutils import escape
 
-from multibot_rewrite.remap.records import NodeTable, Table
+from multibot_rewrite.remap.records import Table
+from multibot_rewrite.remap.started import Started, arguments, launch_arguments, started
+from multibot_rewrite.remap.ways import (
+    COMPONENT,
+    HOST,
+    PLUGIN,
+    PROCESS,
+    SPAWNER,
+    Delivery,
+    deliveries,
+    rules_by_taker,
+)
 
 EVERY_ROBOT = "all robots"
 # What programs read of a finding about the table.
@@ -15,59 +26,74 @@ OF_A_PROBLEM = ("code", "level", "robot", "node", "message", "hint")
 
 
 def ros_args(table: Table) -> str:
-    """One line for each node: the arguments of ``ros2 run PACKAGE EXECUTABLE``."""
-    return "".join(_ros_args(node) for node in table.nodes)
+    """One line for each process: the arguments of ``ros2 run PACKAGE EXECUTABLE``.
+
+    For a controller they are those of its spawner, for a component those of ``ros2 component load``.
+    A node that nothing is started for has no line.
+    """
+    return "".join(_ros_args(it) for it in started(table))
 
 
-def _ros_args(node: NodeTable) -> str:
-    line = shlex.join(arguments(node)) or "(no rule)"
-    return f"# {node.robot or EVERY_ROBOT}: {node.node}\n{line}\n"
-
-
-def arguments(node: NodeTable) -> list[str]:
-    """The arguments after the node's executable; empty if none are needed."""
-    words = [f"{rule.source}:={rule.target}" for rule in node.rules]
-    placed = [f"__ns:={node.namespace}"] if node.namespace != "/" else []
-    named = [f"__node:={node.name}"] if node.name != node.node.rpartition("/")[2] else []
-    given = [text for word in (*placed, *named, *words) for text in ("-r", word)]
-    return ["--ros-args", *given] if given else []
+def _ros_args(it: Started) -> str:
+    by = f" ({it.way})" if it.way != PROCESS else ""
+    line = shlex.join(arguments(it)) or "(no rule)"
+    return f"# {it.node.robot or EVERY_ROBOT}: {it.node.node}{by}\n{line}\n"
 
 
 def launch(table: Table) -> str:
-    """Python for a launch file: robot -> node -> the arguments of ``launch_ros.actions.Node``."""
+    """Python for a launch file: robot -> node -> arguments, by what is started for the nodes."""
+    found = list(started(table))
+    return "".join(_launch_table(found, *it) for it in _LAUNCH)
+
+
+_LAUNCH = (
+    (PROCESS, "NODES", "nodes", "Node", "package=..., "),
+    (COMPONENT, "COMPONENTS", "components", "ComposableNode", "package=..., "),
+    (SPAWNER, "SPAWNERS", "spawners of controllers", "Node", ""),
+)
+
+
+def _launch_table(found: list[Started], way: str, name: str, *words: str) -> str:
+    what, action, package = words
     rows = [
-        "# Arguments of nodes, by robot and node: Node(**NODES[robot][node], package=..., ...)\n"
+        f"# Arguments of {what}, by robot and node: {action}(**{name}[robot][node], {package}...)\n"
     ]
-    rows.append("NODES = {\n")
-    for robot, nodes in _by_robot(table):
-        rows.append(f"    {robot!r}: {{\n")
-        for node in nodes:
-            pairs = [(rule.source, rule.target) for rule in node.rules]
-            rows += [
-                f"        {node.node!r}: {{\n",
-                f'            "namespace": {node.namespace!r},\n',
-                f'            "name": {node.name!r},\n',
-                f'            "remappings": {pairs!r},\n',
-                "        },\n",
-            ]
+    rows.append(f"{name} = {{\n")
+    own = [it for it in found if it.way == way]
+    if not own and way != PROCESS:
+        return ""
+    for robot in dict.fromkeys(it.node.robot for it in own):
+        rows.append(f"    {(robot or EVERY_ROBOT)!r}: {{\n")
+        for it in own:
+            rows += _launch_row(it) if it.node.robot == robot else ()
         rows.append("    },\n")
     return "".join([*rows, "}\n"])
+
+
+def _launch_row(it: Started) -> Iterator[str]:
+    yield f"        {it.node.node!r}: {{\n"
+    for key, value in launch_arguments(it).items():
+        yield f"            {json.dumps(key)}: {value!r},\n"
+    yield "        },\n"
 
 
 def as_data(table: Table) -> dict[str, object]:
     """The table as plain data, as in the YAML and JSON formats."""
     return {
         "layout": table.layout,
+        "release": table.release,
         "robots": {
             robot: {
-                node.node: {
-                    "namespace": node.namespace,
-                    "name": node.name,
-                    "remappings": [[rule.source, rule.target] for rule in node.rules],
+                it.node.node: {
+                    "namespace": it.node.namespace,
+                    "name": it.node.name,
+                    "way": it.way,
+                    "at": it.taker,
+                    "remappings": [list(pair) for pair in it.rules],
                 }
-                for node in nodes
+                for it in given
             }
-            for robot, nodes in _by_robot(table)
+            for robot, given in standing_by_robot(table)
         },
         "names": [
             {
@@ -114,19 +140,38 @@ def gazebo(table: Table) -> str:
 def markdown(table: Table) -> str:
     """One Markdown table for each robot."""
     parts = [f"# Remap table, layout {table.layout}\n"]
-    for robot, nodes in _by_robot(table):
-        parts.append(f"\n## {robot}\n\n| node | runs as | rule |\n|---|---|---|\n")
-        for node in nodes:
-            runs = f"{node.namespace.rstrip('/')}/{node.name}"
-            rules = [f"`{rule.source}` -> `{rule.target}`" for rule in node.rules] or [""]
-            parts += [f"| {node.node} | `{runs}` | {rule} |\n" for rule in rules]
+    for robot, given in standing_by_robot(table):
+        parts.append(f"\n## {robot}\n\n| node | runs as | rule | given to |\n|---|---|---|---|\n")
+        for it in given:
+            rules = [f"`{source}` -> `{target}`" for source, target in it.rules] or [""]
+            row = f"| {it.node.node} | `{it.node.full_name}` |"
+            parts += [f"{row} {rule} | {given_to(it)} |\n" for rule in rules]
     return "".join(parts)
 
 
-def _by_robot(table: Table) -> Iterator[tuple[str, list[NodeTable]]]:
-    """Nodes by robot; nodes for all robots are under a name that no robot can have."""
-    for robot in dict.fromkeys(node.robot for node in table.nodes):
-        yield robot or EVERY_ROBOT, [node for node in table.nodes if node.robot == robot]
+def given_to(it: Delivery) -> str:
+    """Where the rules of a node stand, for people."""
+    if it.way == HOST:
+        return f"process of {it.taker}"
+    return {PROCESS: "its process", SPAWNER: "its spawner", PLUGIN: "its plugin"}.get(
+        it.way, it.way
+    )
+
+
+def standing_by_robot(table: Table) -> Iterator[tuple[str, list[Delivery]]]:
+    """Where the rules of each node stand, by robot, with all rules of what takes them for others as
+    well; nodes for all robots are under a name that no robot can have."""
+    given = deliveries(table)
+    rules = rules_by_taker(given)
+    each = {it.node: it for it in reversed(given)}
+    whole = [
+        it._replace(rules=rules.get((it.node.robot, it.taker), it.rules))
+        if it.taker == it.node.node
+        else it
+        for it in reversed(each.values())
+    ]
+    for robot in dict.fromkeys(it.node.robot for it in whole):
+        yield robot or EVERY_ROBOT, [it for it in whole if it.node.robot == robot]
 
 
 FORMS: dict[str, Callable[[Table], str]] = {

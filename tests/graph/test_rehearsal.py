@@ -36,6 +36,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     Endpoint,
+    Home,
     NodeFacts,
     NodeRule,
     NodeTable,
@@ -43,6 +44,7 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
+from multibot_rewrite.remap.ways import WAYS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
@@ -67,8 +69,8 @@ def table(layout: str = "L2") -> Table:
     return build_table(("robot1", "robot2"), (NODE, MAPPER), make_naming(layout))
 
 
-def drive(layout: str = "L2", rules: bool = True) -> StubNode:
-    stubs = [stub for robot, stub in stub_nodes(table(layout), {}, rules) if robot == "robot2"]
+def drive(layout: str = "L2", left_out: tuple[str, ...] = ()) -> StubNode:
+    stubs = [stub for robot, stub in stub_nodes(table(layout), {}, left_out) if robot == "robot2"]
     return next(stub for stub in stubs if stub.name == "drive")
 
 
@@ -82,7 +84,7 @@ def test_a_stub_has_the_names_of_the_code_and_rcl_gets_the_rules() -> None:
 
 
 def test_without_rules_a_node_keeps_only_namespace_and_name() -> None:
-    assert drive(rules=False).arguments == ("--ros-args", "-r", "__ns:=/robot2")
+    assert drive(left_out=WAYS).arguments == ("--ros-args", "-r", "__ns:=/robot2")
 
 
 def test_an_endpoint_with_a_condition_is_left_out() -> None:
@@ -97,15 +99,18 @@ def test_endpoints_of_a_helper_are_marked() -> None:
     assert [part.name for part in drive().endpoints if part.helper] == ["/tf"]
 
 
-def test_a_node_of_the_plugins_and_of_the_stack_is_one() -> None:
+def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag() -> None:
     one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
-    two = one._replace(rules=(NodeRule("r", "manager", "c", "d", "", ""),))
+    rules = (NodeRule("r", "manager", "c", "d", "", ""),)
+    two = one._replace(rules=rules, home=Home(plugin="acme", written=True))
     ((_, stub),) = stub_nodes(Table("both", (one, two), (), ()), {})
-    assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "a:=b", "-r", "c:=d")
+    assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
 
 
 def test_robots_share_processes_when_they_are_many() -> None:
-    some = [(f"robot{at}", StubNode(f"node{at}", (), (), ())) for at in range(3 * PROCESSES + 1)]
+    some = [
+        (f"robot{at}", StubNode(f"node{at}", (), (), (), ())) for at in range(3 * PROCESSES + 1)
+    ]
     processes = split_over_processes(some)
     assert len(processes) == PROCESSES
     assert sorted(len(process) for process in processes) == [3] * (PROCESSES - 1) + [4]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import copy
-import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
+from nodl_schema_file import nodl_validator
 
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.nodl.document import parse
@@ -150,27 +149,6 @@ def test_what_is_wrong_is_one_line_with_file_and_line(text: str) -> None:
 # ---------------------------------------------------------------- the schema of ros-tooling/nodl
 
 
-def schema_check() -> Any:
-    """The validator of the published schema: of an installed nodl_schema, or a checkout of it."""
-    jsonschema = pytest.importorskip("jsonschema", reason="no jsonschema")
-    try:
-        from importlib.resources import files
-
-        folder = Path(str(files("nodl_schema"))) / "schemas"
-    except ModuleNotFoundError:
-        root = os.environ.get("MULTIBOT_NODL", "")
-        folder = Path(root) / "nodl_schema" / "nodl_schema" / "schemas"
-        if not root or not folder.is_dir():
-            pytest.skip("no schema: set MULTIBOT_NODL to a checkout of ros-tooling/nodl")
-    schema, parameter = (
-        yaml.safe_load((folder / f"{name}.schema.yaml").read_text())
-        for name in ("nodl", "parameter")
-    )
-    store = {"parameter.schema.yaml": parameter}
-    resolver = jsonschema.RefResolver.from_schema(schema, store=store)
-    return jsonschema.validators.Draft7Validator(schema, resolver=resolver)
-
-
 def damaged(value: Any) -> Iterator[Any]:
     """The document with one value after the other replaced, or left out."""
     for path in list(_paths(value)):
@@ -203,7 +181,7 @@ def reads(value: Any) -> bool:
 
 
 def test_what_the_schema_allows_is_read_and_what_it_forbids_is_refused() -> None:
-    validator = schema_check()
+    validator = nodl_validator()
     whole = yaml.safe_load(WHOLE)
     assert validator.is_valid(whole)
     wrong = [

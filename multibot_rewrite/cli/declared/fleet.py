@@ -32,6 +32,8 @@ from multibot_rewrite.findings.finding import ERROR
 
 # Those of ``remap.table_formats``, which a help text does not import.
 REMAP_FORMS = ("table", "ros-args", "launch", "yaml", "json", "gazebo", "markdown", "bridge")
+# Those of ``remap.ways``.
+WAYS = ("process", "host", "component", "spawner", "plugin")
 
 _DESCRIPTION = OptionGroup(
     "input",
@@ -125,7 +127,16 @@ REHEARSE = Command(
         ),
         OptionGroup(
             "rehearsal",
-            (switch("--without-rules", about="start nodes with namespace and name alone"),),
+            (
+                switch("--without-rules", about="start nodes with namespace and name alone"),
+                several(
+                    "--without-rules-at",
+                    "WAY",
+                    f"leave out rules that are given at {', '.join(WAYS)}",
+                    [],
+                    values.some_of(WAYS),
+                ),
+            ),
         ),
         PICTURES,
         LIVE,

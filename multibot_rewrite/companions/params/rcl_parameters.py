@@ -5,9 +5,11 @@ Sources: rcl_yaml_param_parser ``parse.c`` (``get_value``); rclcpp and rclpy for
 
 from __future__ import annotations
 
+import json
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 import yaml
 
@@ -30,6 +32,15 @@ _HEX_FLOAT = re.compile(
 _NO_NUMBER = re.compile(r"([+-]?(?:inf|infinity|nan))(?:\([A-Za-z0-9_]*\))?", re.IGNORECASE)
 _STRING = "tag:yaml.org,2002:str"
 _SMALLEST = 2.2250738585072014e-308
+# Characters that JSON allows unescaped, but YAML does not.
+_ESCAPED = {code: f"\\u{code:04x}" for code in (*range(0x7F, 0xA0), 0x2028, 0x2029, 0xFEFF)}
+
+
+def parameters_text(full: str, values: Mapping[str, Any]) -> str:
+    """The parameter file of the node with this full name, as JSON: rcl reads that as YAML, and never
+    takes its strings for another type."""
+    data = {full: {"ros__parameters": dict(values)}}
+    return json.dumps(data, ensure_ascii=False).translate(_ESCAPED)
 
 
 def node_parameters(document: YamlText, full: str) -> dict[str, Value]:

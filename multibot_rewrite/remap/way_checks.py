@@ -1,0 +1,102 @@
+"""Rules that a node needs and does not get where they stand, by release."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
+from multibot_rewrite.remap.records import ACTION, TOPIC, EndpointName, Table
+from multibot_rewrite.remap.ways import PLUGIN, controller_way
+from multibot_rewrite.rosnames import resolve_bound
+
+NOT_TAKEN = declare(
+    "MR105",
+    "rule-not-taken",
+    WARNING,
+    what="A node does not get a rule that it needs: in this release nothing hands the rule on to it "
+    "from the place where it stands.",
+    why="The node keeps the name in its code, and all robots share it. From ros2_control 6.5 on "
+    "(Lyrical) controllers get no rules of their controller manager, so none of a gz_ros2_control "
+    "plugin. On Humble all controllers in one Gazebo get those of the first robot's plugin.",
+    fix="Name the stack of the controllers (--stack gz_ros2_control), and start each with its spawner: "
+    "its line is in commands.md, and multibot remap --form ros-args prints it.",
+    bad="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="control" filename="gz_ros2_control-system">
+      <ros>
+        <remapping>/tf:=tf</remapping>
+      </ros>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    good="""\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo>
+    <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">
+      <left_joint>left</left_joint>
+      <right_joint>right</right_joint>
+    </plugin>
+  </gazebo>
+</robot>
+""",
+    line=6,
+    formats=("remap-urdf",),
+    options={"robots": ("robot1", "robot2"), "layout": "tf-per-robot"},
+)
+
+
+def not_taken(table: Table) -> Iterator[Finding]:
+    """Names of the code or of another robot that a node has because its rule does not reach it.
+
+    One finding a node.
+    """
+    names: dict[tuple[str, str], list[EndpointName]] = {}
+    owners: dict[str, set[str]] = {}
+    for it in table.names:
+        owners.setdefault(it.name, set()).add(it.robot)
+        if not (it.endpoint.fixed or it.endpoint.when):
+            names.setdefault((it.robot, it.node), []).append(it)
+    for running in running_nodes(table):
+        plain = tuple((it.source, it.target) for it in running.node.rules)
+        if running.node.home.process_wide or running.rules != plain:
+            own = names.get((running.node.robot, running.node.full_name), ())
+            wrong = dict.fromkeys(_wrong(own, running, owners))
+            if wrong:
+                yield _finding(running, list(wrong), table.release)
+
+
+def _wrong(
+    names: Iterable[EndpointName], running: RunningNode, owners: Mapping[str, set[str]]
+) -> Iterator[str]:
+    """Those called otherwise than the table says: as in the code, or like something of a robot."""
+    node = running.node
+    own, theirs, bare = (bound_to(node, it) for it in (running.rules, running.handed_on, ()))
+    for it in names:
+        kind = TOPIC if it.endpoint.kind == ACTION else it.endpoint.kind
+        given = theirs if is_stand_in(node, it.endpoint) else own
+        found = resolve_bound(it.endpoint.name, kind, given)
+        if found == it.name:
+            continue
+        is_bare = found == resolve_bound(it.endpoint.name, kind, bare)
+        if is_bare or node.robot not in owners.get(found, {node.robot}):
+            yield it.endpoint.name
+
+
+def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
+    node, names = running.node, ", ".join(kept)
+    message = f"on {release} no rule reaches it for {names}, though one is written"
+    hint = f"give its rules to the process of {node.home.host or node.name}"
+    if running.way == PLUGIN:
+        message = f"on {release} its controllers do not get its rules for {names}"
+        hint = "name their stack, and start each with its spawner's --controller-ros-args"
+    if running.way == PLUGIN and not controller_way(release).spawner:
+        message = f"on {release} it gets the rules of the first robot alone, none for {names}"
+        hint = "give each robot a namespace, with --topics namespace"
+    place = {"robot": node.robot, "node": node.node, "names": tuple(kept)}
+    return NOT_TAKEN.finding(message, hint, **place)

@@ -1,0 +1,68 @@
+"""MR105 and MR103 by release: a rule in a plugin's tag that is meant for a controller."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.fleets.fleet import make_fleet
+from multibot_rewrite.naming import Policy
+
+LAYOUT: Policy = {"layout": "tf-per-robot"}
+NEITHER: Policy = {"layout": "postfix"}
+
+
+def description(*rules: str) -> bytes:
+    tags = "".join(f"<remapping>{rule}</remapping>" for rule in rules)
+    return (
+        '<robot name="rover"><link name="base_link"/><gazebo>'
+        '<plugin name="control" filename="gz_ros2_control-system"><parameters>c.yaml</parameters>'
+        f"<ros>{tags}</ros></plugin></gazebo></robot>"
+    ).encode()
+
+
+def codes(
+    release: str, *rules: str, stack: str = "", policy: Policy = LAYOUT
+) -> list[tuple[str, str]]:
+    stacks = [stack] if stack else []
+    made = make_fleet(description(*rules), ["robot1", "robot2"], stacks, policy, release=release)
+    return [(it.code, it.robot) for it in made.table.problems if it.code.startswith("MR1")]
+
+
+@pytest.mark.parametrize(
+    ("release", "found"),
+    [("humble", []), ("jazzy", []), ("kilted", []), ("lyrical", ["MR105"]), ("rolling", ["MR105"])],
+)
+def test_the_tag_alone_is_not_enough_since_lyrical(release: str, found: list[str]) -> None:
+    # The rewrite puts /tf:=tf into the tag.
+    assert [code for code, _ in codes(release)] == found * 2
+
+
+@pytest.mark.parametrize("release", ["humble", "jazzy", "lyrical"])
+def test_with_the_controllers_stack_a_spawner_has_the_rule(release: str) -> None:
+    assert codes(release, stack="gz_ros2_control") == []
+
+
+def test_on_humble_the_second_robot_has_the_rules_of_the_first() -> None:
+    wanted = [("MR105", "robot2")]
+    found = codes("humble", stack="gz_ros2_control", policy=NEITHER)
+    assert found and set(found) <= {("MR105", "robot1"), *wanted}
+    assert wanted[0] in found
+
+
+@pytest.mark.parametrize(
+    ("release", "rule", "stack", "found"),
+    [
+        # Forwarded to the controllers, one of which has the name.
+        ("jazzy", "~/odom:=odom", "gz_ros2_control", []),
+        ("humble", "~/odom:=odom", "gz_ros2_control", []),
+        ("lyrical", "~/odom:=odom", "gz_ros2_control", ["MR103"]),
+        ("jazzy", "diff_drive_controller:~/odom:=odom", "gz_ros2_control", []),
+        ("jazzy", "joint_trajectory_controller:~/odom:=odom", "gz_ros2_control", ["MR103"]),
+        ("jazzy", "~/odmo:=odom", "gz_ros2_control", ["MR103"]),
+        # Nobody knows the controllers.
+        ("jazzy", "~/odom:=odom", "", []),
+        ("lyrical", "~/odom:=odom", "", ["MR103", "MR105"]),
+    ],
+)
+def test_a_rule_for_a_controller(release: str, rule: str, stack: str, found: list[str]) -> None:
+    assert sorted({code for code, _ in codes(release, rule, stack=stack)}) == found
