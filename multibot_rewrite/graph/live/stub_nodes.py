@@ -61,22 +61,13 @@ def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish
     node = ros.add_node(stubs.session, stub.name, arguments=stub.arguments)
     helpers: dict[str, Any] = {}
     for endpoint in stub.endpoints:
-<<<<<<< HEAD
         if endpoint.helper and endpoint.by not in helpers:
-            words = [word for word in stub.arguments if not word.startswith("__node:=")]
             name = f"{LISTENER}{os.getpid():x}{number:04x}"
             if endpoint.by:
                 name = node.get_name() + endpoint.by.replace("*", f"{os.getpid()}{number}")
-            helpers[endpoint.by] = ros.add_node(
-                stubs.session, name, arguments=_without_empty_options(words)
-            )
+            arguments = stub.process_arguments
+            helpers[endpoint.by] = ros.add_node(stubs.session, name, arguments=arguments)
         owner = helpers[endpoint.by] if endpoint.helper else node
-=======
-        if endpoint.helper and helper is None:
-            name = f"{LISTENER}{os.getpid():x}{number:04x}"
-            helper = ros.add_node(stubs.session, name, arguments=stub.process_arguments)
-        owner = helper if endpoint.helper else node
->>>>>>> main
         yield from _create_endpoint(stubs, owner, endpoint, stub.edges)
 
 
