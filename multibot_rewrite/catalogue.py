@@ -67,6 +67,8 @@ HOMES: tuple[Home, ...] = (
             "companions.params.name_checks",
             "companions.params.unknown_parameters",
             "companions.params.shared_defaults",
+            "companions.params.slashes",
+            "companions.params.release_checks",
         ),
     ),
     Home(

@@ -84,7 +84,8 @@ def parse(path: str, data: bytes) -> dict[str, object]:
     try:
         text = data.decode()
         _check_keys(path, text)
-        return tomllib.loads(text)
+        found: dict[str, object] = tomllib.loads(text)
+        return found
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
         raise UsageError(f"{path}:{line}: it is not UTF-8; save it as UTF-8") from None

@@ -13,6 +13,20 @@ from hypothesis import HealthCheck, Phase, settings
 from paths import CORPUS
 from real_robots import WHEELS, corpus_files, wheel_files
 
+# Files of tests that need more than an Ubuntu has: readers of what is written.
+READERS = {
+    "cli/test_findings.py": ("junitparser",),
+    "lint/test_lint_formats.py": ("junitparser", "markdown_it", "sarif_pydantic"),
+    "lint/test_lint_hooks.py": ("junitparser",),
+}
+collect_ignore = [path for path, needs in READERS.items() if not all(map(find_spec, needs))]
+
+
+def pytest_report_header() -> str:
+    """The files that are left out."""
+    return f"left out, no readers: {', '.join(collect_ignore)}" if collect_ignore else ""
+
+
 settings.register_profile(
     "repeatable",
     derandomize=True,

@@ -23,6 +23,7 @@ ENABLES = "tf_frame_prefix_enable"
 TOKEN = re.compile(r"(?<![A-Za-z0-9_~/.-])[A-Za-z0-9_~/.-]*[A-Za-z0-9_]")
 # Keys that name one frame.
 _FRAME_KEY = re.compile(r"(?:^|_)(?:frame|frame_id|link)$")
+_TOPIC_KEY = re.compile(r"(?:^|_)(?:topic|service)(?:_name)?$", re.IGNORECASE)
 _BETWEEN = "/_-."
 # Values that are not names, such as URLs, substitutions and paths.
 _NOT_A_NAME = re.compile(
@@ -199,7 +200,11 @@ def _wrong_separator(place: ValueInFile) -> Iterator[Finding]:
         for rest in _without(token, word):
             name = rest.strip(_BETWEEN)
             right = bare.get(name, frozenset())
-            if right and not _is_a_new_frame(place, token, name):
+            if (
+                right
+                and not _is_a_new_frame(place, token, name)
+                and not _is_its_topic(place, token, name)
+            ):
                 message = f"{token} should be {' or '.join(sorted(right))}"
                 hint = "remove the robot name from the source; the build adds it"
                 yield OTHER_SEPARATOR.finding(message, hint)
@@ -219,6 +224,14 @@ def _is_a_new_frame(place: ValueInFile, token: str, name: str) -> bool:
     if name in USUAL_FRAMES or any(name in names.declared.get(it, ()) for it in ("link", "frame")):
         return False
     return spell(names._replace(robot=place.own.robot.spec.tag), "frame", name) == token
+
+
+def _is_its_topic(place: ValueInFile, token: str, name: str) -> bool:
+    """Is it a topic of this robot, that is called as one of its sensors, links or joints?"""
+    if not _TOPIC_KEY.search(place.value.key):
+        return False
+    names = place.own.robot.names._replace(robot=place.own.robot.spec.namespace)
+    return spell(names, "topic", name, namespaced=False) == token
 
 
 BARE_FRAME = declare(

@@ -58,9 +58,9 @@ HELPER = "a helper node uses it: only a rule for the whole process reaches it"
 PLACES = """
 ## Where a rule stands
 
-rcl applies a rule only where the node has it. `multibot remap`, `build` and the launch helpers write each
-rule where its node takes it in the release (`--distro`), `rehearse` gives it in the same way, and MR105
-names rules that do not arrive.
+rcl applies a rule only where the node has it. `multibot remap`, `build` and the launch helpers write
+each rule where its node takes it in the release (`--distro`), `rehearse` gives it in the same way, and
+MR105 names rules that do not arrive.
 
 | node | takes rules from | written as |
 |---|---|---|
@@ -72,8 +72,8 @@ names rules that do not arrive.
 | controller of ros2_control | see below | `SPAWNERS`, `robot.spawner()`, `commands.md` |
 
 A costmap of a component has the rules of the component from Nav2 1.5 on, those of the container before.
-On Humble gz_ros2_control starts ROS with the rules of the first robot's plugin, and all its nodes in that
-Gazebo have them; later only nodes without rules of their own.
+On Humble gz_ros2_control starts ROS with the rules of the first robot's plugin, and all its nodes in
+that Gazebo have them; later only nodes without rules of their own.
 `multibot rehearse --without-rules-at spawner` shows what happens where one place is forgotten.
 
 | releases | a controller's rules are given to | rules that it gets besides | source |

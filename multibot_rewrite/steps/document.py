@@ -38,6 +38,7 @@ _ATTRIBUTES = etree.XPath("//@*", smart_strings=False)
 _TEXTS = etree.XPath("/descendant::text()[normalize-space()]", smart_strings=False)
 # How far the common spelling of an attribute is looked for.
 _NEAR = 4096
+CORRECT = "correct the XML and try again"
 _HINTS = (
     ("entity amplification", "DOCTYPE and entities are not accepted; expand them first"),
     ("Excessive depth", "a robot description is never nested this deep"),
@@ -87,14 +88,17 @@ def _refuse_bytes(source: bytes, file: str) -> None:
         width = 32 if b"\0\0" in source[:8] else 16
         name = f"UTF-{width}"
         raise InputError(f"{file}: the text is {name}; convert it: iconv -f {name} -t UTF-8")
+    at = source.find(b"\0")
+    # The libxml2 of Ubuntu 22.04 takes it for the end of the file.
+    if at >= 0 and source[:at].strip():
+        line, column = locate(source, at)
+        raise InputError(f"{file}:{line}:{column}: not well-formed XML: a NUL byte; {CORRECT}")
 
 
 def _syntax_message(error: etree.XMLSyntaxError, file: str) -> str:
     message = " ".join(str(error.msg).split()).partition(", line ")[0]
     message = message.partition(", use XML_PARSE_HUGE")[0].partition(", see xml")[0]
-    hint = next(
-        (hint for start, hint in _HINTS if start in message), "correct the XML and try again"
-    )
+    hint = next((hint for start, hint in _HINTS if start in message), CORRECT)
     line, column = error.position
     return f"{file}:{line or 1}:{column or 1}: not well-formed XML: {message}; {hint}"
 

@@ -65,6 +65,7 @@ def test_the_codes_with_a_fix() -> None:
         "MB128",
         "MB133",
         "MB134",
+        "MB136",
         "MB140",
         "MB141",
         "MB142",

@@ -119,9 +119,9 @@ def test_a_node_in_another_ones_process_gets_its_rules_first(layout: str, tmp_pa
     assert rules[: len(costmap)] == [(f"{name}:{source}", target) for source, target in costmap]
 
 
-CONTROL = FLEET.replace("[nav2, robot_state]", "ros2_control").replace(
-    "layout:", "distro: {{}}\nlayout:"
-)
+def controlled(folder: Path, release: str) -> LoadedRobot:
+    text = f"distro: {release}\n" + FLEET.replace("[nav2, robot_state]", "ros2_control")
+    return fleet(folder, "L1", text).robot("robot2")
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_a_controller_has_its_rules_from_its_spawner_or_its_manager(
 
 
 def test_a_controller_is_no_node_to_start(tmp_path: Path) -> None:
-    its = fleet(tmp_path, "L1", CONTROL.replace("{{}}", "lyrical")).robot("robot2")
+    its = controlled(tmp_path, "lyrical")
     for asked in (its.node, its.table.for_node):
         with pytest.raises(
             UsageError, match=r"its spawner .* robot\.spawner\('diff_drive_controller'\)"

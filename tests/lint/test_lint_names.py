@@ -203,6 +203,22 @@ def test_a_usd_name_that_is_taken_is_told() -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "made"),
+    [
+        ("1", "'tn__1_' in Isaac Sim 6, '_1' in others"),
+        ("00_fr", "'tn__00_fr_' in Isaac Sim 6, '_00_fr' in others"),
+        ("left/wheel", "'tn__leftwheel_' and a code in Isaac Sim 6, 'left_wheel' in others"),
+        ("-", "'tn__' and a code in Isaac Sim 6, '_' in others"),
+    ],
+)
+def test_usd_names_are_those_of_isaac_sim(name: str, made: str) -> None:
+    """What usd-exchange 3.0.1 makes: tn__1_, tn__00_fr_, tn__leftwheel_eE, tn__j0."""
+    text = f'<robot name="r">{linked(name, "b", "j")}</robot>'
+    (found,) = lint_data("r.urdf", text.encode(), Settings(("MB320",), targets=("usd",)))
+    assert found.message.endswith(f"it becomes {made}")
+
+
+@pytest.mark.parametrize(
     ("body", "fixed"),
     [
         # The frame without its slash is a link: the slash goes.

@@ -14,6 +14,7 @@ import pytest
 from urdfdom_cases import (
     CHECK,
     DECLARED,
+    INERTIA,
     JOINTS,
     LINKS,
     VERSIONS,
@@ -130,6 +131,27 @@ def test_the_shape_of_a_capsule_is_a_matter_of_gazebo_alone() -> None:
     assert "MB134" not in codes(robot("1.1", capsule))
     assert "MB134" in codes(robot("1.1", f'{capsule}<gazebo reference="a"/>'))
     assert "MB134" not in codes(robot("1.0", f'{capsule}<gazebo reference="a"/>'))
+
+
+@pytest.mark.skipif(
+    importlib.util.find_spec("mujoco") is None, reason="mujoco is missing: pip install mujoco"
+)
+@pytest.mark.parametrize("quaternion", ["0 0 0.6 0.8", "0.5 -0.5 0.5 -0.5", "0 0 0.6 -80"])
+def test_mujoco_reads_the_rotation_after_the_fix_alone(quaternion: str) -> None:
+    import mujoco  # takes half a second
+
+    def turn(text: str) -> np.ndarray:
+        model = mujoco.MjModel.from_xml_string(text)
+        data = mujoco.MjData(model)
+        mujoco.mj_forward(model, data)
+        return data.body("b").xmat.reshape(3, 3)
+
+    heavy = f'<link name="b"><inertial>{INERTIA}</inertial></link>'
+    text = robot("1.1", turned(f'quat_xyzw="{quaternion}"').replace('<link name="b"/>', heavy))
+    x, y, z, w = map(float, quaternion.split())
+    after = fix("r.urdf", text.encode(), Settings(targets=("mjcf",)))[0].decode()
+    assert np.array_equal(turn(text), np.eye(3))
+    assert np.abs(turn(after) - np.array(matrix_of_quaternion((x, y, z, w)))).max() <= EXACT
 
 
 # ---------------------------------------------------------------- rotations
@@ -315,6 +337,22 @@ def test_two_rotations_of_which_one_is_ignored_differ() -> None:
     assert fixed(text) == text
     same = robot("1.0", turned('rpy="0 0 0" quat_xyzw="0 0 0 1"'))
     assert fixed(same) == robot("1.0", turned('rpy="0 0 0"'))
+
+
+def test_nearly_the_same_is_another_rotation() -> None:
+    twice = robot("1.1", turned('rpy="0 0 0.001" quat_xyzw="0 0 0.00049999999 0.99999987"'))
+    assert fixed(twice) == twice
+    once = robot("1.1", turned('rpy="0 0 1" quat_xyzw="0 0 0.479425538604203 0.8775825618903728"'))
+    assert "rpy" not in fixed(once)
+
+
+def test_a_quaternion_without_a_length_is_no_rotation() -> None:
+    zeros = robot("1.1", turned('quat_xyzw="0 0 0 0"'))
+    assert "MB127" in codes(zeros)
+    assert fixed(zeros, "jazzy") == robot("1.0", turned('rpy="0 0 0"'))
+    large = robot("1.1", turned('quat_xyzw="1e200 0 0 1e200"'))
+    assert fixed(large, "jazzy") == robot("1.0", turned('rpy="0 0 0"'))
+    assert "MB127" not in codes(robot("1.0", turned('quat_xyzw="0 0 0 0"')))
 
 
 def test_quotes_line_ends_and_comments_stay() -> None:

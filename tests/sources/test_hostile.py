@@ -269,7 +269,8 @@ def test_a_user_can_ask_for_the_fences(capsys: pytest.CaptureFixture[str]) -> No
 HELD = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:property name="load" value="${(lambda: [c for c in ().__class__.__base__.__subclasses__()
     if c.__name__ == 'catch_warnings'][0]()._module.__builtins__['__import__'])()}"/>
-  <link name="${[i for i in range(64) if load('os').path.exists('/proc/self/fd/' + str(i))]}"/>
+  <link name="${[load('os').readlink('/proc/self/fd/' + str(i)) for i in range(64)
+    if load('os').path.exists('/proc/self/fd/' + str(i))]}"/>
   <link name="${list(load('os').environ)} ${load('os').readlink('/proc/self/cwd')}"/>
 </robot>"""
 
@@ -284,7 +285,10 @@ def test_a_child_has_nothing_but_its_socket(tmp_path: Path) -> None:
     with open(tmp_path / "open", "wb"):
         text = expand(str(tmp_path / "r.xacro"), {}, reach=Reach(trust=True)).decode()
     descriptors, rest = re.findall('link name="(.*)"', text)
-    assert len(descriptors.split(",")) == 4
-    assert descriptors.startswith("[0, 1, 2, ")
+    opened = re.findall(r"'(.*?)'", descriptors)
+    # libffi from 3.5 on, which ctypes loads, keeps its own library open to map it.
+    held = [it for it in opened if not re.search(r"/libffi(-\w+)?\.so", it)]
+    assert held[:3] == [os.devnull] * 3
+    assert [it.partition(":")[0] for it in held[3:]] == ["socket"]
     variables, _, folder = rest.partition("] ")
     assert (set(re.findall(r"\w+", variables)) - OF_PYTHON, folder) == (set(), "/")

@@ -37,23 +37,35 @@ from multibot_rewrite.remap.yaml_with_lines import (
 NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "interface")
 GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
 OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
-KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, "off", "exclusive", "keep")
+SWITCH_KINDS = ("off", "no_prefix")
+KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, "exclusive", "keep")
 # Placeholders for a segment of a path; an id holds no name of a robot.
 SEGMENTS = ("joint", "sensor", "gpio", "frame", "interface", "controller", "group", "id")
-NODE_WORDS = ("package", "aliases", "types", "known_by", "absolute", "note", "params")
+NODE_WORDS = (
+    "package",
+    "aliases",
+    "types",
+    "deprecated_types",
+    "known_by",
+    "absolute",
+    "strips",
+    "note",
+    "params",
+)
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS)
-PARAM_KEYS = ("kind", "default", "list", "absolute", "note", *FACT_KEYS)
+PARAM_KEYS = ("kind", "default", "list", "absolute", "deprecated", "note", *FACT_KEYS)
 # Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")
 _INDEX = "<index>"
+NO_TYPES: Mapping[str, str] = {}
 
 
 class Param(NamedTuple):
     """A parameter by its dotted path: what its value is, and its default.
 
     ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
-    relative topic in it is not resolved in the robot's namespace, empty for none; ``source`` are the
-    places where it can be read.
+    relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
+    it, both empty for none; ``source`` are the places where it can be read.
     """
 
     path: str
@@ -64,6 +76,7 @@ class Param(NamedTuple):
     absolute: str = ""
     note: str = ""
     source: tuple[str, ...] = ()
+    deprecated: str = ""
 
 
 class Branch(NamedTuple):
@@ -80,7 +93,8 @@ class KnownNode(NamedTuple):
     """A node's parameters; ``types`` are controller types, ``known_by`` parameters that identify the
     node if its section has another name, ``defaults`` parameters that hold one name by default in the
     release that was asked for. What a release lacks is known all the same: where a file sets it, it
-    is for a release that has it."""
+    is for a release that has it. ``strips`` are the releases in which the node takes off a
+    slash that a frame starts with, empty for none; ``deprecated_types`` has those of types."""
 
     name: str
     package: str
@@ -93,6 +107,8 @@ class KnownNode(NamedTuple):
     defaults: tuple[Param, ...]
     releases: str = ""
     source: tuple[str, ...] = ()
+    strips: str = ""
+    deprecated_types: Mapping[str, str] = NO_TYPES
 
 
 class KnownNodes(NamedTuple):
@@ -206,7 +222,14 @@ def _node(name: str, item: YamlItem, old: KnownNode | None, release: str) -> Kno
         tuple(it for it in there if has_default(it)),
         releases,
         source_of(keys) or (old.source if old else ()),
+        releases_of(keys, "strips") or (old.strips if old else ""),
+        {**(old.deprecated_types if old else {}), **_deprecated_types(keys)},
     )
+
+
+def _deprecated_types(keys: Mapping[str, YamlItem]) -> dict[str, str]:
+    given = table_of(keys, "deprecated_types")
+    return {type_: releases_of(given, type_) for type_ in given}
 
 
 def has_default(param: Param) -> bool:
@@ -239,6 +262,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         releases_of(keys, "absolute") or (absolute if kind == "topic" else ""),
         word_of(keys, "note"),
         source_of(keys),
+        releases_of(keys, "deprecated"),
     )
 
 

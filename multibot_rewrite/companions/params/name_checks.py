@@ -10,12 +10,13 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import (
     expressible,
     frames_differ,
+    is_component,
     is_plain,
     is_shared_frame,
 )
 from multibot_rewrite.companions.names.rename_map import is_declared
 from multibot_rewrite.companions.params.name_sites import NameSite
-from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.params.values import ParamsJob, renamed
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
@@ -32,6 +33,8 @@ def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
         yield from _undeclared_frame(job, site)
     elif site.kind in ("joint", "link", "sensor"):
         yield from _undeclared(job, site)
+    elif site.kind == "interface":
+        yield from _undeclared_interface(job, site)
     elif site.kind in ("topic", "service"):
         yield from _invalid_topic(job, site)
     elif site.kind in ("stem", "link_prefix", "joint_prefix"):
@@ -49,8 +52,9 @@ UNDECLARED = declare(
     "parameter-names-unknown-joint",
     WARNING,
     what="A parameter names a joint, link or sensor that is not in the description.",
-    why="It stays as it is. A controller with a joint that no hardware has fails to start (no such "
-    "interface), and a plugin waits for a link that never comes.",
+    why="A joint stays as it is, a link or sensor gets the robot's name all the same. A controller "
+    "with a joint that no hardware has fails to start (no such interface), and a plugin waits for a "
+    "link that never comes.",
     fix="Correct the name; the nearest one is in the message.",
     bad="""\
 joint_trajectory_controller:
@@ -75,8 +79,22 @@ def _undeclared(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
     if site.param is None or chained or not _is_unknown(job, site, known):
         return
     message = f"{site.kind} {value!r} is not in the description"
-    hint = did_you_mean(value, known) or "it stays unchanged; correct it"
+    text = renamed(job.context, site)
+    now = "it stays unchanged" if text == site.value else f"it becomes {text} all the same"
+    hint = did_you_mean(value, known) or f"{now}; correct it"
     yield found_at(job.document, site.scalar, UNDECLARED, message, hint)
+
+
+def _undeclared_interface(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
+    """``joint1/position`` of an unknown controller: other ones may be another controller's."""
+    owner, slash, _ = site.value.rpartition("/")
+    known = job.context.names.declared.get("joint", {})
+    if site.param or not slash or "/" in owner or not known or not is_plain(site.value):
+        return
+    if not is_component(job.context, owner):
+        message = f"{owner!r} of interface {site.value!r} is not in the description"
+        hint = did_you_mean(owner, known) or "it stays unchanged; correct it"
+        yield found_at(job.document, site.scalar, UNDECLARED, message, hint)
 
 
 UNDECLARED_FRAME = declare(

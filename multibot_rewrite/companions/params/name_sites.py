@@ -21,7 +21,9 @@ _STEM = re.compile(r"(.*?)\d+")
 # Segments of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
 # An empty prefix is replaced as well.
-_TAKE_EMPTY = ("link_prefix", "joint_prefix")
+_TAKE_EMPTY = ("link_prefix", "joint_prefix", "no_prefix")
+# ~ is no text for YAML.
+_ANY_TYPE = ("off", "no_prefix", "exclusive")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
 
 
@@ -145,8 +147,8 @@ def _values(
     for scalar in scalars:
         if not isinstance(scalar, yaml.ScalarNode):
             continue
-        # These kinds may hold booleans and numbers.
-        text = str(scalar.value) if kind in ("off", "exclusive") else name_in(scalar)
+        # Some kinds may hold booleans and numbers.
+        text = str(scalar.value) if kind in _ANY_TYPE else name_in(scalar)
         if not text and not (scalar.style and kind in _TAKE_EMPTY):
             continue
         kind = kind or guess(known, key.value)

@@ -14,6 +14,7 @@ from multibot_rewrite.companions.names.node_topics import facts_by_name
 from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
 from multibot_rewrite.companions.params.name_checks import name_findings
 from multibot_rewrite.companions.params.name_sites import SectionNames, find_names
+from multibot_rewrite.companions.params.release_checks import release_findings
 from multibot_rewrite.companions.params.robot_names import (
     namespace_findings,
     placeholders_in_key,
@@ -34,6 +35,7 @@ from multibot_rewrite.companions.params.shared_defaults import (
     sources_without_topic,
     without_section,
 )
+from multibot_rewrite.companions.params.slashes import slash_findings
 from multibot_rewrite.companions.params.unknown_parameters import guessed_names, unclaimed_names
 from multibot_rewrite.companions.params.values import ParamsJob, name_splices
 from multibot_rewrite.companions.template import (
@@ -121,10 +123,12 @@ def _about_sections(
 def _about_names(job: ParamsJob, section: ParamSection, names: SectionNames) -> Iterator[Finding]:
     for site in names.sites:
         yield from name_findings(job, site)
+        yield from slash_findings(job, section, site)
     yield from placeholders_in_names(job.document, names)
     yield from key_findings(job.document, names)
     yield from guessed_names(job, section, names)
     yield from sources_without_topic(job, section)
+    yield from release_findings(job, section)
 
 
 def _once(findings: Iterable[Finding]) -> tuple[Finding, ...]:

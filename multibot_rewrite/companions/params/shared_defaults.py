@@ -19,7 +19,7 @@ from multibot_rewrite.companions.params.sections import (
     flattened,
     pattern_of,
 )
-from multibot_rewrite.companions.params.values import ParamsJob
+from multibot_rewrite.companions.params.values import NO_PREFIX, ParamsJob
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, quoted
 from multibot_rewrite.findings.finding import WARNING, Finding
@@ -74,6 +74,8 @@ def missing_defaults(context: Context, node: KnownNode, here: set[str]) -> Itera
             continue
         if param.kind == "off":
             yield DefaultLine(OFF, param.path, "false")
+        elif param.kind == "no_prefix":
+            yield DefaultLine(OFF, param.path, quoted(NO_PREFIX))
         elif param.kind in _FRAMES and expressible(context, param.kind):
             text = SPELLERS[param.kind](context, param.default)
             if text != param.default:

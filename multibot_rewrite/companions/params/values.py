@@ -8,7 +8,7 @@ from typing import NamedTuple
 import yaml
 
 from multibot_rewrite.companions.context import Context
-from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component
+from multibot_rewrite.companions.names.by_kind import SPELLERS, is_component, is_plain
 from multibot_rewrite.companions.names.node_topics import (
     FROM_NODE,
     FROM_PARENT,
@@ -23,8 +23,10 @@ from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import Splice, YamlText, found_at, pairs, replaced
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.releases import RELEASES, has_release
 
+# Controllers make an empty prefix of it; an empty parameter may stand for the namespace.
+NO_PREFIX = "/"
 # Kinds that are only guessed where the description declares the name.
 _UNSURE = ("frame", "sensor", "interface")
 
@@ -56,9 +58,11 @@ def name_splices(
         elif site.kind in ("topic", "service"):
             yield from _topic(job, section, site)
         elif site.kind in SPELLERS:
-            yield from _replaced(job, site, renamed(job.context, site))
+            yield from _replaced(job, site, renamed(job.context, _as_read(job, section, site)))
         elif site.kind == "off":
             yield from _off(job, site)
+        elif site.kind == "no_prefix":
+            yield from _no_prefix(job, site)
     for key, words in keys.values():
         if (text := ".".join(words)) != key.value:
             yield replaced(key, text)
@@ -72,6 +76,18 @@ def renamed(context: Context, site: NameSite) -> str:
         return site.value
     speller = SPELLERS.get(site.kind)
     return speller(context, site.value) if speller else site.value
+
+
+def is_stripped(job: ParamsJob, section: ParamSection, site: NameSite) -> bool:
+    """Does the node take off a slash that this frame starts with?"""
+    words = section.node.strips if section.node and site.kind == "frame" else ""
+    return bool(words) and site.at < 0 and has_release(words, job.context.distro)
+
+
+def _as_read(job: ParamsJob, section: ParamSection, site: NameSite) -> NameSite:
+    if not is_stripped(job, section, site) or not is_plain(site.value):
+        return site
+    return site._replace(value=site.value.removeprefix("/"))
 
 
 def _is_certain(context: Context, site: NameSite) -> bool:
@@ -207,7 +223,8 @@ UNCLEAR_SWITCH = declare(
     "MF116",
     "frame-prefix-switch-unclear",
     WARNING,
-    what="A launch file sets a parameter that must be false, because it adds the namespace to frames.",
+    what="A launch file sets a parameter that must be false, or a prefix that must be /, because it "
+    "adds the namespace to frames.",
     why="The frames have the robot's name already. With true, odom becomes robot1/robot1/odom, and no "
     "transform is found (ros2_controllers #482, #1048).",
     fix="Write false, or make sure that the launch file sets false.",
@@ -223,6 +240,7 @@ diff_drive_controller:
 """,
     line=3,
     formats=("params",),
+    options={"distro": "kilted"},
 )
 
 
@@ -230,7 +248,22 @@ def _off(job: ParamsJob, site: NameSite) -> Iterator[Splice | Finding]:
     """A switch that makes the node put a namespace before frames that are renamed already."""
     if site.value.lower() in ("true", "yes", "on", "y"):
         yield Splice(site.scalar.start_mark.index, site.scalar.end_mark.index, "false")
-    elif "$" in site.value or "<" in site.value:
+    elif _is_open(site):
         message = f"{site.key.value} is {site.value} and must turn out false"
         hint = "true adds the namespace to frames that already have the robot's name"
         yield found_at(job.document, site.scalar, UNCLEAR_SWITCH, message, hint)
+
+
+def _no_prefix(job: ParamsJob, site: NameSite) -> Iterator[Splice | Finding]:
+    """A prefix for frames that are renamed already; a default says what an empty one stands for."""
+    if _is_open(site):
+        message = f"{site.key.value} is {site.value} and must turn out {NO_PREFIX}"
+        hint = "a prefix is put before frames that already have the robot's name"
+        yield found_at(job.document, site.scalar, UNCLEAR_SWITCH, message, hint)
+    elif site.value != NO_PREFIX and (site.value or (site.param and site.param.default)):
+        yield replaced(site.scalar, NO_PREFIX)
+
+
+def _is_open(site: NameSite) -> bool:
+    """Does only a launch file tell the value?"""
+    return "$" in site.value or "<" in site.value

@@ -105,8 +105,7 @@ def rotation_twice(subject: Subject) -> Iterator[Problem]:
     "no-rotation",
     WARNING,
     what="A quat_xyzw has no length: four zeros, or numbers too small or too large to square.",
-    why="urdfdom divides by the length and takes it for no rotation; MuJoCo and others refuse it or "
-    "compute with nan.",
+    why="urdfdom divides by the length, and takes what has none for no rotation, without a word.",
     fix="Write x, y, z and w of a quaternion of length 1; 0 0 0 1 is no rotation.",
     bad=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 0"/>')),
     good=_robot("1.1", _joint('<origin quat_xyzw="0 0 0 1"/>')),
@@ -262,6 +261,31 @@ def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
         if reader.reads != CAPSULE:
             message = f"{reader} draws no <capsule> of link {link.get('name')!r}"
             yield Problem(shapes[0], message)
+
+
+@rule(
+    "MB136",
+    "quaternion-in-mujoco",
+    WARNING,
+    what="A quat_xyzw in a file of URDF 1.1 or 1.2 (checked with the target mjcf).",
+    why="MuJoCo (4.0.0) reads rpy alone and says nothing: the joint or shape is not turned.",
+    fix="Write rpy; --fix does.",
+    bad=_robot("1.1", _joint(_TURNED)),
+    good=_robot("1.1", _joint('<origin rpy="0 0 3.14"/>')),
+    fixed=_robot("1.1", _joint('<origin rpy="0 0 3.141592653589793"/>')),
+    line=6,
+    options={"targets": ("mjcf",)},
+)
+def quaternion_in_mujoco(subject: Subject) -> Iterator[Problem]:
+    """With a fix; what urdfdom does not read or refuses, other rules report."""
+    root = subject.document.root
+    if "mjcf" not in subject.settings.targets or version_of(root) < QUATERNIONS:
+        return
+    for origin in rotated_origins(root):
+        if origin.get("rpy") is None:
+            message = f"quat_xyzw is {origin.get('quat_xyzw')!r}, which MuJoCo does not read"
+            edits = as_rpy(_text(subject), origin)
+            yield Problem(origin, message, "quat_xyzw", "write rpy", edits)
 
 
 def _links_with_capsules(

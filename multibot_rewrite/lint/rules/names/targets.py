@@ -35,8 +35,22 @@ def no_usd_name(subject: Subject) -> Iterator[Problem]:
             made = re.sub(r"\W", "_", name, flags=re.ASCII)
             made = f"_{made}" if made[0].isdigit() else made
             taken = ", which already exists" if made in names else ""
-            message = f"{kind} {name!r} is not a valid USD identifier: it becomes {made!r}{taken}"
+            message = (
+                f"{kind} {name!r} is not a valid USD identifier: it becomes {_encoded(name)} in Isaac "
+                f"Sim 6, {made!r}{taken} in others"
+            )
             yield Problem(element, message, "name", f"use {made!r}")
+
+
+def _encoded(name: str) -> str:
+    """The name as Isaac Sim 6 spells it: what a prim may have, then a code of all else.
+
+    Source: what usd-exchange 3.0.1 makes of names (getValidPrimName); strands-labs/robots#1902.
+    """
+    plain = re.sub(r"\W", "", name, flags=re.ASCII)
+    if plain == name:
+        return repr(f"tn__{name}_")
+    return f"'tn__{plain}_' and a code" if plain else "'tn__' and a code"
 
 
 @rule(

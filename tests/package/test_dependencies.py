@@ -1,0 +1,134 @@
+"""What the package imports is what package.xml and pyproject.toml ask for; each Python is named."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from paths import ROOT
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
+
+TOML: dict[str, Any] = tomllib.loads((ROOT / "pyproject.toml").read_text())
+PROJECT = TOML["project"]
+MANIFEST = ET.parse(ROOT / "package.xml").getroot()
+# Python from that of Ubuntu 22.04 (Humble) to that of 26.04 (Lyrical).
+FIRST, LAST = (3, 10), (3, 14)
+# Name on PyPI -> in package.xml. tomli has no key of rosdep: setup.py says how to get it.
+KEYS = {
+    "lxml": "python3-lxml",
+    "PyYAML": "python3-yaml",
+    "rich": "python3-rich",
+    "jsonschema": "python3-jsonschema",
+    "xacro": "xacro",
+    "tomli": None,
+}
+# Module -> its package in package.xml, where that is another word.
+MODULES = {
+    "lxml": "python3-lxml",
+    "yaml": "python3-yaml",
+    "rich": "python3-rich",
+    "jsonschema": "python3-jsonschema",
+}
+# Modules that the package goes without, or that no key of rosdep is for.
+UNASKED = {"tomli", "tree_sitter", "tree_sitter_cpp"}
+# What the tests import before anything else, and the options of pytest in pyproject.toml need.
+OF_TESTS = {
+    "python3-hypothesis",
+    "python3-numpy",
+    "python3-pytest",
+    "python3-pytest-xdist",
+    "python3-setuptools",
+}
+# The versions of Ubuntu 22.04, which is the oldest.
+OLDEST = {"lxml": "4.8", "xacro": "2.0", "PyYAML": "5.4", "rich": "11", "jsonschema": "3.2"}
+SOURCES = sorted(
+    path for folder in ("multibot_rewrite", "tests") for path in (ROOT / folder).rglob("*.py")
+)
+
+
+def wanted(kind: str) -> set[str]:
+    return {it.text or "" for it in MANIFEST.iter(kind)}
+
+
+def imported(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (it.name.partition(".")[0] for it in node.names)
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            yield (node.module or "").partition(".")[0]
+
+
+def test_every_dependency_of_pip_is_one_of_ros() -> None:
+    names = {re.split(r"[><=; ]", it)[0] for it in PROJECT["dependencies"]}
+    assert names == KEYS.keys()
+    assert {key for key in KEYS.values() if key} <= wanted("exec_depend")
+
+
+def test_every_import_is_a_dependency_of_ros() -> None:
+    files = [it for it in SOURCES if it.is_relative_to(ROOT / "multibot_rewrite")]
+    found = {name for path in files for name in imported(path)}
+    others = found - sys.stdlib_module_names - {"multibot_rewrite"} - UNASKED
+    assert {MODULES.get(it, it) for it in others} - wanted("exec_depend") == set()
+
+
+def test_the_tests_ask_for_what_they_start_with() -> None:
+    assert wanted("test_depend") == OF_TESTS
+
+
+def test_the_oldest_versions_are_those_that_are_tried() -> None:
+    lowest = dict(re.findall(r"^(\w+)>=([\d.]+)", "\n".join(PROJECT["dependencies"]), re.MULTILINE))
+    assert lowest == {**OLDEST, "tomli": "1.1"}
+    assert "tomli>=1.1; python_version < '3.11'" in PROJECT["dependencies"]
+
+
+def test_tomli_is_said_where_no_key_is() -> None:
+    assert "python3-tomli" in (ROOT / "package.xml").read_text()
+    assert "python3-tomli" in (ROOT / "setup.py").read_text()
+
+
+def test_the_pythons_are_named_alike_everywhere() -> None:
+    minors = range(FIRST[1], LAST[1] + 1)
+    named = [it for it in PROJECT["classifiers"] if re.search(r":: 3\.\d+$", it)]
+    assert named == [f"Programming Language :: Python :: 3.{minor}" for minor in minors]
+    assert PROJECT["requires-python"] == f">=3.{FIRST[1]}"
+    assert TOML["tool"]["ruff"]["target-version"] == f"py3{FIRST[1]}"
+    guide = (ROOT / "CONTRIBUTING.md").read_text()
+    assert f"Python 3.{FIRST[1]} to 3.{LAST[1]}" in guide
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda it: it.stem)
+def test_the_first_python_reads_every_file(path: Path) -> None:
+    ast.parse(path.read_text(), feature_version=FIRST)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("version", [FIRST, LAST], ids=["first", "last"])
+def test_mypy_finds_nothing_for_the_first_and_the_last_python(
+    version: tuple[int, int], tmp_path: Path
+) -> None:
+    """It knows from which Python to which a name of the standard library is there."""
+    about = ["--python-version", "{}.{}".format(*version), "--cache-dir", str(tmp_path)]
+    command = [sys.executable, "-m", "mypy", *about]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_releases_of_ubuntu_get_what_the_manifest_names() -> None:
+    """The script takes the packages from package.xml; one with a condition is ROS's."""
+    script = (ROOT / "tests" / "in_ubuntu.sh").read_text()
+    (pattern,) = re.findall(r"sed -n 's/(.*)/\\1/p'", script)
+    posix = pattern.replace(r"\(", "(").replace(r"\)", ")")
+    found = set(re.findall(posix, (ROOT / "package.xml").read_text()))
+    ours = wanted("exec_depend") | wanted("test_depend")
+    assert found == {it for it in ours if it.startswith("python3-")}

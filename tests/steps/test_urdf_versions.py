@@ -1,0 +1,69 @@
+"""Descriptions of URDF 1.1 and 1.2 are rewritten like those of 1.0."""
+
+from __future__ import annotations
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+from urdfdom_cases import CHECK, check_urdf
+
+from multibot_rewrite import rewrite, strip
+
+ROBOT = """\
+<robot name="arm" version="{}">
+  <link name="base_link"/>
+  <link name="tool">
+    <collision>
+      <origin quat_xyzw="0 0 0.6 0.8"/><geometry><capsule length="1" radius="0.1"/></geometry>
+    </collision>
+  </link>
+  <joint name="elbow" type="continuous">
+    <parent link="base_link"/><child link="tool"/><origin xyz="1 0 0" quat_xyzw="0 0.6 0 0.8"/>
+    <limit effort="1" velocity="1"{}/>
+  </joint>
+  <gazebo reference="tool"><sensor name="touch" type="contact">
+    <contact><collision>tool_collision</collision></contact>
+  </sensor></gazebo>
+</robot>
+"""
+FILES = {
+    "1.1": ROBOT.format("1.1", ""),
+    "1.2": ROBOT.format("1.2", ' acceleration="2" deceleration="3" jerk="5"'),
+}
+
+
+@pytest.mark.parametrize("version", FILES)
+def test_only_names_change_and_come_back(version: str) -> None:
+    text = FILES[version].encode()
+    result = rewrite(text, "robot1")
+    changed = result.data.decode()
+    assert result.not_proved == ()
+    assert f'version="{version}"' in changed and "<collision>tool/robot1_collision<" in changed
+    for name in ("base_link", "tool"):
+        changed = changed.replace(f"{name}/robot1", name)
+    for name in ("arm", "elbow", "touch"):
+        changed = changed.replace(f"{name}_robot1", name)
+    assert changed.encode() == text
+    assert strip(result.data, "robot1") == text
+
+
+@pytest.mark.skipif(CHECK is None, reason="check_urdf is missing: pip install pin")
+@pytest.mark.parametrize("version", FILES)
+def test_urdfdom_has_nothing_to_say_of_them(version: str, tmp_path: Path) -> None:
+    text = rewrite(FILES[version].encode(), "robot1").data.decode()
+    assert check_urdf(text, tmp_path) == (True, False)
+
+
+@pytest.mark.skipif(
+    importlib.util.find_spec("pinocchio") is None, reason="pinocchio is missing: pip install pin"
+)
+@pytest.mark.parametrize("version", FILES)
+def test_every_pose_is_what_it_was(version: str) -> None:
+    import pinocchio as pin  # takes half a second
+
+    before = pin.buildModelFromXML(FILES[version])
+    after = pin.buildModelFromXML(rewrite(FILES[version].encode(), "robot1").data.decode())
+    for one, other in zip(before.jointPlacements, after.jointPlacements, strict=True):
+        assert np.array_equal(one.homogeneous, other.homogeneous)

@@ -1,0 +1,50 @@
+"""Parameter files of two robots' fleets, rewritten: what becomes of a section."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from multibot_rewrite.companions.context import Context, make_context
+from multibot_rewrite.companions.params.rewrite import rewrite_params
+from multibot_rewrite.companions.template import fill_template
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.naming import make_naming
+from multibot_rewrite.remap.stacks import load_stack
+
+LINKS = ("base_link", "base_footprint", "laser", "tool0")
+JOINTS = ("left_wheel", "right_wheel", "shoulder", "elbow")
+SENSORS = ("imu_sensor",)
+DECLARED = {
+    "link": dict.fromkeys(LINKS),
+    "joint": dict.fromkeys(JOINTS),
+    "sensor": dict.fromkeys(SENSORS),
+    "model": {},
+    "group": {},
+    "frame": {},
+}
+L1, L2, L3, L4 = ("L1", "prefix"), ("L2", "prefix"), ("L3", "prefix"), ("L4", "postfix")
+
+
+def setting(policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object) -> Context:
+    layout, affix = policy
+    naming = make_naming(layout=layout, affix=affix, **more)  # type: ignore[arg-type]
+    facts = [*load_stack("nav2"), *load_stack("ros2_control"), *load_stack("slam_toolbox")]
+    return make_context(DECLARED, naming, dict.fromkeys(facts), distro)  # type: ignore[arg-type]
+
+
+def made(
+    text: str, policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object
+) -> tuple[str, tuple[Finding, ...]]:
+    """The file for robot1 (in the graph) and r1 (in frames), and what is told about it."""
+    companion = rewrite_params(read_yaml(text.encode(), "p.yaml"), setting(policy, distro), **more)  # type: ignore[arg-type]
+    return fill_template(companion.template, "robot1", "r1"), companion.findings
+
+
+def codes(findings: Iterable[Finding]) -> list[str]:
+    return [it.code for it in findings]
+
+
+def section(node: str, *lines: str) -> str:
+    below = "".join(f"    {line}\n" for line in lines)
+    return f"{node}:\n  ros__parameters:\n{below}"
