@@ -15,11 +15,11 @@ from multibot_rewrite.checks.twice import already_rewritten
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding, RewriteRefused
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.model import InputError
-from multibot_rewrite.naming import Naming, overlap
+from multibot_rewrite.naming import TWIN, Naming, overlap
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import stripped_names
 from multibot_rewrite.rewriters.tree import Tree
-from multibot_rewrite.sources.own_names import OF_ALL, TWIN, OwnSource
+from multibot_rewrite.sources.own_names import OF_ALL, OwnSource
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, SRDF, Inventory, collect
 from multibot_rewrite.steps.document import read_document, slot_values
@@ -51,8 +51,9 @@ def prepare(
     missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
     findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
-    values = slot_values(inventory.document.root)
-    findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
+    names = _mentionable(inventory, plan.renames)
+    values = slot_values(inventory.document.root) if names else []
+    findings += find_mentions(inventory, values, names, tree)
     pieces = cut(source, plan.edits)
     if inventory.format != SRDF:  # it starts nothing
         found = (

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Run the tests with the Python and the dependencies of an Ubuntu release: those of package.xml, as apt has them.
 #   sudo tests/in_ubuntu.sh jammy|noble|resolute [words for pytest]
-# Needs debootstrap and 1 GB in /var/tmp, where the release stays for the next run; xacro comes from PyPI.
+# Needs debootstrap, pip and 1 GB in /var/tmp, where the release stays for the next run; xacro comes from PyPI.
 set -eu
 release=$1
 shift
@@ -10,8 +10,8 @@ root=/var/tmp/multibot-$release
 packages=$(sed -n 's/.*<[a-z]*_depend>\(python3-[a-z-]*\)<.*/\1/p' "$here/package.xml" | paste -sd, -)
 if [ ! -e "$root/ready" ]; then
   debootstrap --variant=minbase --components=main,universe \
-    --include="python3,$packages,python3-tomli,python3-pip,git" "$release" "$root" http://archive.ubuntu.com/ubuntu
-  chroot "$root" sh -c 'python3 -m pip install --no-deps xacro || python3 -m pip install --no-deps --break-system-packages xacro'
+    --include="python3,$packages,python3-tomli,git" "$release" "$root" http://archive.ubuntu.com/ubuntu
+  python3 -m pip install --no-deps --target "$root/usr/lib/python3/dist-packages" xacro
   touch "$root/ready"
 fi
 mkdir -p "$root/package"

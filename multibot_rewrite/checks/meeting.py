@@ -7,15 +7,13 @@ from itertools import islice
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.model import InputError, ProofError
-from multibot_rewrite.naming import TOPIC_KINDS, Naming
+from multibot_rewrite.naming import TOPIC_KINDS, TWIN, Naming
 from multibot_rewrite.readback.meeting import meetings, same_for_all
 from multibot_rewrite.readback.reading import FRAME, NODE, RuntimeName, read
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.steps.apply import fill
 from multibot_rewrite.steps.document import Document
 
-# Stands for a robot: a word that is in no file and no vocabulary.
-TWIN = "multibot_twin"
 SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
 SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP})
 

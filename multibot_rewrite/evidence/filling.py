@@ -146,21 +146,23 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
 def _named(endpoint: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
     """The endpoint under the names that its parameter sets; under its own where none is set."""
     names = list(_set_names(endpoint.parameter, values))
-    for name in filter(None, names):
-        yield endpoint._replace(name=name, fixed="", when="", condition="")
+    for parameter, name in names:
+        if name:
+            set_ = endpoint._replace(name=name, parameter=parameter)
+            yield set_._replace(fixed="", when="", condition="")
     if not names and "<" not in endpoint.name:
         fixed = endpoint.fixed if endpoint.fixed and not endpoint.parameter else ""
         yield endpoint._replace(condition="", fixed=fixed)
 
 
-def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[str]:
-    """The topics in a parameter: of all that match where it is a pattern, of a list each. An empty
-    text is one, too: it stands for no topic."""
+def _set_names(parameter: str, values: Mapping[str, Given]) -> Iterator[tuple[str, str]]:
+    """Parameters and the topics in them: of all that match a pattern, of a list each. An empty text
+    is one, too: it stands for no topic."""
     pattern = _pattern(parameter)
     for name, given in values.items():
         if pattern.fullmatch(name):
             words = _words(given) if isinstance(given.value, list) else [str(given.value)]
-            yield from (it for it in words if not it or not check_topic_name(it))
+            yield from ((name, it) for it in words if not it or not check_topic_name(it))
 
 
 def _pattern(parameter: str) -> re.Pattern[str]:

@@ -93,12 +93,13 @@ def nodes_of(
     ]
     names = {it.name for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.name in names}
-    sent = {child for node in kept for child in _children(node)}
+    sent = {child for node in kept for child in children_of(node)}
     for it in (it for it in given if it.name not in names and _may_run(it, known)):
         node = _added(it, known)
-        doubtful = not it.manager and (it.place.file in of_stack or sent & {*_children(node)})
+        doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
-    return RobotNodes(tuple(nodes), (*left, *_unknown(given)))
+    findings = sorted((*left, *_unknown(given)), key=lambda it: (it.file, it.line))
+    return RobotNodes(tuple(nodes), tuple(findings))
 
 
 def _section_of(node: NodeFacts, given: Sequence[GivenNode]) -> GivenNode | None:
@@ -126,7 +127,7 @@ def _left_out(
     return findings, kept
 
 
-def _children(node: NodeFacts) -> Iterator[str]:
+def children_of(node: NodeFacts) -> Iterator[str]:
     """The frames that a node sends."""
     frames = {it.parameter: it.default for it in node.frames}
     yield from (frames[it.child] for it in node.sends)

@@ -12,6 +12,7 @@ from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
+from multibot_rewrite.fleets.closing import closing
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.consistency import consistency
@@ -55,7 +56,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             *rviz_files(configs),
             *bridge_outputs(plan),
             *_tables(plan, fleet),
-            *commands_file(each, rviz_commands(configs)),
+            *commands_file(each, rviz_commands(configs), plan.file.distro),
         ]
         files = sorted(it for it in made if isinstance(it, OutputFile))
         _check_paths_differ(files)
@@ -65,6 +66,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             OutputText(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files
         ]
         findings += consistency(plan, fleet, texts, findings)
+        findings += closing(plan, fleet, texts)
         return Outputs(tuple(files), tuple(_once(plan, findings)))
 
 

@@ -52,7 +52,7 @@ def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) ->
     fleets: list[Fleet] = []
     notes: list[Finding] = []
     for group in groups.values():
-        nodes, findings = robot_nodes(group[0].spec, file)
+        _, _, nodes, findings = robot_nodes(group[0].spec, file)
         fleets.append(assemble([it.member for it in group], nodes, naming, file.distro))
         notes += findings
     fleet = merge(fleets)

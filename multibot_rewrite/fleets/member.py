@@ -10,6 +10,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.library import Rewrite
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.rosnames import bind, resolve_bound
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import Document, read_document
@@ -17,7 +18,8 @@ from multibot_rewrite.steps.document import Document, read_document
 
 class Member(NamedTuple):
     """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
-    holds and starts; ``source`` is the description before, ``shared`` are findings about names that
+    holds and starts; ``source`` is the description before, ``vocabulary`` what is known of plugins,
+    ``shared`` are findings about names that
     any two robots of it would have.
     """
 
@@ -26,6 +28,7 @@ class Member(NamedTuple):
     inventory: Inventory
     reading: Reading
     source: Document
+    vocabulary: Vocabulary
     shared: tuple[Finding, ...]
 
 
@@ -39,7 +42,7 @@ def member(source: Rewrite, data: bytes, tag: str) -> Member:
     reading = read(data, document.file, tree.vocabulary)
     _check_names(reading, document)
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
-    return Member(source.robot, tag, written, reading, document, shared)
+    return Member(source.robot, tag, written, reading, document, tree.vocabulary, shared)
 
 
 def line_of(document: Document, tag: str, number: int) -> int:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
+from multibot_rewrite.evidence.nodes import nodes_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.output_file import yaml_of
@@ -22,16 +25,31 @@ def node_sources(spec: RobotSpec) -> NodeSources:
     return spec.stacks, spec.companions.get("params", ())
 
 
-def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotNodes:
+class RobotEvidence(NamedTuple):
+    """What a robot's files set for nodes, the nodes that are known by name, those that it runs, and
+    where its files and stacks disagree."""
+
+    given: tuple[GivenNode, ...]
+    known: Mapping[str, NodeFacts]
+    nodes: tuple[NodeFacts, ...]
+    findings: tuple[Finding, ...]
+
+
+def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotEvidence:
     """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
-    known = load_known_nodes(file.parameters, file.distro)
+    parameters = load_known_nodes(file.parameters, file.distro)
     documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    given = given_nodes(documents, known)
+    given = tuple(given_nodes(documents, parameters))
+    known = _known(given, file)
+    return RobotEvidence(given, known, *nodes_of(stack_nodes(spec, file), given, known))
+
+
+def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:
+    """The known nodes; those that the robot's files name as their installed packages declare them."""
     facts = known_nodes(file.nodes, file.distro, file.nodl)
     nodes = dict(facts.library.nodes)
     named = {it.known for it in given} & nodes.keys()
-    nodes |= {name: declared(facts, nodes[name]) for name in named}
-    return nodes_of(stack_nodes(spec, file), given, nodes)
+    return nodes | {name: declared(facts, nodes[name]) for name in named}
 
 
 def stack_nodes(spec: RobotSpec, file: FleetFile) -> tuple[NodeFacts, ...]:

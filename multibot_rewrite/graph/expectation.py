@@ -57,7 +57,8 @@ class Expectation(NamedTuple):
 
     ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
     ``sources`` has for a node ``file:line`` of the plugin that starts it, ``origins`` for any other
-    node the file (``file:line``) or stack (``stack nav2``) that names it.
+    node the file (``file:line``) or stack (``stack nav2``) that names it. ``release`` is that whose
+    facts it rests on, empty if that is not known.
     """
 
     layout: str
@@ -69,6 +70,7 @@ class Expectation(NamedTuple):
     ignored_nodes: tuple[str, ...] = ()
     sources: tuple[tuple[str, str], ...] = ()
     origins: tuple[tuple[str, str], ...] = ()
+    release: str = ""
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:

@@ -11,6 +11,8 @@ from lxml import etree
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
+from multibot_rewrite.readback.model_namespaces import scoped_namespace
+from multibot_rewrite.rewriters.model_namespaces import is_model_namespace
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.steps.collect import Inventory
 
@@ -70,11 +72,13 @@ def _robot_topics(
         yield from _sensor(sensor, robot, naming)
     # With bare frames the spawner must give the model the robot's name, or two models collide.
     model = inventory.document.root.get("name", "") if naming.layout.frames else robot
+    read = any(is_model_namespace(claim.site) for claim in inventory.claims)
     for host in inventory.hosts:
-        name = host.node.section.names[0] if host.node.section else ""
-        yield from _plugin(
-            host.element, bridge_data()["plugins"].get(name, ()), robot, model, naming
-        )
+        section = host.node.section
+        below = read and section is not None and bool(section.model_namespace)
+        space = scoped_namespace(host.element) if below else ""
+        topics = bridge_data()["plugins"].get(section.names[0] if section else "", ())
+        yield from _plugin(host.element, topics, robot, model, naming, space)
 
 
 def _sensor(
@@ -105,11 +109,18 @@ def _camera_info(sensor: etree._Element, robot: str, base: str) -> Iterator[Brid
 
 
 def _plugin(
-    plugin: etree._Element, topics: Iterable[Sequence[str]], robot: str, model: str, naming: Naming
+    plugin: etree._Element,
+    topics: Iterable[Sequence[str]],
+    robot: str,
+    model: str,
+    naming: Naming,
+    space: str | None,
 ) -> Iterator[BridgedTopic | UnbridgedTopic]:
     for element, default, ros_type, gz_type, way in topics:
         given = text_at(plugin, element)
-        name = given or default.format(model=model)
+        name = (
+            _below(space, given, default) if space != "" else given or default.format(model=model)
+        )
         if not name:
             what = f"<{element}> of {plugin.get('filename')}"
             yield UnbridgedTopic(robot, _line(plugin), what)
@@ -120,6 +131,13 @@ def _plugin(
         # A shared /tf is bridged once, or each transform would arrive once for every robot.
         whose = "" if ros == _ros_name(name) == f"/{TF_TOPICS[0]}" else robot
         yield BridgedTopic(whose, ros, name, ros_type, gz_type, DIRECTIONS[way])
+
+
+def _below(space: str | None, given: str, default: str) -> str:
+    """A topic of a model with a namespace; empty where that is made of the name it is spawned by."""
+    if space is None or given.startswith("/"):
+        return given if given.startswith("/") else ""
+    return f"{space.rstrip('/')}/{given or default.rpartition('/')[2]}"
 
 
 def _line(element: etree._Element) -> int:

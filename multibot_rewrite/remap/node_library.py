@@ -6,18 +6,25 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import share_release
 from multibot_rewrite.remap.endpoint_entries import checked_endpoint, endpoints_of
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
     condition_of,
     releases_of,
-    share_release,
     source_of,
     text_and_words,
     variants,
 )
-from multibot_rewrite.remap.records import ROLES, Endpoint, FrameParameter, NodeFacts, SentTransform
+from multibot_rewrite.remap.records import (
+    ROLES,
+    Claim,
+    Endpoint,
+    FrameParameter,
+    NodeFacts,
+    SentTransform,
+)
 from multibot_rewrite.remap.yaml_with_lines import (
     YamlItem,
     entries,
@@ -36,10 +43,12 @@ from multibot_rewrite.rosnames import check_node_name
 
 NODE_WORDS = (
     *("package", "host", "plugin", "shared", "note"),
-    *("with", "frames", "sends", "ids", "fixed"),
+    *("with", "frames", "sends", "ids", "claims", "fixed"),
     "nodl",
 )
 SENT_KEYS = ("child", "if")
+CLAIM_KINDS = ("command", "state")
+CLAIM_KEYS = (*CLAIM_KINDS, "if")
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps", "releases")
@@ -172,6 +181,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
+        claims=tuple(_claims(keys)),
         nodl=words_of(keys, "nodl"),
         ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
         releases=releases_of(keys),
@@ -206,6 +216,17 @@ def _sends(
         if "child" not in sent:
             wrong(item, f"sends {parent} has no child; write {{child: ..., if: ...}}")
         yield SentTransform(parent, _known(sent["child"], "frame", known), condition_of(sent))
+
+
+def _claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
+    """The interfaces of a controller: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``, with ``if``."""
+    for item in entries_of(keys, "claims"):
+        claim = table(item, "a claim", CLAIM_KEYS)
+        kinds = [it for it in CLAIM_KINDS if it in claim]
+        if len(kinds) != 1:
+            wrong(item, "a claim is of one kind; write {command: ...} or {state: ...}")
+        for template in words_of(claim, kinds[0]):
+            yield Claim(kinds[0], template, condition_of(claim))
 
 
 def _taken_over(

@@ -71,6 +71,15 @@ class SentTransform(NamedTuple):
     condition: str = ""
 
 
+class Claim(NamedTuple):
+    """Interfaces that a controller claims: ``kind`` is command or state, ``template`` a name with
+    parameters in <> (``evidence.claims``); ``condition`` as in ``Endpoint``."""
+
+    kind: str
+    template: str
+    condition: str = ""
+
+
 class NodeFacts(NamedTuple):
     """A known node: its default name, its package, and its endpoints.
 
@@ -78,12 +87,13 @@ class NodeFacts(NamedTuple):
     ``shared`` is true if one node serves all robots (a bridge, RViz, a clock). ``host`` is the node
     whose process it always runs in. ``when`` is the condition under which it is started, empty for
     always. No rule reaches ``frames`` and ``fixed``. ``sends`` are the transforms it publishes. ``ids``
-    are words in <> of its names, with the parameter that lists what they stand for. ``known`` is its
-    name in nodes.yaml if it has another one. ``origin`` is where a robot's own files name it
-    (``file:line``), empty for a node of a stack. ``releases``, ``source``: see ``Endpoint``. ``nodl``
-    are further names of its NoDL document, such as its executable; ``interface`` is the NoDL file that
-    its endpoints are from, empty for the library. ``container`` is the node whose process it is
-    loaded into as a component, ``plugin`` the plugin of the simulator that makes it.
+    are words in <> of its names, with the parameter that lists what they stand for. ``claims`` are the
+    interfaces that a controller needs. ``known`` is its name in nodes.yaml if it has another one.
+    ``origin`` is where a robot's own files name it (``file:line``), or its stack. ``releases`` and
+    ``source`` as in ``Endpoint``. ``nodl`` are further names of its NoDL document, such as its
+    executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
+    ``container`` is the node whose process it is loaded into as a component, ``plugin`` the plugin of
+    the simulator that makes it.
     """
 
     name: str
@@ -97,6 +107,7 @@ class NodeFacts(NamedTuple):
     fixed: tuple[str, ...] = ()
     sends: tuple[SentTransform, ...] = ()
     ids: tuple[tuple[str, str], ...] = ()
+    claims: tuple[Claim, ...] = ()
     known: str = ""
     origin: str = ""
     releases: str = ""

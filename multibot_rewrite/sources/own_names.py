@@ -11,13 +11,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.naming import DECLARED_KINDS, Affix, OwnNames
+from multibot_rewrite.naming import DECLARED_KINDS, TWIN, Affix, OwnNames
 from multibot_rewrite.steps.collect import Inventory
 
 ROBOT = "{robot}"
-# Stand for the words of a robot. Letters alone are taken by every file that takes a name.
-MARKS = ("qzrobotzq", "qznamespacezq", "qztagzq")
-TWIN = MARKS[0]
+# Stand for the words of a robot.
+MARKS = (TWIN, "qznamespacezq", "qztagzq")
 _TWICE = re.compile(r"(qz\w+?zq)[/_]*\1")
 _PLACEHOLDER = re.compile(r"(?<!\$)\{[A-Za-z_]\w*\}")
 Arguments = Mapping[str, str]

@@ -349,7 +349,7 @@ def test_a_launch_loads_a_fleet_once(
 ) -> None:
     loads = []
 
-    def counted(path: str, trust: bool = False) -> Any:
+    def counted(path: str, trust: bool = False, distro: str = "") -> Any:
         loads.append(path)
         return load_fleet(path, trust=trust)
 
@@ -375,7 +375,7 @@ def test_a_launch_trusts_xacro_files_where_it_is_told(
 ) -> None:
     asked = []
 
-    def counted(path: str, trust: bool = False) -> Any:
+    def counted(path: str, trust: bool = False, distro: str = "") -> Any:
         asked.append(trust)
         return load_fleet(path)
 

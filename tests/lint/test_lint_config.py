@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -255,7 +256,13 @@ WRONG = [
     ("ignore = ['MB5'\nx", "2:1: broken TOML"),
     ("ignore = ['MB5']\nignore = ['MB6']\n", "2:17: broken TOML"),
     ("a = " + "[" * 5000, "TOML that cannot be read"),
-    ("seconds = " + "1" * 5000, "TOML that cannot be read"),
+    pytest.param(
+        "seconds = " + "1" * 5000,
+        "TOML that cannot be read",
+        marks=pytest.mark.skipif(
+            not hasattr(sys, "get_int_max_str_digits"), reason="this Python reads any number"
+        ),
+    ),
     ("per-file-ignore = {}", "unknown key 'per-file-ignore', did you mean 'per-file-ignores'?"),
     ("fail_on = 'error'", "unknown key 'fail_on', did you mean 'fail-on'?"),
     ("xyzzy = 1", "unknown key 'xyzzy', use one of select, ignore, "),

@@ -41,13 +41,12 @@ MODULES = {
     "jsonschema": "python3-jsonschema",
 }
 # Modules that the package goes without, or that no key of rosdep is for.
-UNASKED = {"tomli", "tree_sitter", "tree_sitter_cpp"}
-# What the tests import before anything else, and the options of pytest in pyproject.toml need.
+UNASKED = {"tomli", "tomllib", "tree_sitter", "tree_sitter_cpp"}
+# What the tests import before anything else.
 OF_TESTS = {
     "python3-hypothesis",
     "python3-numpy",
     "python3-pytest",
-    "python3-pytest-xdist",
     "python3-setuptools",
 }
 # The versions of Ubuntu 22.04, which is the oldest.

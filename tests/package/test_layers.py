@@ -28,6 +28,7 @@ FLOORS = (
     ("checks", "sources", "remap"),
     ("pipeline", "reports", "graph", "lint", "companions", "interfaces"),
     ("library", "evidence"),
+    ("closure",),
     ("fleets",),
     ("__init__", "launch", "catalogue"),
     ("cli",),

@@ -42,6 +42,33 @@ def fleet(layout: str, source: str | bytes = ROBOT):
     return bridged_topics(inventories, make_naming(layout))
 
 
+NAMESPACED = """<sdf version="1.12"><model name="rover" namespace="{}"><link name="base"/>
+<plugin filename="gz-sim-diff-drive-system" name="gz::sim::systems::DiffDrive">
+<odom_topic>odom</odom_topic><tf_topic>/tf</tf_topic></plugin></model></sdf>"""
+
+
+@pytest.mark.parametrize(
+    ("release", "namespace", "cmd_vel", "odom"),
+    [
+        ("rolling", "fleet", "/robot1/fleet/cmd_vel", "/robot1/fleet/odom"),
+        ("rolling", "{name}", "", ""),
+        ("lyrical", "fleet", "/model/robot1/cmd_vel", "robot1/odom"),
+    ],
+)
+def test_topics_below_the_namespace_of_a_model(
+    release: str, namespace: str, cmd_vel: str, odom: str
+) -> None:
+    source = NAMESPACED.format(namespace)
+    (made,) = rewrite_all(source, ["robot1"], layout="L1", distro=release)
+    tree = builtin_tree((), release)
+    inventories = {"robot1": collect(read_document(made.data, "rover"), tree)}
+    bridged, left = bridged_topics(inventories, make_naming("L1"))
+    found = {it.gz_type: it.gz for it in bridged if it.robot}
+    assert (found.get("gz.msgs.Twist", ""), found.get("gz.msgs.Odometry", "")) == (cmd_vel, odom)
+    assert found["gz.msgs.Pose_V"] == "/robot1/tf"
+    assert len(left) == (0 if cmd_vel else 2)
+
+
 def names(layout: str) -> dict[str, str]:
     """gz name -> ROS name of robot1's topics."""
     return {item.gz: item.ros for item in fleet(layout)[0] if item.robot == "robot1"}

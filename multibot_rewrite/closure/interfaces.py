@@ -1,0 +1,53 @@
+"""The interfaces that controllers claim, against those that the hardware exports.
+
+Sources: ros2_control controller_manager.cpp (a controller whose interfaces do not exist is not
+activated) and its chaining: a controller's own interfaces are called ``CONTROLLER/...``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from multibot_rewrite.closure.gap import Gap
+from multibot_rewrite.evidence.claims import Claimed, claimed
+from multibot_rewrite.evidence.hardware import Exported
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.nearest import Guesses
+from multibot_rewrite.remap.records import NodeFacts
+
+INTERFACE = "interface"
+
+
+def interface_gaps(
+    given: Sequence[GivenNode], known: Mapping[str, NodeFacts], exports: Sequence[Exported]
+) -> Iterator[Gap]:
+    """What the controllers of a robot claim and its hardware lacks.
+
+    Nothing is said where the description has no ros2_control system: another one may have it.
+    """
+    if not exports:
+        return
+    controllers = [it for it in given if it.manager]
+    own = tuple(f"{it.name.rpartition('/')[2]}/" for it in controllers)
+    places = {(it.kind, it.name): it.place for it in exports}
+    hints = Guesses()
+    for at, controller in enumerate(controllers):
+        for number, it in enumerate(_claims(controller, known)):
+            if (it.kind, it.name) in places or it.name.startswith(own):
+                continue
+            near = hints.nearest(it.name, _names(exports, it.kind))
+            key = (INTERFACE, str(at), it.kind, str(number))
+            where = it.place or controller.place
+            name = f"{it.kind} interface {it.name}"
+            yield Gap(
+                INTERFACE, name, controller.name, key, where, near, places.get((it.kind, near))
+            )
+
+
+def _claims(controller: GivenNode, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
+    node = known.get(controller.known)
+    yield from claimed(node.claims, controller.values) if node else ()
+
+
+def _names(exports: Iterable[Exported], kind: str) -> list[str]:
+    return [it.name for it in exports if it.kind == kind]

@@ -1,0 +1,83 @@
+"""Topics that are read and services that are called, against what the same robot sends and serves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.closure.gap import Gap
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.nearest import nearest
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+
+# What people, planners of missions and tools send, by the last word of the name.
+OUTSIDE = frozenset(
+    """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
+    joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
+    parameter_events robot_description external_wrench manual_control speed_scaling_input""".split()  # noqa: SIM905
+)
+GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
+
+
+class End(NamedTuple):
+    """An end of a topic, service or action in the running system.
+
+    ``role`` is empty where it is not known which end. ``type`` may be empty. ``code_name`` is the name
+    in the node's code. ``sure`` is false for an end that is there on a condition only.
+    """
+
+    node: str
+    kind: str
+    role: str
+    name: str
+    type: str
+    code_name: str
+    place: Place | None = None
+    sure: bool = True
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """The same before and after a rewrite."""
+        return self.kind, self.role, self.code_name
+
+
+def topic_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:
+    """What the nodes of a robot need and nothing sends. ``more`` are ends of nodes for all robots."""
+    idle = list(_idle(ends))
+    for it in _needed(ends, more, sent=False):
+        near = _near(it, idle)
+        where = near.place if near else None
+        yield Gap(it.kind, it.name, it.node, it.key, it.place, near.name if near else "", where)
+
+
+def closed(ends: Sequence[End], more: Iterable[End] = ()) -> set[tuple[str, ...]]:
+    """The keys of what the nodes of a robot need and something sends."""
+    return {it.key for it in _needed(ends, more, sent=True)}
+
+
+def _needed(ends: Sequence[End], more: Iterable[End], sent: bool) -> Iterator[End]:
+    given = {(it.kind, it.name) for it in (*ends, *more) if it.role not in NEEDS}
+    for it in ends:
+        needed = it.role in NEEDS and it.sure and not _is_from_outside(it)
+        if needed and ((it.kind, it.name) in given) is sent:
+            yield it
+
+
+def _is_from_outside(end: End) -> bool:
+    return any(name.rpartition("/")[2] in OUTSIDE for name in (end.name, end.code_name))
+
+
+def _idle(ends: Sequence[End]) -> Iterator[End]:
+    """What is sent and read by no node of the robot: one of these may be meant."""
+    read = {(it.kind, it.name) for it in ends if it.role not in GIVES}
+    yield from (it for it in ends if it.role in GIVES and (it.kind, it.name) not in read)
+
+
+def _near(end: End, idle: Iterable[End]) -> End | None:
+    """What may be meant: of the same type, and the only one or with a like name."""
+    others = (it for it in idle if it.kind == end.kind and it.node != end.node)
+    alike = {it.name: it for it in others if end.type and it.type == end.type}
+    if len(alike) == 1:
+        return next(iter(alike.values()))
+    last = [name for name in alike if name.endswith("/" + end.name.rpartition("/")[2])]
+    return alike.get(last[0] if len(last) == 1 else nearest(end.name, alike))

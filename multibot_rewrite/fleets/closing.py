@@ -1,0 +1,222 @@
+"""Does each robot of a fleet close, before and after its rewrite? What a rewrite opens is an error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
+
+from multibot_rewrite.closure.frames import frame_gaps
+from multibot_rewrite.closure.gap import Gap
+from multibot_rewrite.closure.interfaces import interface_gaps
+from multibot_rewrite.closure.topics import closed, topic_gaps
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
+from multibot_rewrite.findings.rule import Rule, declare
+from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_values import OutputText
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_groups import group_robots
+from multibot_rewrite.fleets.robot_nodes import robot_nodes
+from multibot_rewrite.fleets.systems import System, system_after, system_before
+
+# So many names in one line.
+_LISTED = 8
+_ARM = """\
+<robot name="arm">
+  <link name="base_link"/>
+  <link name="hand"/>
+  <joint name="elbow" type="revolute">
+    <parent link="base_link"/><child link="hand"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+  <ros2_control name="arm" type="system">
+    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
+    <joint name="elbow">
+      <command_interface name="position"/>
+      <state_interface name="position"/>
+    </joint>
+  </ros2_control>
+</robot>
+"""
+NO_INTERFACE = declare(
+    "MF811",
+    "interface-not-exported",
+    WARNING,
+    what="A controller claims an interface that the ros2_control systems of the description do not "
+    "export. Where the files before the rewrite agreed, it is an error.",
+    why="The controller manager does not activate a controller whose interfaces do not exist.",
+    fix="Name an interface that the description has, or add it to the ros2_control system.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+arm:
+  ros__parameters:
+    joints: [elbow]
+    command_interfaces: [velocity]
+    state_interfaces: [position]
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    arm: {type: joint_trajectory_controller/JointTrajectoryController}
+arm:
+  ros__parameters:
+    joints: [elbow]
+    command_interfaces: [position]
+    state_interfaces: [position]
+""",
+    line=6,
+    formats=("params",),
+    beside={"robot.urdf": _ARM},
+)
+NOT_SENT = declare(
+    "MF812",
+    "topic-under-another-name",
+    WARNING,
+    what="A node of a robot reads a topic that nothing of the robot sends, while another topic of the "
+    "type is sent and nobody reads it. An error where the rewrite has made it so.",
+    why="The node waits for data that never comes.",
+    fix="Give both the same name.",
+    bad="""\
+ekf_node:
+  ros__parameters: {imu0: sensors/imu/data, world_frame: odom}
+imu_filter_madgwick:
+  ros__parameters: {use_mag: false}
+""",
+    good="""\
+ekf_node:
+  ros__parameters: {imu0: imu/data, world_frame: odom}
+imu_filter_madgwick:
+  ros__parameters: {use_mag: false}
+""",
+    line=2,
+    formats=("params",),
+)
+WITHOUT_SENDER = declare(
+    "MF814",
+    "topics-without-sender",
+    NOTE,
+    what="Nodes of a robot read topics, or call services, that no known node of the robot sends.",
+    why="If nothing else sends them, these nodes wait for data that never comes.",
+    fix="Nothing, if a driver that the fleet does not name sends them; else name its node or stack.",
+    bad="""\
+stack: slam_toolbox
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+stack: joint_state_publisher
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+)
+NOBODY_SENDS = declare(
+    "MF813",
+    "odometry-not-sent",
+    ERROR,
+    what="Every node of a robot that could send the transform to its base is told not to.",
+    why="The robot's frames are not connected to the odometry: navigation and RViz do not see it move.",
+    fix="Let one of them send it: enable_odom_tf of the controller, or publish_tf of the filter.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    enable_odom_tf: false
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    enable_odom_tf: true
+""",
+    line=6,
+    formats=("params",),
+)
+
+
+def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Iterator[Finding]:
+    """What is open in the robots of a fleet; robots of the same sources are looked at once.
+
+    ``fleet`` has all nodes that are started, ``texts`` are the files that were made.
+    """
+    known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    for group in group_robots(plan):
+        robot = group.robots[0]
+        evidence = robot_nodes(robot.spec, plan.file)
+        before, library = system_before(robot, evidence), evidence.known
+        after = system_after(robot, fleet, texts, known)
+        made = [*interface_gaps(before.given, library, before.exports)]
+        now = [*interface_gaps(after.given, library, after.exports)]
+        yield from _interfaces(robot, made, now)
+        yield from _frames(robot, frame_gaps(before.given, library, before.sent))
+        yield from _topics(robot, before, after)
+
+
+def _interfaces(
+    robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
+) -> Iterator[Finding]:
+    known = {it.key for it in before}
+    for it in (*before, *(it for it in after if it.key not in known)):
+        level = WARNING if it.key in known else ERROR
+        message = f"{it.node} of {robot.spec.name} claims {it.name}, which no ros2_control exports"
+        yield _found(NO_INTERFACE, robot, it, message, _meant(it), level)
+
+
+def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
+    for it in gaps:
+        message = f"nothing sends frame {it.name} of {robot.spec.name}: {it.node} is told not to"
+        hint = "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
+        yield _found(NOBODY_SENDS, robot, it, message, hint)
+
+
+def _topics(robot: RewrittenRobot, before: System, after: System) -> Iterator[Finding]:
+    had = closed(before.ends, before.shared)
+    for it in topic_gaps(after.ends, after.shared):
+        if it.key in had:
+            message = (
+                f"{it.node} reads {it.name}, which nothing of {robot.spec.name} sends any more"
+            )
+            yield _found(NOT_SENT, robot, it, message, _meant(it), ERROR)
+    gaps = list(topic_gaps(before.ends, before.shared))
+    for it in (it for it in gaps if it.near):
+        message = f"{it.node} of {robot.spec.name} reads {it.name}, which nothing sends"
+        yield _found(NOT_SENT, robot, it, message, _meant(it), WARNING)
+    rest = [it for it in gaps if not it.near]
+    if rest:
+        yield _all_open(robot, rest)
+
+
+def _all_open(robot: RewrittenRobot, gaps: Sequence[Gap]) -> Finding:
+    names = sorted({it.name for it in gaps})
+    shown = ", ".join(names[:_LISTED])
+    more = f" and {len(names) - _LISTED} more" if len(names) > _LISTED else ""
+    message = f"no known node of {robot.spec.name} sends {shown}{more}"
+    hint = "name a stack or nodes that do, if no driver of its own does"
+    return _found(WITHOUT_SENDER, robot, gaps[0]._replace(place=None), message, hint)
+
+
+def _meant(gap: Gap) -> str:
+    if not gap.near:
+        return "name one that is there"
+    where = f" ({gap.near_place})" if gap.near_place else ""
+    return f"did you mean {gap.near}{where}?"
+
+
+def _found(
+    rule: Rule, robot: RewrittenRobot, gap: Gap, message: str, hint: str, level: str = ""
+) -> Finding:
+    """The finding where the name is needed, else at the robot in the fleet file."""
+    at = gap.place or Place(robot.spec.file, robot.spec.line)
+    place: dict[str, Any] = {"file": at.file, "line": at.line, "column": 1}
+    return rule.finding(message, hint, level=level or rule.level, **place)

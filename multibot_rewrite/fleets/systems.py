@@ -1,0 +1,148 @@
+"""What runs on one robot, before its rewrite (by its sources) and after (by what was made)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.closure.topics import End
+from multibot_rewrite.companions.params.known_nodes import KnownNodes
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.yaml_text import YamlText, items, line_of, pairs, read_yaml
+from multibot_rewrite.evidence.hardware import Exported, exported
+from multibot_rewrite.evidence.nodes import children_of
+from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.fleets.bridge_entry import BOTH, ROS
+from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.output_file import yaml_of
+from multibot_rewrite.fleets.output_values import OutputText
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_nodes import RobotEvidence
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges
+from multibot_rewrite.readback.nodes import ReadNode
+from multibot_rewrite.readback.reading import FRAME, read
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
+from multibot_rewrite.rosnames import expand
+from multibot_rewrite.steps.document import read_document
+
+FIXED = "fixed"
+BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"
+ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,), "BIDIRECTIONAL": ("",)}
+
+
+class System(NamedTuple):
+    """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the ends of
+    its topics and services, those of nodes for all robots, and the frames that anything sends."""
+
+    given: tuple[GivenNode, ...]
+    exports: tuple[Exported, ...]
+    ends: tuple[End, ...]
+    shared: tuple[End, ...]
+    sent: frozenset[str]
+
+
+def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
+    """The system of a robot's sources, if it were alone: nothing is renamed or remapped but what the
+    usual launch files remap."""
+    source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
+    moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
+    nodes = [_runs(it, moves) for it in evidence.nodes]
+    reading = read(source.source, source.file, robot.member.vocabulary)
+    shared = [end for node in nodes if node.shared for end in _ends_of(node, given)]
+    ends = [
+        *(end for node in nodes if not node.shared for end in _ends_of(node, given)),
+        *(end for node in reading.nodes for end in _plugin_ends(node)),
+        *(end for it in bridges for end in bridge_ends(it)),
+    ]
+    sent = {child for node in nodes for child in children_of(node)}
+    sent |= {it.name for it in reading.names if it.kind == FRAME and it.tag == "plugin"}
+    return System(
+        given,
+        tuple(_plain(robot, it) for it in exported(source.root, source.file)),
+        tuple(ends),
+        tuple(shared),
+        frozenset(sent),
+    )
+
+
+def system_after(
+    robot: RewrittenRobot, fleet: Fleet, texts: Sequence[OutputText], known: KnownNodes
+) -> System:
+    """The system of the files that were made for a robot, under its remap rules."""
+    own = [it for it in texts if it.path.startswith(f"{robot.spec.name}/")]
+    params = [_read(it) for it in own if PARAMETERS in it.text]
+    bridges = [
+        _read(it) for it in texts if it.path in (BRIDGE_FILE, f"{robot.spec.name}/{BRIDGE_FILE}")
+    ]
+    file = robot.member.source.file
+    written = read_document(robot.description, file)
+    ends = [end for it in bridges for end in bridge_ends(it)]
+    ends += [_planned(it) for it in fleet.table.names if it.robot == robot.spec.namespace]
+    return System(
+        tuple(given_nodes(params, known)),
+        tuple(exported(written.root, file)),
+        tuple(ends),
+        tuple(_planned(it) for it in fleet.table.names if not it.robot),
+        frozenset(it.child for it in description_edges(robot.member.inventory)),
+    )
+
+
+def _planned(it: EndpointName) -> End:
+    end = it.endpoint
+    return End(it.node, end.kind, end.role, it.name, end.type, end.name, None, not end.when)
+
+
+def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
+    """The interface as parameter files call it, where an argument of the xacro renames its owner."""
+    plain = {text: name for (_, name), text in robot.names.own.items()}
+    owner, slash, rest = export.name.partition("/")
+    return export._replace(name=f"{plain.get(owner, owner)}{slash}{rest}")
+
+
+def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
+    return [yaml_of(path) for path in robot.spec.companions.get(kind, ())]
+
+
+def _read(text: OutputText) -> YamlText:
+    return read_yaml(text.text.encode(), text.path)
+
+
+def _runs(node: NodeFacts, moves: bool) -> NodeFacts:
+    """A robot without movable joints has no joint states to read."""
+    if moves or node.package != STATE_PUBLISHER:
+        return node
+    return node._replace(endpoints=tuple(it for it in node.endpoints if it.role != SUBSCRIBES))
+
+
+def _ends_of(node: NodeFacts, given: Iterable[GivenNode]) -> Iterator[End]:
+    """The ends of a node by the names of its code, or what the usual launch files make of them."""
+    above, _, name = f"/{node.name}".rpartition("/")
+    section = next((it for it in given if it.name == node.name), None)
+    values = section.values if section else {}
+    for it in (it for it in node.endpoints if "<" not in it.name):
+        full = expand(it.remapped or it.name, above or "/", name)
+        place = values[it.parameter].place if it.parameter in values else None
+        # A node with parameters is meant to run.
+        sure = not it.when and (section is not None or not node.when)
+        yield End(f"/{node.name}", it.kind, it.role, full, it.type, it.name, place, sure)
+
+
+def _plugin_ends(node: ReadNode) -> Iterator[End]:
+    for it in node.endpoints:
+        yield End(node.full_name, it.kind, it.role, it.full, "", it.name, None, not it.off)
+
+
+def bridge_ends(document: YamlText) -> Iterator[End]:
+    """The ROS ends of the rows of a ros_gz_bridge file."""
+    for row in items(document.root):
+        values = {key.value: value for key, value in pairs(row)}
+        name = values.get(ROS) or values.get(BOTH)
+        if name is None:
+            continue
+        words = {key: str(value.value) for key, value in values.items()}
+        place = Place(document.file, line_of(name))
+        full = f"/{str(name.value).lstrip('/')}"
+        for role in ROLES.get(words.get("direction", "BIDIRECTIONAL"), ("",)):
+            type_ = words.get("ros_type_name", "")
+            yield End(f"/{BRIDGE_NODE}", TOPIC, role, full, type_, full, place)
