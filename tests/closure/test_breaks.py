@@ -53,7 +53,9 @@ FILES = {
     <sensor name="imu" type="imu"><topic>imu/data</topic><gz_frame_id>imu_link</gz_frame_id></sensor>
   </gazebo>
   <gazebo reference="lidar_link">
-    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic><gz_frame_id>lidar_link</gz_frame_id></sensor>
+    <sensor name="lidar" type="gpu_lidar">
+      <topic>scan</topic><gz_frame_id>lidar_link</gz_frame_id>
+    </sensor>
   </gazebo>
 </robot>
 """,
@@ -115,7 +117,7 @@ def test_a_robot_that_closes(layout: str, tmp_path: Path) -> None:
 
 BREAKS = [
     # The controller's joints are not those of the hardware.
-    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 8, "rover.urdf:20"),
+    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 8, "rover.urdf:18"),
     ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MF811", 9, "rover.urdf"),
     # The hardware lacks what the controller claims.
     ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 8, ""),
@@ -149,7 +151,9 @@ def test_a_break_is_found_with_its_lines(
     if not code:
         assert not broken
         return
-    (first, *_) = sorted((it for it in broken if it.code == code), key=lambda it: it.line) or [None]
+    (first, *_) = sorted(
+        (it for it in broken if it.code == code), key=lambda it: (it.line, it.message)
+    ) or [None]
     assert first, broken
     assert first.line == line
     assert other in first.hint
