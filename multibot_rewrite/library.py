@@ -12,7 +12,7 @@ from multibot_rewrite.checks.verdict import not_proved
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
-from multibot_rewrite.releases import NEWEST_LTS, chosen_release
+from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.changes import list_changes
 from multibot_rewrite.rosnames import check_robot_name
 from multibot_rewrite.sources.job import Job, read_job, read_jobs
@@ -84,6 +84,11 @@ class Rewrite(NamedTuple):
         return not_proved(self.findings)
 
     @property
+    def distro(self) -> str:
+        """The ROS 2 release whose facts it was made with; raises nothing."""
+        return self.prepared.job.release
+
+    @property
     def changes(self) -> list[Change]:
         """Every renamed or inserted value, in source order; raises as ``template`` does."""
         return list_changes(self.template, self.robot)
@@ -107,7 +112,7 @@ def rewrite(
     again: bool = False,
     file: str = "",
     trust: bool = False,
-    distro: str = NEWEST_LTS,
+    distro: str = "",
 ) -> Rewrite:
     """Rewrite a robot description for ``robot`` and prove it; ``.not_proved`` says what is open.
 
@@ -120,8 +125,8 @@ def rewrite(
     (the content does not allow it; ``.findings``), VocabularyError, ProofError.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    release = chosen_release(distro, {})
     check_robot_name(robot)
+    release = release_here(distro)
     job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
     return next(rewrite_job(job, [robot], again))
 
@@ -144,7 +149,7 @@ def rewrite_all(
     again: bool = False,
     file: str = "",
     trust: bool = False,
-    distro: str = NEWEST_LTS,
+    distro: str = "",
 ) -> Iterator[Rewrite]:
     """Rewrite one description for several robots: one parse, then about a copy of the text each.
 
@@ -156,14 +161,14 @@ def rewrite_all(
     name after the robot stays as it is, and each robot is an expansion of its own; ``vocabulary``
     are vocabulary files beside the built-in one; ``again`` allows a second rewrite; ``file`` is the
     name used in messages; ``trust`` lets xacro files do anything: without it they only compute, and
-    read what is near them (SECURITY.md); ``distro`` is the ROS release whose facts
-    count. Raises as ``rewrite`` does, before the first result.
+    read what is near them (SECURITY.md); ``distro`` is the ROS 2 release whose facts count (default:
+    ROS_DISTRO, else the newest LTS). Raises as ``rewrite`` does, before the first result.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    release = chosen_release(distro, {})
     names = tuple(robots)
     _check_robots(names)
-    jobs = read_jobs(names, source, naming, urdf, xacro_args, vocabulary, file, trust, release)
+    given = (urdf, xacro_args, vocabulary, file, trust, release_here(distro))
+    jobs = read_jobs(names, source, naming, *given)
     return rewrite_jobs(jobs, again)
 
 
@@ -213,7 +218,7 @@ def explain(
     vocabulary: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
-    distro: str = NEWEST_LTS,
+    distro: str = "",
 ) -> list[Explanation]:
     """What is known about the values that start on ``line``, and what they become for ``robot``.
 
@@ -221,8 +226,8 @@ def explain(
     the same. Raises InputError, UsageError and VocabularyError as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    release = chosen_release(distro, {})
     check_robot_name(robot)
+    release = release_here(distro)
     job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
@@ -250,7 +255,7 @@ def strip(
     vocabulary: Iterable[str] = (),
     file: str = "",
     trust: bool = False,
-    distro: str = NEWEST_LTS,
+    distro: str = "",
 ) -> bytes:
     """Undo ``rewrite`` from the rewritten text alone, and prove it by rewriting again.
 
@@ -260,9 +265,8 @@ def strip(
     expansion. Raises as ``rewrite`` does.
     """
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
-    release = chosen_release(distro, {})
     check_robot_name(robot)
-    before = b""
+    before, release = b"", release_here(distro)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
         of = read_job(made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release)

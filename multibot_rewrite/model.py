@@ -22,7 +22,8 @@ class Site(NamedTuple):
     ``namespaced`` is true where a ROS namespace reaches the value. ``whole_value_kind`` is the
     kind where the whole value is the name of a link or joint and of nothing else. ``when`` is
     ``sibling=text`` where only that sibling's text makes the value a name. ``below_model`` are the
-    releases in which a relative topic here stands below the namespace of the model.
+    releases in which a relative topic here stands below the namespace of the model. ``releases`` are
+    the words for the only releases that read it, empty for all.
     """
 
     path: str
@@ -39,6 +40,7 @@ class Site(NamedTuple):
     file: str = ""
     empty: str = "itself"
     below_model: str = ""
+    releases: str = ""
 
 
 class Claim(NamedTuple):

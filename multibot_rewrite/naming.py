@@ -281,7 +281,8 @@ def removal(
     separator = naming.separators.get(kind)
     if separator is None or _is_shared_frame(naming, kind, text):
         return None
-    for start, end in _affix_places(naming, robot, kind, separator, text):
+    side = naming.topics if kind in TOPIC_KINDS else naming.affix
+    for start, end in _affix_places(side, separator, robot, text):
         stem = text[:start] + text[end:]
         there = affix(naming, kind, stem, namespaced)
         if there is not None and there.spell(stem, robot) == text:
@@ -289,13 +290,11 @@ def removal(
     return None
 
 
-def _affix_places(
-    naming: Naming, robot: str, kind: str, separator: str, text: str
-) -> Iterator[tuple[int, int]]:
+def _affix_places(side: str, separator: str, robot: str, text: str) -> Iterator[tuple[int, int]]:
     """Where in ``text`` an affix may be, the likely place first."""
-    side = naming.topics if kind in TOPIC_KINDS else naming.affix
-    if side == POSTFIX and text.endswith(separator + robot):
-        yield len(text) - len(separator) - len(robot), len(text)
+    end = separator + robot
+    if side == POSTFIX and text.endswith(end):
+        yield len(text) - len(end), len(text)
     lead = 1 if text.startswith("/") else 0
     for inserted in (robot + separator, robot):
         if text.startswith(inserted, lead):

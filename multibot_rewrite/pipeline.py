@@ -51,8 +51,9 @@ def prepare(
     missed = missed_by_arguments(inventory, plan.renames, own.plain, own.robot)
     findings += to_findings(inventory.document, missed, WARNING)
     _stop_on_errors(findings)
-    values = slot_values(inventory.document.root)
-    findings += find_mentions(inventory, values, _mentionable(inventory, plan.renames), tree)
+    names = _mentionable(inventory, plan.renames)
+    values = slot_values(inventory.document.root) if names else []
+    findings += find_mentions(inventory, values, names, tree)
     pieces = cut(source, plan.edits)
     if inventory.format != SRDF:  # it starts nothing
         found = (

@@ -7,6 +7,7 @@ Sources: REP 2000; https://docs.ros.org/en/rolling/Releases.html.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 
@@ -35,9 +36,24 @@ def chosen_release(given: str, environment: Mapping[str, str]) -> str:
     raise UsageError(f"{VARIABLE} is {found!r}, which is not known; {hint}")
 
 
+def release_here(given: str | None = None) -> str:
+    """``chosen_release`` with this process's environment: for commands and public calls alone."""
+    return chosen_release(given or "", os.environ)
+
+
+def facts_of_release(release: str) -> str:
+    """The end of a summary: whose facts it rests on; nothing where that is not known."""
+    return f" (facts of {release})" if release else ""
+
+
 def has_release(words: str, release: str) -> bool:
     """Does a fact with these release words hold in ``release``? No words stand for all releases."""
     return not words or any(_holds(it, release) for it in _terms(words))
+
+
+def share_release(words: str, others: str) -> bool:
+    """Is there a release in which both facts hold?"""
+    return any(has_release(words, it) and has_release(others, it) for it in RELEASES)
 
 
 def since_version(words: str, release: str) -> str:

@@ -13,6 +13,7 @@ from multibot_rewrite.cli.usage import plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.xacro_arguments import (
     Argument,
     XacroArguments,
@@ -31,7 +32,9 @@ def run(options: argparse.Namespace) -> int:
     path = _path(options)
     if options.output:
         check_target(options.output, [path, *options.vocabulary])
-    tree = builtin_tree((*configured_vocabulary(path), *options.vocabulary))
+    tree = builtin_tree(
+        (*configured_vocabulary(path), *options.vocabulary), release_here(options.distro)
+    )
     found = find_arguments(
         path, filled(xacro_args(options)), tree, reach=Reach(trust=options.trust)
     )

@@ -29,6 +29,7 @@ from multibot_rewrite.fleets.manifest import (
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.sources.read import read_file
 
 
@@ -36,14 +37,16 @@ def run(options: argparse.Namespace) -> int:
     """Build or check; returns the exit code."""
     _check_folder(options.output)
     check_report(options, printed=False)
-    plan = plan_fleet(read_fleet(options.fleet), trust=options.trust)
+    plan = plan_fleet(
+        read_fleet(options.fleet, options.distro or "", os.environ), trust=options.trust
+    )
     note_interfaces(options, plan.fleet.facts)
     made = make_outputs(plan, os.path.abspath(options.output))
     if _reported(options, plan, made.findings):
         say("nothing was written", PROGRAM)
         return STOPPED
     read = _read(plan, made.files)
-    files = [*made.files, manifest(made.files, read, options.output)]
+    files = [*made.files, manifest(made.files, read, options.output, plan.file.distro)]
     _check_inputs(options.output, files, {*read, *input_files(plan.file)})
     with locked(options.output):
         known = _known(options.output)
@@ -51,16 +54,16 @@ def run(options: argparse.Namespace) -> int:
         found = output_changes(files, known, there)
         if options.check:
             return _stale(options, found)
-        return _written(
-            options, files, found, not_proved({*made.findings, *plan.fleet.table.problems})
-        )
+        why = not_proved({*made.findings, *plan.fleet.table.problems})
+        end = f"; not proved: {', '.join(why)}" if why else ""
+        return _written(options, files, found, f"{end}{facts_of_release(plan.file.distro)}")
 
 
 def _reported(options: argparse.Namespace, plan: FleetPlan, found: Iterable[Finding]) -> bool:
     """Report what is wrong with the files and the remap table; does it stop the build?"""
     both = {*found, *plan.fleet.table.problems}
     ordered = sorted(both, key=lambda it: (it.file, it.line, it.column, it.code, it.place))
-    about = About([options.fleet], words_of(plan.fleet))
+    about = About([options.fleet], words_of(plan.fleet), plan.file.distro)
     return report_beside(options, chosen(options, ordered), about)
 
 
@@ -122,8 +125,9 @@ def _written(
     options: argparse.Namespace,
     files: Sequence[OutputFile],
     found: OutputChanges,
-    why: Sequence[str],
+    end: str,
 ) -> int:
+    """Write what changed, and sum up; ``end`` is the end of that line."""
     if not options.force:
         _refuse(options.output, found.foreign, "no build made it")
         _refuse(options.output, found.edited, "it was edited since it was built")
@@ -140,7 +144,6 @@ def _written(
     for path in found.write:
         detail(options, f"wrote {os.path.join(options.output, path)}")
     robots = plural(len({it.path.partition("/")[0] for it in files if "/" in it.path}), "robot")
-    end = f"; not proved: {', '.join(why)}" if why else ""
     note(options, f"{robots}, {plural(len(files), 'file')}, {len(found.write)} written{end}")
     return DONE
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Sequence
 from math import inf
 
@@ -25,6 +26,7 @@ from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.sources.read import read_file
 
 CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: live.INCONCLUSIVE}
@@ -59,17 +61,26 @@ def _plan(options: argparse.Namespace) -> Expectation:
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if not is_fleet(data):
-        return from_yaml(data, path)
+        return _of_release(options, from_yaml(data, path))
     from multibot_rewrite.fleets.fleet import expected
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
-    file = read_fleet(path)
+    file = read_fleet(path, options.distro or "", os.environ)
     if options.output:
         check_target(options.output, input_files(file))
     made = with_start_pose_nodes(plan_fleet(file, trust=options.trust))
     note_interfaces(options, made.facts)
     return expected(made)
+
+
+def _of_release(options: argparse.Namespace, plan: Expectation) -> Expectation:
+    """The plan, which is of the release that ``--distro`` names, if it says so."""
+    asked: str = options.distro or ""
+    if asked and plan.release not in ("", asked):
+        hint = f"make one with multibot plan --distro {asked}, or leave out --distro"
+        raise UsageError(f"{options.plan} has the facts of {plan.release}; {hint}")
+    return plan._replace(release=plan.release or asked)
 
 
 def conclude(
@@ -84,7 +95,8 @@ def conclude(
     """
     found = check(plan, graph)
     findings = [*before, *chosen(options, found)]
-    failed = report_first(options, findings, About([plan_name(options)], robot_words(plan)))
+    about = About([plan_name(options)], robot_words(plan), plan.release)
+    failed = report_first(options, findings, about)
     caveats = doubts(graph)
     for caveat in caveats:
         say(f"incomplete: {caveat.message}", PROGRAM)
@@ -102,7 +114,7 @@ def plan_name(options: argparse.Namespace) -> str:
 
 def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdict: Verdict) -> int:
     counted = f"{plural(len(plan.robots), 'robot')}, {plural(findings, 'finding')}"
-    note(options, f"{counted}: {WORDS[verdict]}")
+    note(options, f"{counted}: {WORDS[verdict]}{facts_of_release(plan.release)}")
     return CODES[verdict]
 
 
@@ -120,6 +132,6 @@ def _watch(options: argparse.Namespace, plan: Expectation) -> int:
         return live.INCONCLUSIVE
     if options.output:
         findings = list(last.findings)
-        report_first(options, findings, About([options.plan], robot_words(plan)))
+        report_first(options, findings, About([options.plan], robot_words(plan), plan.release))
     pictures.deliver(options, plan, last.graph, last.findings)
     return _sum_up(options, plan, len(last.findings), final(last))

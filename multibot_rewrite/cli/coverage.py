@@ -16,6 +16,7 @@ from multibot_rewrite.cli.walk import check_target, find_files
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import InputError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release, release_here
 from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
@@ -53,6 +54,7 @@ class CoverageReport(NamedTuple):
     total: Survey
     unreadable: Sequence[Unreadable]
     exact: Explained
+    release: str
 
 
 def run(options: argparse.Namespace) -> int:
@@ -64,7 +66,9 @@ def run(options: argparse.Namespace) -> int:
         check_target(
             options.output, [*paths, *options.vocabulary, *filter(None, [options.explained])]
         )
-    tree = builtin_tree((*configured_vocabulary(paths[0]), *options.vocabulary))
+    tree = builtin_tree(
+        (*configured_vocabulary(paths[0]), *options.vocabulary), release_here(options.distro)
+    )
     unreadable: list[Unreadable] = []
     arguments = filled(xacro_args(options))
 
@@ -73,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
 
     found = _surveys(watched(paths, len(paths), "reading"), tree, read, unreadable)
     total = add(found)
-    report = CoverageReport(total, unreadable, explain(total, reasons))
+    report = CoverageReport(total, unreadable, explain(total, reasons), tree.vocabulary.release)
     if options.form == JSON:
         deliver(options, json_bytes(as_json(report)))
     else:
@@ -133,6 +137,7 @@ def as_json(report: CoverageReport) -> dict[str, object]:
     """The report as ``--form json`` writes it; docs/coverage.md describes it."""
     exact = report.exact
     return {
+        "distro": report.release,
         "files": {
             "read": report.total.files,
             "unreadable": [item._asdict() for item in report.unreadable],
@@ -189,7 +194,8 @@ def _inside(report: CoverageReport) -> list[tuple[MentionPlace, Tally]]:
 def _parts(report: CoverageReport, top: int | None) -> Iterator[str | Grid]:
     """What is printed; ``top`` is how many rows a table has at most."""
     total, exact = report.total, report.exact
-    yield f"{plural(total.files, 'file')} read, {len(report.unreadable)} cannot be read"
+    read = f"{plural(total.files, 'file')} read, {len(report.unreadable)} cannot be read"
+    yield f"{read}{facts_of_release(report.release)}"
     yield from (f"  {item.reason}" for item in report.unreadable)
     yield from _loaded_parts(total, "plugin", "plugins", top)
     yield from _loaded_parts(total, "hardware", "hardware classes", top)

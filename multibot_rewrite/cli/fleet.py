@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Iterable
 
 from multibot_rewrite.cli.output import note
@@ -13,6 +14,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import release_here
 from multibot_rewrite.remap.records import NodeFacts
 
 FLEET_FILES = (".yaml", ".yml")
@@ -66,7 +68,7 @@ def _from_file(options: argparse.Namespace) -> Fleet:
     given = given_options(options, OF_FLEET_FILE)
     if given:
         raise UsageError(f"{options.input}: a fleet file has its own, leave out {given[0]}")
-    file = read_fleet(options.input)
+    file = read_fleet(options.input, options.distro or "", os.environ)
     if options.output:
         check_target(options.output, input_files(file))
     return with_start_pose_nodes(plan_fleet(file, trust=options.trust))
@@ -87,12 +89,13 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,
+        release=release_here(options.distro),
     )
 
 
 def about(options: argparse.Namespace, made: Fleet) -> About:
     """What the findings of a fleet are about."""
-    return About([options.input], words_of(made))
+    return About([options.input], words_of(made), made.table.release)
 
 
 def words_of(made: Fleet) -> dict[str, str]:

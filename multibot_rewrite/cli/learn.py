@@ -21,6 +21,7 @@ from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import facts_of_release, release_here
 from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.nodl.lookup import SUFFIXES
 from multibot_rewrite.remap.stacks import built_in
@@ -40,7 +41,8 @@ def run(options: argparse.Namespace) -> int:
         say(f"incomplete: {caveat.message}", PROGRAM)
     namespace = options.namespace or "/"
     names = choose_nodes(graph, options.node, namespace)
-    library = built_in()
+    release = release_here(options.distro)
+    library = built_in(release)
     learned = learn(graph, names, namespace, library)
     remarks = [*_notes(graph, learned, options.namespace, bool(options.node))]
     as_nodl = _is_nodl(options)
@@ -51,7 +53,8 @@ def run(options: argparse.Namespace) -> int:
     for remark in remarks:
         note(options, f"note: {remark}")
     shape = "NoDL" if as_nodl else f"stack {options.stack}"
-    note(options, f"{plural(len(learned), 'node')} learned as {shape}")
+    what = f"{plural(len(learned), 'node')} learned as {shape}"
+    note(options, f"{what}{facts_of_release(release)}")
     return INCONCLUSIVE if doubtful else DONE
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections import Counter
 from collections.abc import Sequence
 from functools import partial
@@ -35,7 +34,7 @@ from multibot_rewrite.lint.registry import RULES
 from multibot_rewrite.lint.run import among, lint_files
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import chosen_release
+from multibot_rewrite.releases import facts_of_release, release_here
 
 SUFFIXES = (".urdf", ".xacro", ".srdf")
 STDIN = "-"
@@ -51,9 +50,9 @@ def run(options: argparse.Namespace) -> int:
             explain.list_rules(options, RULES) if options.list_rules else explain.of_option(options)
         )
     check_use(options)
-    config = with_options(configured(".", options.config), **given(options))
-    release = chosen_release(config.settings.distro, os.environ)
-    config = config._replace(settings=config.settings._replace(distro=release))
+    config = configured(".", options.config)
+    release = release_here(options.distro or config.distro)
+    config = with_options(config, **given(options), distro=release)
     paths, unreadable = _files(options, config)
     _check_targets(options, paths)
     findings = [*unreadable, *_lint(options, config.settings, paths)]
@@ -150,12 +149,13 @@ def _conclude(
         known = read_baseline(config.baseline)
         findings, stale = beyond(findings, known, config.baseline, paths)
     options.fail_on = config.fail_on
-    about = About(paths, by_themselves(config.settings.robots))
+    about = About(paths, by_themselves(config.settings.robots), config.settings.distro)
     if options.fix and options.diff:
         failed = fails(findings, config.fail_on)
     else:
         failed = report_first(options, findings, about, RULES)
-    note(options, _summary(options, paths, findings, stale))
+    end = facts_of_release(config.settings.distro)
+    note(options, f"{_summary(options, paths, findings, stale)}{end}")
     if any(it.code == CRASHED for it in findings):
         return UNUSABLE
     return STOPPED if failed else DONE

@@ -9,7 +9,7 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.sources.own_names import filled
 
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
-_PLAIN = ("urdf", "baseline", "fail_on", "trust", "distro")
+_PLAIN = ("urdf", "baseline", "fail_on", "trust")
 
 
 def check_use(options: argparse.Namespace) -> None:

@@ -10,6 +10,7 @@ from multibot_rewrite.cli.output import deliver, goes_to_file, note
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER, Fleet
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.bridged_topics import as_yaml, bridged_topics
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.table_formats import FORMS, given_to, standing_by_robot
@@ -49,7 +50,7 @@ def _bridge(options: argparse.Namespace, made: Fleet) -> str:
 
 
 def _parts(table: Table) -> Iterator[str | Grid]:
-    yield f"layout {table.layout}"
+    yield f"layout {table.layout}{facts_of_release(table.release)}"
     rows = [
         (robot, it.node.node, it.node.full_name, text, given_to(it))
         for robot, given in standing_by_robot(table)

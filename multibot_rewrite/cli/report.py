@@ -24,11 +24,12 @@ NO_RULES: Mapping[str, Rule] = MappingProxyType({})
 
 
 class About(NamedTuple):
-    """What findings are about: the files that were read, and the words that stand for robots in
-    texts (a name, a prefix), each with its robot."""
+    """What findings are about: the files that were read, the words that stand for robots in texts (a
+    name, a prefix), each with its robot, and the release whose facts they rest on."""
 
     files: Sequence[str]
     robots: Mapping[str, str] = NO_ROBOTS
+    release: str = ""
 
 
 def by_themselves(robots: Iterable[str]) -> dict[str, str]:
@@ -100,4 +101,5 @@ def _text(
 
         rules = all_rules()
     made_by = f"{options.program} {options.command}".removesuffix(f" {options.program}")
-    return rendered(options.format, shown, Report(made_by, about.files, rules), colour=colour)
+    report = Report(made_by, about.files, rules, about.release)
+    return rendered(options.format, shown, report, colour=colour)

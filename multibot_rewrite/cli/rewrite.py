@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from itertools import chain
@@ -33,7 +32,7 @@ from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
-from multibot_rewrite.releases import chosen_release
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.sources.own_names import name_robot
 from multibot_rewrite.sources.read import Source, read_source
 
@@ -79,12 +78,12 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
         again=options.again,
         file=input_name(options),
         trust=options.trust,
-        distro=chosen_release(options.distro or "", os.environ),
+        distro=options.distro or "",
     )
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
     others = list(rewrites) if first.prepared.job.naming.own else []
-    about = About([input_name(options)], by_themselves(names))
+    about = About([input_name(options)], by_themselves(names), first.distro)
     found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
     if report_beside(options, chosen(options, found), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
@@ -110,7 +109,7 @@ def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:
         vocabulary=vocabulary,
         file=name,
         trust=options.trust,
-        distro=chosen_release(options.distro or "", os.environ),
+        distro=options.distro or "",
         **extra,
     )
 
@@ -141,6 +140,7 @@ def changes_json(rewrites: Sequence[Rewrite]) -> bytes:
 
     table = {
         "file": rewrites[0].prepared.job.file,
+        "distro": rewrites[0].distro,
         "robots": {r.robot: [change._asdict() for change in r.changes] for r in rewrites},
     }
     return json.dumps(table, indent=1, ensure_ascii=False).encode() + b"\n"
@@ -169,4 +169,5 @@ def summary(first: Rewrite, robots: list[str], own_arguments: str = "") -> str:
     who = robots[0] if len(robots) == 1 else plural(len(robots), "robot")
     why = not_proved(first.findings)
     end = f"rewritten, not proved: {', '.join(why)}" if why else "proved"
+    end += facts_of_release(first.distro)
     return f"{who}: {', '.join(known) or 'nothing to rename'}{inserted}; {end}"

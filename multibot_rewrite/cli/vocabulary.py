@@ -12,10 +12,16 @@ from multibot_rewrite.cli.usage import check_xacro, plain_words, xacro_args
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.model import Site, UsageError
+from multibot_rewrite.releases import release_here
 from multibot_rewrite.reports.suggest import suggest, vocabulary_text
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import block_of, look_up, near_names
-from multibot_rewrite.rewriters.vocabulary import TYPES, Vocabulary, VocabularySection
+from multibot_rewrite.rewriters.vocabulary import (
+    TYPES,
+    Vocabulary,
+    VocabularySection,
+    load_vocabulary,
+)
 from multibot_rewrite.rewriters.vocabulary.describe import facts
 from multibot_rewrite.sources.own_names import filled
 from multibot_rewrite.sources.read import read_source
@@ -31,7 +37,9 @@ def run(options: argparse.Namespace) -> int:
     files = (*configured_vocabulary("-"), *options.vocabulary)
     if options.output:
         check_target(options.output, files)
-    vocabulary = builtin_tree(files).vocabulary
+    # Without a release the rows of all are shown, each with its own.
+    builtin_tree(files)
+    vocabulary = load_vocabulary(files, options.distro or "")
     types = [options.type] if options.type else list(TYPES)
     found = vocabulary.sections(*types) if name is None else _found(vocabulary, name, types)
     if options.form == JSON:
@@ -82,7 +90,8 @@ def _row(site: Site, section: VocabularySection) -> tuple[str, ...]:
     not_inserted = " (not inserted)" if site.default and not section.inserts else ""
     block = block_of(site)
     shared = f" [block {block}]" if block else ""
-    note = " ".join(filter(None, [site.note, f"(when {site.when})" if site.when else ""]))
+    here = f"in {site.releases}:" if site.releases else ""
+    note = " ".join(filter(None, [here, site.note, f"(when {site.when})" if site.when else ""]))
     return (
         site.path,
         site.role,
@@ -102,6 +111,7 @@ def as_json(section: VocabularySection) -> dict[str, object]:
         "ros": section.ros,
         "about": section.about,
         "source": section.source,
+        "releases": section.releases,
         "file": section.file,
         "line": section.line,
         "at": section.at,
@@ -121,6 +131,7 @@ def _row_json(site: Site, section: VocabularySection) -> dict[str, object]:
         "inserted": bool(site.default) and section.inserts,
         "when": site.when,
         "note": site.note,
+        "releases": site.releases,
         "block": block_of(site),
         "file": site.file,
         "line": site.line,
@@ -134,7 +145,8 @@ def _suggest(options: argparse.Namespace) -> int:
     if options.output:
         check_target(options.output, [options.suggest, *options.vocabulary])
     data, name = read_source(options.suggest, filled(xacro_args(options)), options.trust)
-    tree = builtin_tree((*configured_vocabulary(options.suggest), *options.vocabulary))
+    files = (*configured_vocabulary(options.suggest), *options.vocabulary)
+    tree = builtin_tree(files, release_here(options.distro))
     sections = suggest(collect(read_document(data, name), tree))
     text = vocabulary_text(sections, options.suggest)
     deliver(options, text.encode("utf-8", "backslashreplace"))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from collections.abc import Iterator
 
 from multibot_rewrite.cli.process import DONE
@@ -12,7 +11,6 @@ from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.config import configured_vocabulary
 from multibot_rewrite.library import explain
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.reports.explain import Explanation
 
 EXAMPLE_ROBOT = "robot1"
@@ -31,8 +29,8 @@ def run(options: argparse.Namespace) -> int:
         urdf=options.urdf,
         xacro_args=xacro_args(options),
         trust=options.trust,
+        distro=options.distro or "",
         vocabulary=[*configured_vocabulary(path), *options.vocabulary],
-        distro=chosen_release(options.distro or "", os.environ),
         **policy(options),
     )
     if not found:

@@ -56,7 +56,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             *rviz_files(configs),
             *bridge_outputs(plan),
             *_tables(plan, fleet),
-            *commands_file(each, rviz_commands(configs)),
+            *commands_file(each, rviz_commands(configs), plan.file.distro),
         ]
         files = sorted(it for it in made if isinstance(it, OutputFile))
         _check_paths_differ(files)

@@ -9,18 +9,22 @@ from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.started import SPAWN, arguments, started
 from multibot_rewrite.remap.ways import SPAWNER
 
 COMMANDS, START = "commands.md", "start_pose.yaml"
 
 
-def commands_file(each: Iterable[FleetPlan], windows: Iterable[str]) -> FilesAndFindings:
+def commands_file(
+    each: Iterable[FleetPlan], windows: Iterable[str], release: str
+) -> FilesAndFindings:
     """The commands robot by robot, and the parameters of those that amcl has to place.
 
-    ``each`` is every robot as a fleet of its own, ``windows`` the lines that open RViz.
+    ``each`` is every robot as a fleet of its own, ``windows`` the lines that open RViz, ``release``
+    that whose facts they rest on.
     """
-    rows = ["# Commands of this fleet\n"]
+    rows = [f"# Commands of this fleet{facts_of_release(release)}\n"]
     for one in each:
         (robot,) = one.robots
         poses = start_poses(one)

@@ -203,4 +203,4 @@ def expected(fleet: Fleet) -> Expectation:
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
-    return plan
+    return plan._replace(release=fleet.table.release)

@@ -35,10 +35,14 @@ def hash_of(data: bytes) -> str:
     return sha256(data).hexdigest()
 
 
-def manifest(files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str) -> OutputFile:
-    """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path."""
+def manifest(
+    files: Iterable[OutputFile], inputs: Mapping[str, bytes], folder: str, release: str
+) -> OutputFile:
+    """The manifest of a build into ``folder``; ``inputs`` are the files that were read, by path, and
+    ``release`` is that whose facts it rests on."""
     data = {
         "format": FORMAT,
+        "distro": release,
         "inputs": {os.path.relpath(path, folder): hash_of(inputs[path]) for path in sorted(inputs)},
         "outputs": {it.path: hash_of(it.data) for it in files},
     }

@@ -286,15 +286,19 @@ class LoadedFleet:
 
 
 @checked
-def load_fleet(path: str | os.PathLike[str], *, trust: bool = False) -> LoadedFleet:
+def load_fleet(
+    path: str | os.PathLike[str], *, trust: bool = False, distro: str = ""
+) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
 
-    ``trust`` lets xacro files do anything; without it they only compute (SECURITY.md).
+    ``trust`` lets xacro files do anything; without it they only compute (SECURITY.md). ``distro``
+    is the ROS 2 release whose facts count (default: the fleet file's, else ROS_DISTRO, else the newest
+    LTS).
 
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
     robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
-    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path)), trust=trust))
+    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path), distro, os.environ), trust=trust))
     _refuse(fleet.findings)
     return fleet
 

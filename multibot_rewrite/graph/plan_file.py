@@ -16,21 +16,23 @@ from multibot_rewrite.graph.expectation import (
     vacuous,
 )
 from multibot_rewrite.model import InputError
+from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import KINDS, ROLES
+from multibot_rewrite.remap.yaml_with_lines import unknown
 
 HEAD = """\
 # What the graph of this fleet is to look like. Endpoints: [role, kind, name, type, name in the code].
 # Take out what is not started, add what is: `multibot check` compares exactly this.
 # optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
 # patterns of nodes that may come and go, beside the usual tools. sources: the plugin that starts a
-# node. from: the file or stack that names a node.
+# node. from: the file or stack that names a node. distro: the ROS 2 release that the nodes are of.
 # spelled: what stands for a robot in its frames, where that is not its name.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
 # Node -> text; key -> field of Expectation.
 BY_NODE = {"sources": "sources", "from": "origins"}
-OPTIONAL_KEYS = ("ignored_nodes", *BY_NODE)
+OPTIONAL_KEYS = ("distro", "ignored_nodes", *BY_NODE)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -54,7 +56,7 @@ def to_yaml(plan: Expectation) -> str:
         types = OR.join((end.type, *end.also))
         rows[end.node].append([end.role, end.kind, end.name, types, end.code_name])
     quote = cache(_quoted)
-    parts = [HEAD]
+    parts = [HEAD, *[f"distro: {plan.release}\n"] * bool(plan.release)]
     for key in (*KEYS[:-1], "ignored_nodes"):
         value = getattr(plan, key)
         parts.append(f"{key}: {quote(value) if isinstance(value, str) else _flow(value, quote)}\n")
@@ -116,6 +118,7 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         robot, ends = _read_robot(str(name), given, file)
         robots.append(robot)
         endpoints += ends
+    sources, origins = (tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE)
     plan = Expectation(
         str(top["layout"]),
         tuple(robots),
@@ -124,12 +127,21 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         frames,
         tuple(endpoints),
         _texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
-        *(tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE),
+        sources,
+        origins,
+        _release(top.get("distro", ""), file),
     )
     nothing = vacuous(plan)
     if nothing:
         raise InputError(f"{file}: {nothing}, so every graph would be as planned; {_REMEDY}")
     return plan
+
+
+def _release(value: object, file: str) -> str:
+    """A plan of an earlier version has none."""
+    if value and value not in RELEASES:
+        raise InputError(f"{file}: distro: {unknown('release', str(value), RELEASES)}")
+    return str(value)
 
 
 def _read_robot(name: str, given: object, file: str) -> tuple[PlannedRobot, list[PlannedEndpoint]]:

@@ -51,12 +51,28 @@ def edges_of(
 
 
 def description_edges(inventory: Inventory) -> Iterator[Edge]:
-    """The transforms that robot_state_publisher sends for the joints of a description."""
+    """The transforms that robot_state_publisher sends for the joints of a description.
+
+    It knows links alone: a frame of an SDF is the link that it is attached to (sdformat,
+    ``Joint::ResolveParentLink``).
+    """
+    frames = inventory.document.root.iter("frame")
+    attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
     for joint in inventory.document.root.iter("joint"):
         ends = [joint.find(tag) for tag in ("parent", "child")]
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
-            yield Edge(names[0], names[1], joint.get("type") == "fixed")
+            parent, child = (_attached_to(name, attached) for name in names)
+            yield Edge(parent, child, joint.get("type") == "fixed")
+
+
+def _attached_to(name: str, attached: Mapping[str, str]) -> str:
+    """What a chain of frames ends at; a frame that is attached to nothing known stays itself."""
+    for _ in attached:
+        if not attached.get(name):
+            return name
+        name = attached[name]
+    return name
 
 
 def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:

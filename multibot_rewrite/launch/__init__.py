@@ -31,8 +31,8 @@ Action = Any
 Context = Any
 Substitution = Any
 Make = Callable[[LoadedRobot], Iterable[Action]]
-# Launch configurations: fleet and robot of a group; whether xacro files may do anything ("true").
-FLEET, ROBOT, TRUST = "multibot_fleet", "multibot_robot", "multibot_trust"
+# Launch configurations: fleet and robot of a group; may xacro files do anything ("true")? the release.
+FLEET, ROBOT, TRUST, DISTRO = (f"multibot_{it}" for it in ("fleet", "robot", "trust", "distro"))
 # What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
 _FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
 FILE = "file"
@@ -64,14 +64,14 @@ def missing() -> str:
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     """The fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
 
-    ``fleet`` may hold substitutions. The launch configuration ``multibot_trust:=true`` is
-    ``load_fleet``'s ``trust``. Warnings go to launch's log. Raises as ``load_fleet``.
+    ``fleet`` may hold substitutions. The launch configurations ``multibot_trust:=true`` and
+    ``multibot_distro`` are options of ``load_fleet``. Warnings go to launch's log. Raises as that.
     """
     path = _scoped(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
     known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
     if path not in known:
-        trusted = str(context.launch_configurations.get(TRUST, "")).lower() in ("true", "1")
-        known[path] = load_fleet(path, trust=trusted)
+        trust, distro = (str(context.launch_configurations.get(it, "")) for it in (TRUST, DISTRO))
+        known[path] = load_fleet(path, trust=trust.lower() in ("true", "1"), distro=distro)
         _warn(context, known[path].findings)
     return known[path]
 

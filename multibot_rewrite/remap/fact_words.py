@@ -61,11 +61,6 @@ def check_apart(item: YamlItem, what: str, words: Sequence[str]) -> None:
             wrong(item, f"{what} is there twice in {release}; give each its own {RELEASES_KEY}")
 
 
-def share_release(words: str, others: str) -> bool:
-    """Is there a release in which both facts hold?"""
-    return any(has_release(words, it) and has_release(others, it) for it in RELEASES)
-
-
 def text_and_words(item: YamlItem, what: str, key: str) -> Mapping[str, YamlItem]:
     """The keys of a value that is a text alone, which is its ``key``, or a mapping with it."""
     if not isinstance(item.value, Mapping):

@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import share_release
 from multibot_rewrite.remap.endpoint_entries import checked_endpoint, endpoints_of
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
     condition_of,
     releases_of,
-    share_release,
     source_of,
     text_and_words,
     variants,

@@ -7,6 +7,7 @@ import shlex
 from collections.abc import Callable, Iterator
 from xml.sax.saxutils import escape
 
+from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.started import Started, arguments, launch_arguments, started
 from multibot_rewrite.remap.ways import (
@@ -31,7 +32,12 @@ def ros_args(table: Table) -> str:
     For a controller they are those of its spawner, for a component those of ``ros2 component load``.
     A node that nothing is started for has no line.
     """
-    return "".join(_ros_args(it) for it in started(table))
+    return _comment(table) + "".join(_ros_args(it) for it in started(table))
+
+
+def _comment(table: Table) -> str:
+    """A line that says whose facts the table rests on, for shells and Python."""
+    return f"# Facts of {table.release}\n" if table.nodes else ""
 
 
 def _ros_args(it: Started) -> str:
@@ -43,7 +49,7 @@ def _ros_args(it: Started) -> str:
 def launch(table: Table) -> str:
     """Python for a launch file: robot -> node -> arguments, by what is started for the nodes."""
     found = list(started(table))
-    return "".join(_launch_table(found, *it) for it in _LAUNCH)
+    return _comment(table) + "".join(_launch_table(found, *it) for it in _LAUNCH)
 
 
 _LAUNCH = (
@@ -124,7 +130,7 @@ def as_yaml(table: Table) -> str:
 
 def gazebo(table: Table) -> str:
     """``<ros>`` blocks for Gazebo Classic and gz_ros2_control plugins, one for each node."""
-    blocks = []
+    blocks = [f"<!-- Facts of {table.release} -->\n"] * bool(table.release)
     for node in table.nodes:
         rows = [f"  <namespace>{escape(node.namespace)}</namespace>"] * (node.namespace != "/")
         rows += [
@@ -139,7 +145,7 @@ def gazebo(table: Table) -> str:
 
 def markdown(table: Table) -> str:
     """One Markdown table for each robot."""
-    parts = [f"# Remap table, layout {table.layout}\n"]
+    parts = [f"# Remap table, layout {table.layout}{facts_of_release(table.release)}\n"]
     for robot, given in standing_by_robot(table):
         parts.append(f"\n## {robot}\n\n| node | runs as | rule | given to |\n|---|---|---|---|\n")
         for it in given:

@@ -11,12 +11,10 @@ from multibot_rewrite.rewriters.vocabulary import advice, load_vocabulary
 
 
 @lru_cache(maxsize=8)
-def builtin_tree(vocabulary: tuple[str, ...] = (), release: str = "") -> Tree:
-    """The tree of the vocabulary built in, installed, and named in ``vocabulary``; made once.
-
-    It is read for ``release``, the newest LTS where that is empty.
-    """
-    sections = load_vocabulary(vocabulary, release=release or NEWEST_LTS)
+def builtin_tree(vocabulary: tuple[str, ...] = (), release: str = NEWEST_LTS) -> Tree:
+    """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
+    once."""
+    sections = load_vocabulary(vocabulary, release)
     try:
         tree = Tree(sections)
         if sections.extended:

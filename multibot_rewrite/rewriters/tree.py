@@ -178,7 +178,7 @@ class Tree:
             self.tags.add(_tag(name))
         elif parent in self._below:
             self._below[parent].append(name)
-        else:
+        elif not self.vocabulary.has("element", parent):
             (section, *_) = self.vocabulary.find("element", name)
             raise _wrong(section, f"at: {parent}: there is no [element {parent}]")
 

@@ -38,8 +38,8 @@ from multibot_rewrite.steps.plan import make_plan
 
 class Job(NamedTuple):
     """Bytes, options and file names; ``file`` is the name in messages, ``urdf`` the bytes and the
-    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is the
-    one whose facts count. It holds no parsed document, so it can be pickled."""
+    name of the URDF beside an SRDF; ``own`` says more where it is one robot's own; ``release`` is that
+    whose facts count. It holds no parsed document, so it can be pickled."""
 
     data: bytes
     file: str
@@ -139,7 +139,7 @@ def reader(
         args = dict(pairs)
         data, name = read_source(source, args_for(source, urdf, args), trust)
         beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
-        return Job(data, file or name, naming, vocabulary, beside, OF_ALL, release)
+        return Job(data, file or name, naming, vocabulary, beside, release=release)
 
     return lambda args: read(frozenset(args.items()))
 

@@ -265,7 +265,7 @@ def test_the_report_counts_by_kind(folder: Path, rover: bytes) -> None:
     start = f"urdf-postfix: robot1: {links} links, {joints} joints, 3 sensors, 1 model"
     assert result.err.startswith(start)
     assert ", 5 nodes, 1 topic word, 2 topics, " in result.err
-    assert result.err.endswith("; proved\n")
+    assert result.err.endswith("; proved (facts of lyrical)\n")
     assert result.err.count("\n") == 1
 
 

@@ -63,6 +63,17 @@ def test_a_parameter_file_does_not_take_a_document_away(tmp_path: Path) -> None:
     assert "/robot1/laser" in found
 
 
+def test_a_node_that_a_parameter_file_alone_names_has_its_document(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    params = tmp_path / "params.yaml"
+    params.write_text("amcl:\n  ros__parameters:\n    base_frame_id: base_link\n")
+    file = Path(fleet(tmp_path, more="companions: {params: params.yaml}\n"))
+    file.write_text(file.read_text().replace("stack: amcl\n", ""))
+    assert main(["build", str(file), "-o", str(tmp_path / "out")]) == 0
+    assert "amcl as in" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("nodl", "document", "place"),
     [

@@ -65,7 +65,7 @@ def test_a_collision_is_found_without_any_stack(
     code, out, err = run(capsys, "check", plan, "--snapshot", str(COLLISION))
     assert code == 1
     assert "MG202 frames base_link" in out
-    assert err.endswith("not as planned\n")
+    assert err.endswith("not as planned (facts of lyrical)\n")
     assert "2 robots" in err
 
 

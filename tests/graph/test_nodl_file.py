@@ -80,6 +80,14 @@ def test_names_are_those_of_the_code_and_qos_is_as_seen() -> None:
     ]
 
 
+def test_a_depth_that_is_not_announced_is_not_written() -> None:
+    qos = WHOLE._replace(depth=0)
+    (found,) = section("publishers", end("topic", "publishes", "/robot1/x", "a/msg/B", qos))
+    given = found["qos"]
+    assert isinstance(given, dict)
+    assert (given["history"], given.get("depth")) == ("SYSTEM_DEFAULT", None)
+
+
 def test_two_types_are_two_entries_and_the_clock_is_left_out() -> None:
     found = section(
         "subscriptions",

@@ -16,7 +16,7 @@ from multibot_rewrite.graph.snapshot import Caveat, Snapshot, to_json
 from multibot_rewrite.model import InputError
 
 ROVER = str(FIXTURES / "robots" / "rover.urdf")
-FLEET = (ROVER, "robot1", "robot2", "--stack", "nav2", "--layout", "both")
+FLEET = (ROVER, "robot1", "robot2", "--stack", "nav2,robot_state", "--layout", "both")
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +60,7 @@ def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
 def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     code, out, err = held(plan, as_planned(plan), capsys)
     assert (code, out) == (0, "")
-    assert err == "multibot: 2 robots, 0 findings: as planned\n"
+    assert err == "multibot: 2 robots, 0 findings: as planned (facts of lyrical)\n"
 
 
 def test_why_cmd_vel_never_comes(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -185,20 +185,23 @@ def test_a_cause_names_the_line(plan: Path, capsys: pytest.CaptureFixture[str]) 
 
 def test_a_plan_from_before_is_read(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
     graph = as_planned(plan)
-    text = plan.read_text().partition("\nsources:")[0].replace("ignored_nodes: []\n", "") + "\n"
+    text = plan.read_text().partition("\nsources:")[0].replace("distro: lyrical\n", "") + "\n"
     kept = re.sub(r"^    (other_frames|optional): \[[^]]*\]\n", "", text, flags=re.MULTILINE)
-    assert len(kept) < len(text)
+    assert len(kept) < len(plan.read_text())
     plan.write_text(kept)
     assert from_yaml(plan.read_bytes(), "plan").sources == ()
     assert held(plan, graph, capsys)[:2] == (0, "")
 
 
 def test_a_node_under_a_condition_is_optional(
-    plan: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    first, _ = from_yaml(plan.read_bytes(), "plan").robots
-    assert first.optional == ("/robot1/route_server",)
-    assert held(plan, without_node(as_planned(plan), "/robot1/route_server"), capsys)[0] == 0
+    plan = tmp_path / "plan.yaml"
+    command = ["plan", str(ROVER), "robot1", "--stack", "robot_state", "--layout", "L2"]
+    assert main([*command, "-o", str(plan)]) == 0
+    node = "/robot1/joint_state_publisher"
+    assert from_yaml(plan.read_bytes(), "plan").robots[0].optional == (node,)
+    assert held(plan, without_node(as_planned(plan), node), capsys)[0] == 0
 
 
 def test_types_by_parameter_are_all_in_the_plan(plan: Path) -> None:

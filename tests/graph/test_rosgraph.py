@@ -107,6 +107,23 @@ def test_the_graph_of_nav2_keeps_its_endpoints(layout: str) -> None:
     assert [it.name for it in again.nodes] == [it.name for it in graph.nodes]
 
 
+def test_a_server_of_an_action_publishes_its_topics() -> None:
+    swapped = MESSAGE.replace("  action_servers: []\n", "").replace(
+        "action_clients:", "action_servers:"
+    )
+    value = swapped.replace("service_clients: []", "service_clients: []\n  action_clients: []")
+    roles = {it.name.rpartition("/")[2]: it.role for it in from_yaml(value, "f").endpoints}
+    assert (roles["go"], roles["send_goal"], roles["status"]) == ("serves", "serves", "publishes")
+
+
+def test_a_policy_that_the_message_does_not_have_is_unknown() -> None:
+    qos = Qos("KEEP_LAST", 1, "RELIABLE", "OF_TOMORROW", INF, INF, "AUTOMATIC", INF)
+    ends = (GraphEndpoint("topic", "publishes", "/x", "a/msg/B", "", "/a", qos, ""),)
+    graph = Snapshot((GraphNode("/a", ""),), ends, (), environment())
+    (found,) = from_yaml(to_yaml(graph).decode(), "f").endpoints
+    assert found.qos == qos._replace(durability="UNKNOWN")
+
+
 def test_topics_of_an_action_without_the_action_stay_topics() -> None:
     name = "/go/_action/feedback"
     end = GraphEndpoint(

@@ -249,6 +249,7 @@ JSON = object_of(
     version={"const": 2},
     tool=STRING,
     files=NUMBER,
+    distro={"type": ["string", "null"]},
     counts=object_of(**dict.fromkeys(LEVELS, NUMBER)),
     findings=list_of(JSON_FINDING),
 )
@@ -266,6 +267,13 @@ def test_json_is_the_documented_object(linted: Linted) -> None:
             finding.column,
         )
         assert (it["message"], it["hint"]) == (finding.message, finding.hint)
+
+
+def test_the_release_is_a_property_of_json_and_sarif() -> None:
+    about = Report("lint", [], {}, "humble")
+    assert json.loads(formats.rendered("json", [], about))["distro"] == "humble"
+    (run,) = json.loads(formats.rendered("sarif", [], about))["runs"]
+    assert run["properties"] == {"distro": "humble"}
 
 
 def test_json_tells_of_macros_and_edits(nasty: Linted) -> None:

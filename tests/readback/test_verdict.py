@@ -69,7 +69,8 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     file.write_text(LIDAR.format("{name}/scan"))
     done = run(tmp_path, "r.urdf", "robot1", "-o", str(out))
     assert done.code == 0
-    assert done.err.endswith("; rewritten, not proved: 1 topic shared by all robots\n")
+    end = "; rewritten, not proved: 1 topic shared by all robots (facts of lyrical)\n"
+    assert done.err.endswith(end)
     out.unlink()
     stopped = run(tmp_path, "r.urdf", "robot1", "-o", str(out), "--strict")
     assert stopped.code == 1
@@ -77,7 +78,7 @@ def test_the_summary_and_strict(tmp_path: Path) -> None:
     assert "proved" not in stopped.err
     healthy = run(tmp_path, str(ROBOTS / "rover.urdf"), "robot1", "-o", str(out), "--strict")
     assert healthy.code == 0
-    assert healthy.err.endswith("; proved\n")
+    assert healthy.err.endswith("; proved (facts of lyrical)\n")
 
 
 def test_what_is_not_shown_is_a_reason_all_the_same(tmp_path: Path) -> None:

@@ -257,6 +257,14 @@ def test_a_document_is_found_by_the_usual_name_of_a_node_that_a_stack_renames(
     assert found["lifecycle_manager_localization"].interface == path
 
 
+def test_a_document_may_have_the_name_of_the_executable(tmp_path: Path) -> None:
+    # robot_localization and slam_toolbox, CMakeLists.txt: add_executable.
+    path = written(tmp_path, "robot_localization__ekf_node.nodl.yaml", document("new"))
+    assert node_of("ekf_filter_node", path).interface == path
+    path = written(tmp_path, "slam_toolbox__sync_slam_toolbox_node.nodl.yaml", document("new"))
+    assert node_of("slam_toolbox", path).interface == path
+
+
 def test_a_node_of_the_users_own_file_stays_and_names_its_document_otherwise(
     tmp_path: Path,
 ) -> None:

@@ -31,7 +31,8 @@ from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 # As a user names them: messages hold the paths.
 GRAPHS, ROVER = "fixtures/graphs", "fixtures/robots/rover.urdf"
-FLEET = (ROVER, "robot1", "robot2", "--nodes", f"{GRAPHS}/nodes.yaml", "--stack", "small")
+_NODES = ("--nodes", f"{GRAPHS}/nodes.yaml", "--stack", "small", "--distro", "jazzy")
+FLEET = (ROVER, "robot1", "robot2", *_NODES)
 # Layout -> folder of its plan and graphs.
 FOLDERS = {
     "frames-per-robot": GRAPHS,

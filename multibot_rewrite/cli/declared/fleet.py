@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -55,6 +56,7 @@ _DESCRIPTION = OptionGroup(
             [],
         ),
         VOCABULARY,
+        DISTRO,
         TRUST,
     ),
 )
@@ -74,7 +76,7 @@ BUILD = Command(
         Example("multibot build fleet.yaml -o out/ --check", "in CI: what is stale?"),
     ),
     (
-        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), TRUST)),
+        OptionGroup("input", (argument("fleet", "FLEET", "the fleet file, YAML"), DISTRO, TRUST)),
         output_group(
             output("write everything into that folder", required=True),
             switch("--check", about="list what is stale, write nothing"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from multibot_rewrite.cli import values
 from multibot_rewrite.cli.declared.shared import (
+    DISTRO,
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
@@ -50,6 +51,7 @@ CHECK = Command(
                     " the live graph",
                     type=values.path,
                 ),
+                DISTRO,
                 TRUST,
             ),
         ),
@@ -103,6 +105,7 @@ LEARN = Command(
                     " the live graph",
                     type=values.path,
                 ),
+                DISTRO,
             ),
         ),
         output_group(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.declared.shared import GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
+from multibot_rewrite.cli.declared.shared import DISTRO, GENERAL, RESULT_OUTPUT, TRUST, VOCABULARY
 from multibot_rewrite.cli.options import (
     Command,
     Example,
@@ -34,6 +34,7 @@ ARGUMENTS = Command(
             (
                 argument("words", "FILE.xacro", "a xacro; NAME:=VALUE are arguments of it", "*"),
                 VOCABULARY,
+                DISTRO,
                 TRUST,
             ),
         ),
@@ -59,6 +60,7 @@ COVERAGE = Command(
             (
                 argument("words", "PATH", "files and folders; NAME:=VALUE is for xacro", "+"),
                 VOCABULARY,
+                DISTRO,
                 TRUST,
                 value(
                     "--explained",
@@ -145,6 +147,7 @@ VOCABULARY_LOOKUP = Command(
                     type=values.path,
                 ),
                 VOCABULARY,
+                DISTRO,
                 TRUST,
             ),
         ),

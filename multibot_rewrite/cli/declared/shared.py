@@ -13,7 +13,7 @@ from multibot_rewrite.naming import (
     SHARED_FRAMES,
     SHARED_TOPICS,
 )
-from multibot_rewrite.releases import NEWEST_LTS, RELEASES
+from multibot_rewrite.releases import NEWEST_LTS, RELEASES, VARIABLE
 
 # argparse's word for an option that leaves what is there alone.
 SUPPRESS = "==SUPPRESS=="
@@ -67,15 +67,16 @@ VOCABULARY = several(
     "--vocabulary", "FILE", "what more plugins mean by their parameters (docs/add-a-plugin.md)", []
 )
 URDF = value("--urdf", metavar="FILE", about="the URDF that an SRDF belongs to", type=values.path)
+DISTRO = choice(
+    "--distro",
+    "NAME",
+    RELEASES,
+    f"the ROS 2 release whose facts count: {', '.join(RELEASES)}; default: the fleet file's or"
+    f" configuration's, else {VARIABLE}, else {NEWEST_LTS}",
+)
 TRUST = switch(
     "--trust",
     about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",
-)
-DISTRO = value(
-    "--distro",
-    metavar="NAME",
-    about=f"the ROS release: {', '.join(RELEASES)}; default: ROS_DISTRO, else {NEWEST_LTS}",
-    type=values.one_of(RELEASES),
 )
 FINDINGS = OptionGroup(
     "findings",

@@ -26,12 +26,13 @@ FORMATS = {
 
 
 class Report(NamedTuple):
-    """What a report says beside its findings: the command that made it, the files that were read
-    and all rules by code."""
+    """What a report says beside its findings: the command that made it, the files that were read,
+    all rules by code, and the ROS 2 release whose facts it rests on."""
 
     tool: str
     files: Sequence[str]
     rules: Mapping[str, Rule]
+    release: str = ""
 
 
 def rendered(

@@ -19,6 +19,7 @@ def render(findings: Sequence[Finding], report: Report) -> str:
     table = {
         "version": VERSION,
         "tool": report.tool,
+        "distro": report.release or None,
         "files": len(report.files),
         "counts": counts(findings),
         "findings": [_finding(it, report) for it in findings],

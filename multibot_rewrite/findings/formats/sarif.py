@@ -48,6 +48,7 @@ def render(findings: Sequence[Finding], report: Report) -> str:
         "originalUriBaseIds": {_ROOT: {"description": {"text": _ROOT_SAID}}},
         "artifacts": [{"location": _file(path)} for path in dict.fromkeys(report.files)],
         "columnKind": "unicodeCodePoints",
+        **({"properties": {"distro": report.release}} if report.release else {}),
         "results": [
             _result(it, report, numbers, fingerprint)
             for it, fingerprint in zip(findings, fingerprints(findings), strict=True)

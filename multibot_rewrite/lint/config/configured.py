@@ -39,7 +39,8 @@ class Configured(NamedTuple):
     """The settings, and how a command treats files and findings.
 
     ``exclude`` are patterns for ``is_excluded``; ``fail_on`` is the lowest level that makes a lint
-    fail; ``file`` is where this was read, empty for nowhere; ``naming`` are the options that
+    fail; ``file`` is where this was read, empty for nowhere; ``distro`` is the release that it asks
+    for, empty for none; ``naming`` are the options that
     ``make_naming`` made the settings' naming from.
     """
 
@@ -49,6 +50,7 @@ class Configured(NamedTuple):
     fail_on: str = WARNING
     file: str = ""
     naming: Mapping[str, Any] = DEFAULT_NAMING
+    distro: str = ""
 
 
 def configured(near: str, file: str | None) -> Configured:

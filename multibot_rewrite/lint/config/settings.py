@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.findings.selection import NO_LEVELS, matched
 from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 
 ALL = ("MB",)
 TARGETS = ("usd", "mjcf")
@@ -39,8 +40,8 @@ class Settings(NamedTuple):
     linted together with them. ``included`` are xacro files that are linted through those which
     include them. ``seconds`` is the time limit for one file. ``trust`` lets xacro
     files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
-    looks in: a configuration gives them no folder outside of its own. ``distro`` is the release whose
-    facts count, the newest LTS where it is empty.
+    looks in: a configuration gives them no folder outside of its own. ``distro`` is the ROS 2 release
+    whose facts count.
     """
 
     select: tuple[str, ...] = ALL
@@ -59,7 +60,7 @@ class Settings(NamedTuple):
     seconds: float = TIME_LIMIT
     trust: bool = False
     readable: tuple[str, ...] = ()
-    distro: str = ""
+    distro: str = NEWEST_LTS
 
 
 def matches(path: str, pattern: str) -> bool:

@@ -84,6 +84,10 @@ def _level(given: Given) -> str:
     return _one_of(given, LEVELS)
 
 
+def _release(given: Given) -> str:
+    return _one_of(given, RELEASES)
+
+
 def targets(given: Given) -> tuple[str, ...]:
     return tuple(_one_of(given._replace(value=it), TARGETS) for it in _texts(given))
 
@@ -200,6 +204,7 @@ READERS: Mapping[str, Callable[[Given], object]] = {
     "shared-topics": _texts,
     "targets": targets,
     "roots": _folders,
+    "distro": _release,
     "urdf": _file,
     "vocabulary": _files,
     "xacro": _argument_sets,
@@ -207,7 +212,6 @@ READERS: Mapping[str, Callable[[Given], object]] = {
     "baseline": _path,
     "fail-on": _level,
     "seconds": _seconds,
-    "distro": lambda given: _one_of(given, RELEASES),
 }
 # Keys whose field has another name.
 FIELDS = {"per-file-ignores": "per_file", "xacro": "arguments"}

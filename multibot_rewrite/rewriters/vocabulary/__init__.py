@@ -29,6 +29,8 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
     empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
                        if it was not there (usual for a namespace: the root); ``model``, the model's
                        name; ``itself``, the empty text (usual for the rest)
+    releases=WORDS     the only releases that read it, without blanks: ``kilted+``, ``<=jazzy``,
+                       ``humble,jazzy``; a path may have a line for one release and another one
 
 Kinds are those of ``naming.SEPARATORS`` and ``collision`` (the name of a collision that the
 URDF -> SDF conversion made from a link's). A link, joint, model or group is renamed only where this
@@ -66,10 +68,11 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     process_wide: yes | no its remap rules hold for every node of the process (default: no)
     about: TEXT            what it is
     source: TEXT           where in which source that can be read
+    releases: WORDS        the only releases that have it: ``kilted+``, ``<=jazzy``, ``humble, jazzy``
 
-A section may be given again, in another file too: it adds lines and topics to the first one. Two
-lines at one path are refused. Files are the built-in ones, those of installed packages (see
-``installed``) and those a call or a command names, in this order.
+A section may be given again, in another file too: it adds lines and topics to the first one; with
+``releases`` in these releases alone. Two lines at one path are refused. Files are the built-in ones,
+those of installed packages (see ``installed``) and those a call or a command names, in this order.
 """
 
 from __future__ import annotations
@@ -82,7 +85,7 @@ from functools import lru_cache
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
-from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.releases import NEWEST_LTS, has_release, is_release_words
 from multibot_rewrite.rewriters.vocabulary.grammar import (
     FORMS,
     KINDS,
@@ -101,6 +104,7 @@ from multibot_rewrite.rewriters.vocabulary.installed import advice, installed
 HERE = os.path.dirname(__file__)
 Raw = tuple[str, int, str]
 _AT = lazy_compile(r"^at:(.*)", re.MULTILINE)
+_RELEASES = lazy_compile(r"^releases:(.*)", re.MULTILINE)
 
 __all__ = [
     "FORMS",
@@ -120,7 +124,8 @@ __all__ = [
 class Vocabulary:
     """The sections of several files, parsed on demand; build with ``load_vocabulary``.
 
-    ``extended`` tells that some of them are not built in. ``release`` is the one they are read for.
+    ``extended`` tells that some of them are not built in. It is of one ``release``, or has what all of
+    them have, where that is empty.
     """
 
     def __init__(
@@ -161,16 +166,29 @@ class Vocabulary:
             return self._found.get(key, ())
         made: list[VocabularySection] = []
         for raw in self._raw[key]:
-            self._add(made, self._read(*raw, within))
+            section = self._read(*raw, within)
+            if self._is_here(section.releases):
+                self._add(made, section)
         # Whole when others see it; two threads that make it at once both get the first one's.
         return self._found.setdefault(key, tuple(made))
 
     def _add(self, found: list[VocabularySection], new: VocabularySection) -> None:
-        same = [at for at, old in enumerate(found) if new.ros in ("", old.ros)]
+        same = [
+            at
+            for at, old in enumerate(found)
+            if new.ros in ("", old.ros) and (self.release or new.releases == old.releases)
+        ]
         for at in same:
             found[at] = merge(found[at], new)
         if not same:
             found.append(new)
+
+    def _is_here(self, words: str) -> bool:
+        return not self.release or has_release(words, self.release)
+
+    def has(self, type_: str, name: str) -> bool:
+        """Is there a section of that type and name, in this release or another?"""
+        return name in self._names[type_]
 
     def names(self, type_: str) -> list[str]:
         """Every name and alias of that type."""
@@ -179,8 +197,9 @@ class Vocabulary:
     def places(self) -> dict[str, list[str]]:
         """Each element with a section and the elements it may be in, without reading more."""
         found: dict[str, list[str]] = {}
-        for (type_, name), raws in self._raw.items():
-            if type_ == "element":
+        for (type_, name), all_raws in self._raw.items():
+            raws = [raw for raw in all_raws if self._is_here(_released(raw[2]))]
+            if type_ == "element" and raws:
                 parents = [
                     word for raw in raws for row in _AT.findall(raw[2]) for word in row.split()
                 ]
@@ -207,23 +226,35 @@ class Vocabulary:
         for name in settings.get("with", "").split():
             sites |= {site.path: site for site in self._block(f"{file}:{line}", name, within)}
         header = read_header(f"{file}:{line}", rows[0])
-        return assemble(file, line, header, settings, list((sites | own).values()))
+        sites |= {
+            site.path if self.release else key: site
+            for key, site in own.items()
+            if self._is_here(site.releases)
+        }
+        return assemble(file, line, header, settings, list(sites.values()))
 
     def _block(self, place: str, name: str, within: tuple[str, ...]) -> tuple[Site, ...]:
         if name in within:
             raise VocabularyError(f"{place}: with: {name}: [block {name}] includes itself")
-        found = self._find(("block", name), (*within, name))
-        if not found:
+        if not self.has("block", name):
             raise VocabularyError(f"{place}: with: {name}: there is no [block {name}]")
-        return found[0].sites
+        found = self._find(("block", name), (*within, name))
+        return found[0].sites if found else ()
+
+
+def _released(chunk: str) -> str:
+    """The release words of a section that is not read yet; wrong ones are found when it is."""
+    found = _RELEASES.search(chunk) if "releases:" in chunk else None
+    words = found[1].strip() if found else ""
+    return words if words and is_release_words(words) else ""
 
 
 @lru_cache(maxsize=8)
 def load_vocabulary(
-    extra: tuple[str, ...] = (), *, packages: bool = True, release: str = NEWEST_LTS
+    extra: tuple[str, ...] = (), release: str = NEWEST_LTS, *, packages: bool = True
 ) -> Vocabulary:
-    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as
-    they are read for ``release``.
+    """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
+    as they hold in a ``release``; with an empty one all of it, which no document can be read with.
 
     Raises VocabularyError, naming file and line, for a mistake: at once in what is not built in,
     else in a section that is used.

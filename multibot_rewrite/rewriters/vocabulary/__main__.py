@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from itertools import groupby
 
+from multibot_rewrite.model import Site
 from multibot_rewrite.rewriters.vocabulary import (
     VocabularySection,
     check_vocabulary,
@@ -27,7 +28,7 @@ Topics under *only a remap moves* get a remap rule unless the file has one.
 
 def page() -> str:
     """The whole page as Markdown."""
-    sections = check_vocabulary(load_vocabulary(packages=False))
+    sections = check_vocabulary(load_vocabulary(release="", packages=False))
     by_file = groupby(sorted(sections, key=lambda r: (r.file, r.line)), lambda r: r.file)
     parts = [HEAD]
     for file, rewriters in by_file:
@@ -47,10 +48,14 @@ def _section(section: VocabularySection) -> str:
         lines.append("\n| where | what | default | note |\n|---|---|---|---|\n")
         lines += [
             f"| `{site.path}` | {site.role} {' '.join(site.kinds)}{_form(site.form)} "
-            f"| {site.default} | {site.note} |\n"
+            f"| {site.default} | {_note(site)} |\n"
             for site in own
         ]
     return "".join(lines)
+
+
+def _note(site: Site) -> str:
+    return "; ".join(filter(None, (site.releases and f"in {site.releases}", site.note)))
 
 
 def _form(form: str) -> str:

@@ -9,6 +9,7 @@ def facts(section: VocabularySection) -> dict[str, str]:
     """What each setting means -> its value, those that say nothing left out."""
     found = {
         "about": section.about,
+        "in": section.releases,
         "also called": " ".join(section.names[1:]),
         "stands in": " ".join(section.at),
         "chosen by": section.select,

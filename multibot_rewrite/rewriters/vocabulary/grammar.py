@@ -12,7 +12,8 @@ from typing import NamedTuple
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
-from multibot_rewrite.releases import is_release_words
+from multibot_rewrite.releases import RELEASES as KNOWN
+from multibot_rewrite.releases import is_release_words, share_release
 
 TYPES = ("element", "plugin", "hardware", "sensor", "block")
 SETTINGS = (
@@ -30,6 +31,7 @@ SETTINGS = (
     "unique",
     "process_wide",
     "hardwired",
+    "releases",
     "model_namespace",
 )
 # Settings that are one word out of few.
@@ -42,6 +44,7 @@ VALUES = {
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
 OPTIONS = ("form", "default", "when", "empty")
+RELEASES = "releases="
 EMPTY = ("default", "model", "itself")
 FORMS = (
     "whole",
@@ -76,7 +79,8 @@ class VocabularySection(NamedTuple):
     ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
     tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
     for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
-    its relative topics stand below the namespace of the model.
+    its relative topics stand below the namespace of the model. ``releases`` are the words for the only
+    releases that have it.
     """
 
     type: str
@@ -99,6 +103,7 @@ class VocabularySection(NamedTuple):
     source: str
     file: str
     line: int
+    releases: str = ""
 
     @property
     def name(self) -> str:
@@ -132,10 +137,14 @@ def read_header(place: str, row: str) -> tuple[str, ...]:
 
 
 def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str], dict[str, Site]]:
-    """Settings and sites of a section whose header is at ``line``."""
+    """Settings and sites of a section whose header is at ``line``.
+
+    The sites are by path, and by release where one path has several.
+    """
     section = " ".join(read_header(f"{file}:{line}", rows[0])[:2])
     settings: dict[str, str] = {}
     sites: dict[str, Site] = {}
+    at_path: dict[str, list[Site]] = {}
     for number, row in enumerate(rows[1:], line + 1):
         words = row.split()
         if not words or row.startswith("#"):
@@ -144,12 +153,14 @@ def read_section(file: str, line: int, rows: list[str]) -> tuple[dict[str, str],
             _setting(settings, f"{file}:{number}", words)
             continue
         site = _site(f"{file}:{number}", section, number, row)
-        if site.path in sites:
-            before = sites[site.path].line
-            raise VocabularyError(
-                f"{file}:{number}: {site.path} is there already, at line {before}"
-            )
-        sites[site.path] = site
+        before = at_path.setdefault(site.path, [])
+        for other in before:
+            if share_release(site.releases, other.releases):
+                raise VocabularyError(
+                    f"{file}:{number}: {site.path} is there already, at line {other.line}"
+                )
+        before.append(site)
+        sites[f"{site.path} {site.releases}".strip()] = site
     return settings, sites
 
 
@@ -192,6 +203,7 @@ def assemble(
         settings.get("source", ""),
         file,
         line,
+        settings.get("releases", ""),
     )
 
 
@@ -200,10 +212,12 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
 
     Raises VocabularyError where both say something of one path or set one setting differently.
     """
-    paths = {site.path: site for site in first.sites}
-    new = [site for site in second.sites if not _same_block(site, paths.get(site.path))]
+    there: dict[str, list[Site]] = {}
+    for site in first.sites:
+        there.setdefault(site.path, []).append(site)
+    new = [it for it in second.sites if not _same_block(it, there.get(it.path, ()))]
     for site in new:
-        if site.path in paths:
+        if any(share_release(site.releases, it.releases) for it in there.get(site.path, ())):
             raise VocabularyError(
                 f"{second.file}:{site.line}: {site.path} is there already, in {first.file}"
             )
@@ -226,9 +240,10 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
     )
 
 
-def _same_block(site: Site, other: Site | None) -> bool:
+def _same_block(site: Site, others: Iterable[Site]) -> bool:
     """Two sections with one block: its lines are not there twice."""
-    return other is not None and site.section == other.section and site.section[:6] == "block "
+    is_block = site.section[:6] == "block "
+    return is_block and any(site.section == it.section for it in others)
 
 
 def _either(first: VocabularySection, second: VocabularySection, setting: str) -> str:
@@ -249,10 +264,8 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
         raise VocabularyError(
             f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
         )
-    if key == "model_namespace" and not is_release_words(value):
-        raise VocabularyError(
-            f"{place}: {key}: {value!r} names no releases; write rolling or kilted+"
-        )
+    if key in ("releases", "model_namespace") and not is_release_words(value):
+        raise VocabularyError(f"{place}: {key}: {_no_releases(value)}")
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
@@ -268,11 +281,16 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     if not words or words[0] not in ROLES:
         raise VocabularyError(f"{place}: {path} needs one of {', '.join(ROLES)} after it")
     role, *rest = words
+    releases = next((it[len(RELEASES) :] for it in rest if it.startswith(RELEASES)), "")
+    if releases and not is_release_words(releases):
+        raise VocabularyError(f"{place}: {path} releases={_no_releases(releases)}")
+    rest = [word for word in rest if not word.startswith(RELEASES)]
     if role == "keep":
         if not rest:
             raise VocabularyError(f"{place}: {path} keep: say why it must stay")
         why = " ".join(rest)
-        return Site(path, role, (), "whole", "", False, section, why, line, file=file)
+        more = {"file": file, "releases": releases}
+        return Site(path, role, (), "whole", "", False, section, why, line, **more)
     options = dict(word.split("=", 1) for word in rest if "=" in word)
     kinds = tuple(word for word in rest if "=" not in word)
     _check_words(place, path, kinds, options)
@@ -281,9 +299,12 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     when = options.get("when", "")
     empty = options.get("empty", "default" if kinds[0] == "namespace" else "itself")
     note = note.strip()
-    return Site(
-        path, role, kinds, form, default, False, section, note, line, plain, when, file, empty
-    )
+    own = (path, role, kinds, form, default, False, section, note, line)
+    return Site(*own, plain, when, file, empty, releases=releases)
+
+
+def _no_releases(words: str) -> str:
+    return f"{words!r} names no releases, write jazzy, kilted+ or <=jazzy, of {', '.join(KNOWN)}"
 
 
 def _check_words(place: str, path: str, kinds: Iterable[str], options: dict[str, str]) -> None:
