@@ -105,7 +105,7 @@ def found(folder: Path, files: dict[str, str], layout: str = "frames-per-robot")
         (folder / name).write_text(text)
     fleet = folder / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
-    plan = plan_fleet(read_fleet(str(fleet)))
+    plan = plan_fleet(read_fleet(str(fleet), "", {}))
     every = {*plan.fleet.table.problems, *make_outputs(plan).findings}
     return [it for it in every if it.level != NOTE and not it.code.startswith(BESIDE)]
 

@@ -9,16 +9,17 @@ from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.nodes import nodes_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.stacks import load_nodes, load_stack
 
 
 def given(text: str, file: str = "params.yaml") -> list[GivenNode]:
-    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes())
+    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes(NEWEST_LTS))
 
 
 def run(known: str, text: str) -> NodeFacts:
-    return filled(load_nodes()[known], given(text)[0])
+    return filled(load_nodes(NEWEST_LTS)[known], given(text)[0])
 
 
 def names(node: NodeFacts, role: str) -> set[str]:
@@ -125,7 +126,9 @@ CONTROLLERS = """\
 
 
 def test_controllers_are_those_that_the_files_declare() -> None:
-    found = nodes_of(load_stack("ros2_control"), given(CONTROLLERS, "c.yaml"), load_nodes())
+    found = nodes_of(
+        load_stack("ros2_control", NEWEST_LTS), given(CONTROLLERS, "c.yaml"), load_nodes(NEWEST_LTS)
+    )
     by_name = {it.name: it for it in found.nodes}
     assert "diff_drive_controller" not in by_name
     drive = by_name["platform_velocity_controller"]
@@ -137,21 +140,23 @@ def test_controllers_are_those_that_the_files_declare() -> None:
 
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
-    beside = nodes_of(load_stack("slam_toolbox"), given(amcl), load_nodes())
+    beside = nodes_of(load_stack("slam_toolbox", NEWEST_LTS), given(amcl), load_nodes(NEWEST_LTS))
     assert next(it for it in beside.nodes if it.name == "amcl").sends == ()
-    alone = nodes_of((), given(amcl), load_nodes())
+    alone = nodes_of((), given(amcl), load_nodes(NEWEST_LTS))
     assert len(next(it for it in alone.nodes if it.name == "amcl").sends) == 1
     assert all(it.when for it in alone.nodes)
 
 
 def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
-    found = nodes_of((load_nodes()["ekf_filter_node"],), given(EKF), load_nodes())
+    found = nodes_of(
+        (load_nodes(NEWEST_LTS)["ekf_filter_node"],), given(EKF), load_nodes(NEWEST_LTS)
+    )
     assert [it.name for it in found.nodes] == ["ekf_node"]
 
 
 def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
     text = "/r1/amcl:\n  ros__parameters: {scan_topic: front}\n"
-    found = nodes_of(load_stack("localization"), given(text), load_nodes())
+    found = nodes_of(load_stack("localization", NEWEST_LTS), given(text), load_nodes(NEWEST_LTS))
     (amcl,) = (it for it in found.nodes if it.name.endswith("amcl"))
     assert amcl.name == "amcl"
     assert "front" in names(amcl, "subscribes")
