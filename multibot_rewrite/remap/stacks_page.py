@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
+from multibot_rewrite.remap.ways import CONTROLLER_WAYS, ControllerWay
 
 HEAD = """\
 # Nodes and stacks
@@ -54,10 +55,35 @@ REACH = """\
 """
 HELPER = "a helper node uses it: only a rule for the whole process reaches it"
 
+PLACES = """
+## Where a rule stands
+
+rcl applies a rule only where the node has it. `multibot remap`, `build` and the launch helpers write
+each rule where its node takes it in the release (`--distro`), `rehearse` gives it in the same way, and
+MR105 names rules that do not arrive.
+
+| node | takes rules from | written as |
+|---|---|---|
+| in a process of its own | its process | `--ros-args -r`, `remappings=` of Node |
+| in another one's process, as costmaps are | that process | `local_costmap:/tf:=tf` |
+| in a container (`container` of a stack) | its LoadNode request | `remappings=` of ComposableNode |
+| helper node, as of a tf listener | its process | rules of the process or container |
+| of a plugin in the description | the plugin's tag | `<ros><remapping>` |
+| controller of ros2_control | see below | `SPAWNERS`, `robot.spawner()`, `commands.md` |
+
+A costmap of a component has the rules of the component from Nav2 1.5 on, those of the container before.
+On Humble gz_ros2_control starts ROS with the rules of the first robot's plugin, and all its nodes in
+that Gazebo have them; later only nodes without rules of their own.
+`multibot rehearse --without-rules-at spawner` shows what happens where one place is forgotten.
+
+| releases | a controller's rules are given to | rules that it gets besides | source |
+|---|---|---|---|
+"""
+
 
 def page(library: NodeLibrary) -> str:
     """The whole page as Markdown."""
-    parts = [HEAD, "\n## Stacks\n"]
+    parts = [HEAD, PLACES, *(_controllers(it) for it in CONTROLLER_WAYS), "\n## Stacks\n"]
     parts += [_stack(name, stack) for name, stack in library.stacks.items()]
     parts.append(REACH)
     parts += [row for node in library.nodes.values() for row in _reach(node)]
@@ -66,6 +92,13 @@ def page(library: NodeLibrary) -> str:
     parts.append("\n## Parts\n\nGroups of names that many nodes have.\n")
     parts += [f"\n### {name}\n{_table(found)}" for name, found in library.parts.items()]
     return "".join(parts)
+
+
+def _controllers(way: ControllerWay) -> str:
+    given = "its spawner, `--controller-ros-args`" if way.spawner else "its manager's process"
+    handed = "all of its process" if way.process_wide else "none"
+    handed = "those of its manager, with a warning" if way.forwarded else handed
+    return f"| {way.releases} | {given} | {handed} | {way.source} |\n"
 
 
 def _stack(name: str, stack: Stack) -> str:

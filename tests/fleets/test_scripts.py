@@ -119,6 +119,39 @@ def test_a_node_in_another_ones_process_gets_its_rules_first(layout: str, tmp_pa
     assert rules[: len(costmap)] == [(f"{name}:{source}", target) for source, target in costmap]
 
 
+def controlled(folder: Path, release: str) -> LoadedRobot:
+    text = f"distro: {release}\n" + FLEET.replace("[nav2, robot_state]", "ros2_control")
+    return fleet(folder, "L1", text).robot("robot2")
+
+
+@pytest.mark.parametrize(
+    ("release", "rules"),
+    [("humble", []), ("lyrical", ["--controller-ros-args", "-r /tf:=tf"])],
+)
+def test_a_controller_has_its_rules_from_its_spawner_or_its_manager(
+    release: str, rules: list[str], tmp_path: Path
+) -> None:
+    its = controlled(tmp_path, release)
+    made = its.spawner("diff_drive_controller", "one.yaml")
+    assert (made["package"], made["executable"]) == ("controller_manager", "spawner")
+    assert made["arguments"] == ["diff_drive_controller", *rules, "-p", "one.yaml"]
+    of_manager = [("diff_drive_controller:/tf", "tf")] * (release == "humble")
+    assert its.table.for_node("controller_manager") == of_manager
+
+
+def test_a_controller_is_no_node_to_start(tmp_path: Path) -> None:
+    its = controlled(tmp_path, "lyrical")
+    for asked in (its.node, its.table.for_node):
+        with pytest.raises(
+            UsageError, match=r"its spawner .* robot\.spawner\('diff_drive_controller'\)"
+        ):
+            asked("diff_drive_controller")
+    with pytest.raises(UsageError, match="controller 'controller_manager' is not known"):
+        its.spawner("controller_manager")
+    with pytest.raises(UsageError, match="did you mean 'diff_drive_controller'"):
+        its.spawner("dif_drive_controller")
+
+
 def test_parameters_of_a_node(robot: LoadedRobot) -> None:
     found = robot.params("params.yaml", "amcl")
     assert found["base_frame_id"] == "robot1/base_footprint"

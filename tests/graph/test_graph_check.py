@@ -269,10 +269,13 @@ def test_a_plugin_is_named_with_its_line() -> None:
     graph = moved(healthy(), "/robot1/cmd_vel", "/cmd_vel")
     missing, leak = check(plan()._replace(sources=place), graph)
     assert missing.hint == (
-        "it subscribes to /cmd_vel instead: plugin driver has no remap rule /cmd_vel:=cmd_vel, "
-        "see rover.urdf:120"
+        "it subscribes to /cmd_vel instead: no remap rule /cmd_vel:=cmd_vel of plugin driver is "
+        "applied, see rover.urdf:120"
     )
-    assert leak.hint == "plugin driver has no remap rule /cmd_vel:=cmd_vel, see rover.urdf:120"
+    assert (
+        leak.hint
+        == "no remap rule /cmd_vel:=cmd_vel of plugin driver is applied, see rover.urdf:120"
+    )
     assert {(it.file, it.line) for it in (missing, leak)} == {("rover.urdf", 120)}
     assert str(leak).startswith("/robot1/driver: error: MG103 uses /cmd_vel, ")
 

@@ -244,6 +244,46 @@ def test_a_node(fleet: str, context: Any) -> None:
     assert own == robot.start_parameters("amcl")
 
 
+def test_a_controller_is_started_by_its_spawner(fleet: str, context: Any) -> None:
+    text = FLEET.replace("[nav2, robot_state]", "ros2_control")
+    Path(fleet).write_text(f"distro: lyrical\n{text.replace('frames-per-robot', 'tf-per-robot')}")
+    action = launch.node(
+        "diff_drive_controller",
+        robot="robot1",
+        fleet=fleet,
+        arguments=["--inactive"],
+        output="both",
+    )
+    (made,) = run(context, action)
+    assert made.options == {
+        "package": "controller_manager",
+        "executable": "spawner",
+        "namespace": "/robot1",
+        "output": "both",
+        "arguments": [
+            "diff_drive_controller", "--controller-ros-args", "-r /tf:=tf", "--inactive"
+        ],
+    }  # fmt: skip
+
+
+def test_a_component_is_loaded_into_its_container(
+    fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    actions, descriptions = ModuleType("launch_ros.actions"), ModuleType("launch_ros.descriptions")
+    vars(actions)["LoadComposableNodes"] = vars(descriptions)["ComposableNode"] = Started
+    for module in (ModuleType("launch_ros"), actions, descriptions):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+    Path(fleet).write_text(FLEET.replace("[nav2, robot_state]", "nav2_composed"))
+    options = {"package": "nav2_amcl", "plugin": "nav2_amcl::AmclNode"}
+    (made,) = run(context, launch.node("amcl", robot="robot1", fleet=fleet, **options))
+    assert made.options["target_container"] == "/robot1/nav2_container"
+    (node,) = made.options["composable_node_descriptions"]
+    assert options.items() <= node.options.items()
+    assert (node.options["name"], node.options["namespace"]) == ("amcl", "/robot1")
+    (box,) = run(context, launch.node("nav2_container", robot="robot1", fleet=fleet))
+    assert "composable_node_descriptions" not in box.options
+
+
 def test_a_node_with_the_description(fleet: str, context: Any) -> None:
     where = {"robot": "robot2", "fleet": fleet}
     (made,) = run(context, launch.node("robot_state_publisher", describe=True, **where))

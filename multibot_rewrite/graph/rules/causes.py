@@ -92,8 +92,10 @@ def why_not_remapped(view: View, planned: PlannedEndpoint) -> Cause:
     rule = remap_rule(planned)
     plugin, place = plugin_of(view, planned.node)
     if plugin:
-        missing = f"remap rule {rule}" if rule else "namespace or remap rule for it"
-        return caused(f"{plugin} has no {missing}, see {place}", place)
+        # It may have the rule: what it loads is not given it in every release.
+        missing = f"no remap rule {rule} of {plugin} is applied"
+        text = missing if rule else f"{plugin} has no namespace or remap rule for it"
+        return caused(f"{text}, see {place}", place)
     if not rule:
         return Cause("another remap rule, or an absolute name in its parameters, changes it")
     return Cause(f"the remap rule {rule} is not applied")

@@ -1,0 +1,61 @@
+"""``commands.md``: the lines that load each robot's controllers, and what is written beside them."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+
+import pytest
+import yaml
+from paths import ROBOTS
+
+from multibot_rewrite import load_fleet
+
+FLEET = """\
+distro: {release}
+layout: tf-per-robot
+stack: gz_ros2_control
+robots:
+  - {{name: robot1, description: {robot}}}
+  - {{name: robot2, description: {robot}}}
+"""
+
+
+def outputs(folder: Path, release: str) -> dict[str, str]:
+    file = folder / "fleet.yaml"
+    file.write_text(FLEET.format(release=release, robot=ROBOTS / "rover_gz.urdf"))
+    return {path: it.data.decode() for path, it in load_fleet(file).files.items()}
+
+
+@pytest.mark.parametrize(
+    ("release", "rules"),
+    [
+        ("humble", []),
+        ("jazzy", ["--controller-ros-args", "-r /tf:=tf"]),
+        ("lyrical", ["--controller-ros-args", "-r /tf:=tf"]),
+    ],
+)
+def test_each_controller_of_each_robot_has_its_line(
+    release: str, rules: list[str], tmp_path: Path
+) -> None:
+    rows = outputs(tmp_path, release)["commands.md"].splitlines()
+    lines = [shlex.split(it, comments=True) for it in rows if " spawner " in it]
+    spawner = ["ros2", "run", "controller_manager", "spawner"]
+    for robot in ("robot1", "robot2"):
+        placed = ["--ros-args", "-r", f"__ns:=/{robot}"]
+        assert [*spawner, "diff_drive_controller", *rules, *placed] in lines
+        assert [*spawner, "joint_state_broadcaster", *placed] in lines
+    assert len(lines) == 8
+    assert any(it.endswith("  # a base on two wheels") for it in rows)
+
+
+def test_the_tables_of_a_build_say_the_same(tmp_path: Path) -> None:
+    made = outputs(tmp_path, "lyrical")
+    found = yaml.safe_load(made["remappings.yaml"])
+    assert found["release"] == "lyrical"
+    controller = found["robots"]["robot2"]["diff_drive_controller"]
+    assert (controller["way"], controller["remappings"]) == ("spawner", [["/tf", "tf"]])
+    namespace: dict[str, dict[str, dict[str, object]]] = {}
+    exec(made["remappings.py"], namespace)
+    assert "diff_drive_controller" not in namespace["NODES"]["robot2"]
+    assert "diff_drive_controller" in namespace["SPAWNERS"]["robot2"]
