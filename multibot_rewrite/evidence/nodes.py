@@ -145,7 +145,8 @@ def _added(given: GivenNode, known: Mapping[str, NodeFacts]) -> NodeFacts:
     if node is None:
         package = given.type.partition("/")[0]
         return NodeFacts(given.name, package, (), host=MANAGER, origin=str(given.place))
-    when = "" if given.manager else f"its parameters are in {given.place.file}"
+    runs = given.manager or node.name == MANAGER
+    when = "" if runs else f"its parameters are in {given.place.file}"
     return filled(node, given)._replace(when=when)
 
 

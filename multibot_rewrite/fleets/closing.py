@@ -182,13 +182,16 @@ def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
 
 def _topics(robot: RewrittenRobot, before: System, after: System) -> Iterator[Finding]:
     had = closed(before.ends, before.shared)
-    for it in topic_gaps(after.ends, after.shared):
-        if it.key in had:
-            message = (
-                f"{it.node} reads {it.name}, which nothing of {robot.spec.name} sends any more"
-            )
-            yield _found(NOT_SENT, robot, it, message, _meant(it), ERROR)
-    gaps = list(topic_gaps(before.ends, before.shared))
+    now = {it.key: it for it in topic_gaps(after.ends, after.shared)}
+    for it in (it for it in now.values() if it.key in had):
+        message = f"{it.node} reads {it.name}, which nothing of {robot.spec.name} sends any more"
+        yield _found(NOT_SENT, robot, it, message, _meant(it), ERROR)
+    # What the build adds, such as rows of a bridge, may close a gap.
+    gaps = [
+        it if it.near else now[it.key]._replace(place=it.place)
+        for it in topic_gaps(before.ends, before.shared)
+        if it.key in now
+    ]
     for it in (it for it in gaps if it.near):
         message = f"{it.node} of {robot.spec.name} reads {it.name}, which nothing sends"
         yield _found(NOT_SENT, robot, it, message, _meant(it), WARNING)

@@ -12,6 +12,7 @@ from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.patterns import with_patterns
 from multibot_rewrite.graph.rules import (
     endpoints,
     frame_names,
@@ -35,7 +36,7 @@ ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
 def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
     with gc_paused():
-        view = make_view(plan, graph)
+        view = make_view(plan, with_patterns(plan, graph))
         found = [finding for rule in RULES.values() for finding in _ask(rule, view)]
     if not doubts(graph):
         return found

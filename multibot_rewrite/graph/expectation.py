@@ -103,7 +103,7 @@ def expect(
     frames, where that is another one than its name.
     """
     known = tuple(facts)
-    nodes = _nodes(table)
+    nodes, private = _nodes(table), _private_nodes(table.names)
     optional = {node.name for node in known if node.when}
     usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
     robots = []
@@ -113,7 +113,13 @@ def expect(
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
         may_miss = tuple(full for stack_name, full in nodes.get(name, ()) if stack_name in optional)
-        full = tuple(dict.fromkeys(full for _, full in nodes.get(name, ())))
+        full = tuple(
+            dict.fromkeys((*(it for _, it in nodes.get(name, ())), *private.get(name, ())))
+        )
+        must = _private_nodes(it for it in table.names if not it.endpoint.when).get(name, ())
+        may_miss += tuple(
+            it for it in private.get(name, ()) if it not in must or it.startswith(may_miss)
+        )
         tf = tf_topic(name, naming)
         tag = word if word != name else ""
         robots.append(PlannedRobot(name, full, own, tf, tuple(left), may_miss, tag))
@@ -154,12 +160,24 @@ def named_frames(inventory: Inventory) -> tuple[str, ...]:
     return tuple(dict.fromkeys(filter(None, values)))
 
 
+def _private_nodes(names: Iterable[EndpointName]) -> dict[str, tuple[str, ...]]:
+    """By robot: patterns of the nodes that its nodes make for themselves."""
+    found: dict[str, tuple[str, ...]] = {}
+    for name in names:
+        full = f"{name.node}{name.endpoint.by}"
+        if name.endpoint.by and full not in found.get(name.robot, ()):
+            found[name.robot] = (*found.get(name.robot, ()), full)
+    return found
+
+
 def _planned(names: Iterable[EndpointName]) -> Iterator[PlannedEndpoint]:
     """The endpoints that do not depend on parameters."""
     for name in names:
         end = name.endpoint
-        if not (end.when or end.helper) and end.role and name.name not in ALWAYS:
-            own = (name.node, end.kind, end.role, name.name)
+        if end.when or (end.helper and not end.by):
+            continue
+        if end.role and name.name not in ALWAYS:
+            own = (f"{name.node}{end.by}", end.kind, end.role, name.name)
             yield PlannedEndpoint(*own, end.type, end.name, end.also)
 
 

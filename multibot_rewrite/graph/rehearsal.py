@@ -49,13 +49,14 @@ PROCESSES = 8
 
 
 class StubEndpoint(NamedTuple):
-    """An endpoint with the name in its node's code; ``helper`` as in ``Endpoint``."""
+    """An endpoint with the name in its node's code; ``helper`` and ``by`` as in ``Endpoint``."""
 
     kind: str
     role: str
     name: str
     type: str
     helper: bool
+    by: str = ""
 
 
 class StubNode(NamedTuple):
@@ -112,7 +113,8 @@ def _stub_endpoint(name: EndpointName, types: Mapping[str, str]) -> StubEndpoint
     kind, role, own, type_, *_ = name.endpoint
     # A topic without a role is nearly always a sensor's output.
     return StubEndpoint(
-        kind, role or PUBLISHES, own, type_ or types.get(name.name, ""), name.endpoint.helper
+        *(kind, role or PUBLISHES, own, type_ or types.get(name.name, "")),
+        *(name.endpoint.helper, name.endpoint.by),
     )
 
 
@@ -137,7 +139,7 @@ def _substituted(
 ) -> Iterator[PlannedEndpoint]:
     if planned.kind == ACTION and planned.type in replaced:
         action = StubEndpoint(planned.kind, planned.role, planned.name, planned.type, False)
-        for kind, role, name, type_, _ in action_parts(action):
+        for kind, role, name, type_, *_ in action_parts(action):
             code_name = planned.code_name + name.removeprefix(planned.name)
             yield PlannedEndpoint(planned.node, kind, role, name, type_, code_name)
     else:
@@ -154,7 +156,7 @@ def action_parts(action: StubEndpoint) -> Iterator[StubEndpoint]:
     for suffix, kind in ACTION_PARTS:
         type_ = PART_TYPES.get(suffix, SUBSTITUTE_TYPES[kind])
         name = f"{action.name}/{suffix}"
-        yield StubEndpoint(kind, roles[action.role, kind], name, type_, action.helper)
+        yield StubEndpoint(kind, roles[action.role, kind], name, type_, action.helper, action.by)
 
 
 def substitute_type(kind: str, type_: str) -> str:

@@ -249,7 +249,7 @@ def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
     owner, inside = _around(node)
     if given:
         yield Value(owner, inside, last(name), given[0])
-    yield Call(owner, "", name, template_arguments(name), given, "", "", _at(node, place))
+    yield Call(owner, "", last(name), template_arguments(name), given, "", "", _at(node, place))
 
 
 def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
@@ -377,7 +377,7 @@ TEXTS: dict[str, Callable[[Any], str]] = {
     "binary_expression": _sum,
     "parenthesized_expression": _all,
     "pointer_expression": _field("argument"),
-    "conditional_expression": _field("consequence"),
+    "conditional_expression": lambda node: "<either>",
     "field_expression": _last_field,
     "call_expression": _called,
 }

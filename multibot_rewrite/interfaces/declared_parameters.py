@@ -69,8 +69,8 @@ def cpp_parameters(
         name, default = _name_and_default(call, known)
         if name:
             owner = call.owner or call.place.path.rpartition("/")[2].partition(".")[0]
-            type_ = default.type or _template_type(call.types)
-            yield ParameterFact(package, owner, name, type_, default.text, "", "", how, call.place)
+            type_, text = _of_type(_template_type(call.types), default)
+            yield ParameterFact(package, owner, name, type_, text, "", "", how, call.place)
 
 
 def shared_constants(values: Iterable[Value]) -> dict[str, str]:
@@ -130,6 +130,13 @@ def _default(text: str, known: Mapping[str, str]) -> _Default:
         return _Default("double" if re.search("[.ef]", inner) else "int", inner)
     value = known.get(inner, "<>")
     return _NONE if "<" in value else _Default("string", text_of(value))
+
+
+def _of_type(written: str, default: _Default) -> _Default:
+    """The type that is written, with the default if it is of that type: {} is none of a text."""
+    if not written or written == default.type:
+        return default
+    return default._replace(type=written) if default.type != "string" else _Default(written, "")
 
 
 def _template_type(types: tuple[str, ...]) -> str:

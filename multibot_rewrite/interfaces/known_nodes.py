@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from functools import cache
 from importlib.resources import files
@@ -10,6 +11,9 @@ from typing import NamedTuple
 from multibot_rewrite.interfaces.nodes import facts_of
 from multibot_rewrite.interfaces.records import Class, Fact, Place
 from multibot_rewrite.interfaces.scope import Index
+
+# What a name that is made at run time depends on.
+_MODE = re.compile(r"(?:plugin|tree has) \w+")
 
 
 class NodeClasses(NamedTuple):
@@ -34,7 +38,7 @@ def _mode(text: str) -> tuple[tuple[str, str], ...]:
 
 def extracted(index: Index) -> Iterator[Fact]:
     """What all known nodes declare in the sources, each once."""
-    own = frozenset(mode[0][1] for it in known_nodes() for mode in it.modes) - {""}
+    own = frozenset(mode[0] for it in known_nodes() for mode in it.modes)
     for node in known_nodes():
         usual: dict[tuple[str, ...], Fact] = {}
         for at, mode in enumerate(node.modes):
@@ -51,13 +55,13 @@ def _only(fact: Fact, mode: str) -> Fact:
 
 
 def _of_mode(
-    index: Index, node: str, mode: tuple[tuple[str, str], ...], own: frozenset[str]
+    index: Index, node: str, mode: tuple[tuple[str, str], ...], own: frozenset[tuple[str, str]]
 ) -> dict[tuple[str, ...], Fact]:
     """The facts of the classes of a mode; of equal ones that with the weakest condition."""
     found: dict[tuple[str, ...], Fact] = {}
     for root in _roots(index, mode):
-        for fact in facts_of(index, node, root, own - {root.name}):
-            only = fact.condition if "<" in fact.name else ""
+        for fact in facts_of(index, node, root, own - {(root.place.package, root.name)}):
+            only = "; ".join(_MODE.findall(fact.condition)) if "<" in fact.name else ""
             key = (fact.role, fact.name, fact.type, fact.way, only)
             if key not in found or len(fact.condition) < len(found[key].condition):
                 found[key] = fact

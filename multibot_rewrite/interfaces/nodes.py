@@ -24,11 +24,16 @@ from multibot_rewrite.interfaces.scope import (
 DEEPEST = 12
 # The function in which a package of tree nodes names its classes.
 REGISTERS = "BT_REGISTER_NODES"
+# How functions outside of classes are called that make what a node has.
+FACTORY = "create"
 _LOADER = re.compile(r"ClassLoader<\s*([\w:]+)")
 
 
 class Visit(NamedTuple):
-    """A class on the way: what it is given, what its template is given, when, and by which node."""
+    """A class on the way: what it is given, what its template is given, when, and by which node.
+
+    With a ``function`` it is one outside of classes.
+    """
 
     found: Class
     given: dict[str, str]
@@ -36,22 +41,35 @@ class Visit(NamedTuple):
     condition: str = ""
     way: str = ""
     above: tuple[str, ...] = ()
+    function: str = ""
 
 
-def facts_of(index: Index, node: str, root: Class, others: frozenset[str]) -> Iterator[Fact]:
+def facts_of(
+    index: Index, node: str, root: Class, others: frozenset[tuple[str, str]]
+) -> Iterator[Fact]:
     """What a node declares. ``others`` are classes that are nodes of their own."""
     seen: set[tuple[str, ...]] = set()
     waiting = deque([Visit(root, {}, bound_types(root, ""))])
     while waiting:
         visit = waiting.popleft()
-        key = (visit.found.name, visit.way, *visit.given.values(), *visit.types.values())
+        key = (
+            visit.found.name,
+            visit.function,
+            visit.way,
+            *visit.given.values(),
+            *visit.types.values(),
+        )
         if key in seen or len(visit.above) > DEEPEST:
             continue
         seen.add(key)
         scope = _scope(index, visit)
         for call in _calls(index, visit):
             yield from _declared(index, node, visit, scope, call)
-        waiting.extend(it for it in _below(index, visit, scope) if it.found.name not in others)
+        waiting.extend(it for it in _below(index, visit, scope) if _key(it.found) not in others)
+
+
+def _key(found: Class) -> tuple[str, str]:
+    return found.place.package, found.name
 
 
 def _scope(index: Index, visit: Visit) -> Scope:
@@ -69,6 +87,8 @@ def _bases(index: Index, found: Class, depth: int = 0) -> Iterator[str]:
 def _calls(index: Index, visit: Visit) -> tuple[Call, ...]:
     """What the class itself does; another package may have one of its name."""
     rows = index.calls.get(visit.found.name, ())
+    if visit.function:
+        return nearest(index.functions[visit.function], visit.found.place)
     return tuple(it for it in rows if it.place.package == visit.found.place.package)
 
 
@@ -78,20 +98,26 @@ def _declared(index: Index, node: str, visit: Visit, scope: Scope, call: Call) -
     name, types = _function(index, scope, call)
     for api in apis().get(name, ()):
         nodes, named = _told_apart(index, scope, call)
-        if (api.node == OWN and not nodes) or (api.name == ARGUMENT and not named.text):
+        if (api.node == OWN and not nodes) or (ARGUMENT in api.name and not named.text):
             continue
-        said = named if api.name == ARGUMENT else Resolved(api.name)
+        said = _name(api, named)
         on = text_in(index, scope, call.function, call.on).text if call.on else ""
         yield Fact(
             node,
             api.role,
             said.text,
             _type(index, scope, api, types),
-            _way(api, [on, *nodes]) or visit.way,
+            _way(api, [on, *nodes], node) or visit.way,
             said.parameter,
             _both(visit.condition, call.condition),
             call.place,
         )
+
+
+def _name(api: Api, argument: Resolved) -> Resolved:
+    if ARGUMENT not in api.name:
+        return Resolved(api.name)
+    return argument._replace(text=api.name.replace(ARGUMENT, argument.text))
 
 
 def _told_apart(index: Index, scope: Scope, call: Call) -> tuple[list[str], Resolved]:
@@ -133,9 +159,9 @@ def _type(index: Index, scope: Scope, api: Api, types: tuple[str, ...]) -> str:
     return type_of(index, scope, types[at]) if at < len(types) else ""
 
 
-def _way(api: Api, nodes: list[str]) -> str:
+def _way(api: Api, nodes: list[str], node: str) -> str:
     private = next((it for it in nodes if it.startswith("<Node:")), "")
-    if private:
+    if private and private != f"<Node:{node}>":
         return f"private {private[6:-1]}".strip()
     return "helper" if api.node == HELPER and not any(nodes) else ""
 
@@ -180,15 +206,18 @@ def _visits(
 ) -> Iterator[Visit]:
     if name in above or name in apis():
         return
-    for found in nearest(index.classes.get(name, ()), visit.found.place)[:1]:
-        yield Visit(
-            found,
-            bound(index, name, given),
-            bound_types(found, f"{name}<{', '.join(types)}>"),
-            _both(visit.condition, condition),
-            visit.way,
-            above,
-        )
+    only = _both(visit.condition, condition)
+    found = nearest(index.classes.get(name, ()), visit.found.place)[:1]
+    for it in found:
+        own = bound_types(it, f"{name}<{', '.join(types)}>")
+        yield Visit(it, bound(index, name, given), own, only, visit.way, above)
+    if (
+        not found
+        and name.startswith(FACTORY)
+        and nearest(index.functions.get(name, ()), visit.found.place)
+    ):
+        free = Class("", (), (), {}, visit.found.place)
+        yield Visit(free, bound(index, name, given), {}, only, visit.way, (*above, name), name)
 
 
 def _tree_nodes(index: Index, visit: Visit, above: tuple[str, ...]) -> Iterator[Visit]:
@@ -205,4 +234,7 @@ def _plugins(index: Index, visit: Visit, base: str, above: tuple[str, ...]) -> I
     """Every class that is loaded as this one."""
     for name in index.plugins.get(last(base), ()):
         for found in nearest(index.classes.get(name, ()), visit.found.place)[:1]:
-            yield Visit(found, {}, {}, _both(visit.condition, f"plugin {name}"), visit.way, above)
+            types = bound_types(found, "")
+            yield Visit(
+                found, {}, types, _both(visit.condition, f"plugin {name}"), visit.way, above
+            )

@@ -18,6 +18,8 @@ from multibot_rewrite.interfaces.records import (
 )
 
 DEEPEST = 8
+# Whose classes a repository inherits from, besides its own.
+ABOVE = {"ros2_controllers": ("ros2_control",), "gz_ros2_control": ("ros2_control",)}
 _PART = re.compile(r"<([^<>]*)>")
 _BRACED = re.compile(r"\{([^{}]*)\}")
 _ROS_TYPE = re.compile(r"(\w+)(?:::|/|\.)(msg|srv|action)(?:::|/|\.)(\w+)")
@@ -31,6 +33,7 @@ class Index(NamedTuple):
 
     classes: Mapping[str, tuple[Class, ...]]
     calls: Mapping[str, tuple[Call, ...]]
+    functions: Mapping[str, tuple[Call, ...]]
     values: Mapping[tuple[str, str], tuple[Value, ...]]
     variables: Mapping[str, tuple[Value, ...]]
     aliases: Mapping[str, tuple[Alias, ...]]
@@ -59,6 +62,7 @@ def indexed(source: Source) -> Index:
     return Index(
         _by(source.classes, lambda it: it.name),
         _by(source.calls, lambda it: it.owner),
+        _by((it for it in source.calls if not it.owner), lambda it: it.function),
         _by(source.values, lambda it: (it.owner, it.variable)),
         _by(source.values, lambda it: it.variable),
         _by(source.aliases, lambda it: it.name),
@@ -78,11 +82,12 @@ def _by(items: Iterable[Item], key: Callable[[Item], Key]) -> dict[Key, tuple[It
 
 
 def nearest(items: Iterable[Located], place: Place) -> tuple[Located, ...]:
-    """Those of the same package, else of the same repository, else all."""
+    """Those of the same package, else of the same repository, else of those it builds on."""
     found = tuple(items)
     package = tuple(it for it in found if it.place.package == place.package)
     repository = tuple(it for it in found if it.place.repository == place.repository)
-    return package or repository or found
+    above = ABOVE.get(place.repository, ())
+    return package or repository or tuple(it for it in found if it.place.repository in above)
 
 
 def type_of(index: Index, scope: Scope, type_: str) -> str:
@@ -128,7 +133,7 @@ def _value(index: Index, scope: Scope, function: str, name: str, depth: int) -> 
     if name.startswith("@"):
         return _parameter(index, scope, function, name, depth)
     for text in _candidates(index, scope, function, name):
-        if text not in ("", f"<{name}>", "<?>"):
+        if text.strip() and text not in (f"<{name}>", "<?>"):
             found = text_in(index, scope, function, text, depth + 1)
             if found.parameter or (found.text and found.text != f"<{name}>"):
                 return found

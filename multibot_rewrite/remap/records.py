@@ -27,7 +27,8 @@ class Endpoint(NamedTuple):
     must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
     nodes.yaml calls it, if a stack gives it another name.
     ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
-    can be read.
+    can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
+    what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its own.
     """
 
     kind: str
@@ -46,6 +47,7 @@ class Endpoint(NamedTuple):
     named_from: str = ""
     releases: str = ""
     source: tuple[str, ...] = ()
+    by: str = ""
 
 
 class FrameParameter(NamedTuple):

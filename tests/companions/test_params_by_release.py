@@ -63,6 +63,14 @@ def test_what_is_deprecated_is_not_inserted(node: str) -> None:
     assert not [it for it in later if it.startswith("tf_frame_prefix_enable")]
 
 
+@pytest.mark.parametrize("node", DRIVES)
+def test_a_switch_that_is_on_is_turned_off(node: str) -> None:
+    """The build's own check of what it wrote takes true for a prefix."""
+    text, findings = made(section(node, "tf_frame_prefix_enable: true"), distro="lyrical")
+    assert "tf_frame_prefix_enable: false" in text
+    assert codes(findings) == ["MF129"]
+
+
 @pytest.mark.parametrize("node", ["ackermann_steering_controller", "tricycle_steering_controller"])
 def test_a_steering_controller_has_no_prefix_unless_it_is_told(node: str) -> None:
     assert 'tf_frame_prefix: "/"' in lines(node, 'tf_frame_prefix: "~"', release="lyrical")

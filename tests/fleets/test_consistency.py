@@ -57,6 +57,29 @@ def test_what_is_made_is_right(layout: str, affix: str, tmp_path: Path) -> None:
     assert looked(plan, written(make_outputs(plan))) == []
 
 
+IMU = """\
+<sdf version="1.9"><model name="cart"><link name="base_link"><sensor name="imu" type="imu">
+  <topic>imu</topic>
+</sensor></link></model></sdf>
+"""
+
+
+@pytest.mark.parametrize("affix", ["prefix", "postfix"])
+def test_a_topic_that_is_called_as_a_sensor_is_right(affix: str, tmp_path: Path) -> None:
+    """robot1/imu is the topic; the sensor of that name is robot1_imu."""
+    path = tmp_path / "cart.sdf"
+    path.write_text(IMU)
+    robots = f"robots: [{{name: robot1, description: {path}}}]"
+    plan = planned(tmp_path, f"layout: frames-per-robot\naffix: {affix}\n{robots}\n")
+    files = written(make_outputs(plan))
+    assert any("<topic>robot1/imu</topic>" in it.text for it in files)
+    assert [it for it in looked(plan, files) if it.code == "MF604"] == []
+    wrong = [
+        it._replace(text=it.text.replace("<topic>robot1/imu", "<topic>robot1-imu")) for it in files
+    ]
+    assert [it.code for it in looked(plan, wrong)] == ["MF604"]
+
+
 L1, L4 = SMALL.replace("frames-per-robot", "L1"), SMALL.replace("frames-per-robot", "L4")
 L4 = L4.replace("affix: prefix", "affix: postfix")
 UNDERSCORES = f"separators: {{link: _}}\n{SMALL}"

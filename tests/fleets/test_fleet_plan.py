@@ -180,7 +180,9 @@ def test_remappings_hold_every_node_of_the_plan(fleet: tuple[str, dict[str, str]
         for own in table.values()
         for it in own.values()
     }
-    assert {node for robot in plan.robots for node in robot.nodes} <= full
+    # What a node makes for itself is a pattern, and gets its rules from that node.
+    own = {node for robot in plan.robots for node in robot.nodes if "*" not in node}
+    assert own <= full
 
 
 def test_no_file_of_a_robot_has_a_word_of_another(fleet: tuple[str, dict[str, str]]) -> None:

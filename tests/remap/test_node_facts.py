@@ -48,7 +48,7 @@ EXCEPTIONS = {
 
 def endpoints(node: str) -> tuple[Endpoint, ...]:
     """What a node or a part has, nothing where it is not known."""
-    library = built_in()
+    library = built_in("jazzy")
     if node in library.nodes:
         return library.nodes[node].endpoints
     return library.parts.get(node, ())

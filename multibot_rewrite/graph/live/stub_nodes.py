@@ -59,12 +59,15 @@ def main(order: str, stop: threading.Event, send: Send) -> int:
 def _create_node(stubs: _Stubs, stub: StubNode, number: int) -> Iterator[Publish]:
     """Create a node with its endpoints; yields what has to be published again and again."""
     node = ros.add_node(stubs.session, stub.name, arguments=stub.arguments)
-    helper: Any = None
+    helpers: dict[str, Any] = {}
     for endpoint in stub.endpoints:
-        if endpoint.helper and helper is None:
+        if endpoint.helper and endpoint.by not in helpers:
             name = f"{LISTENER}{os.getpid():x}{number:04x}"
-            helper = ros.add_node(stubs.session, name, arguments=stub.process_arguments)
-        owner = helper if endpoint.helper else node
+            if endpoint.by:
+                name = node.get_name() + endpoint.by.replace("*", f"{os.getpid()}{number}")
+            arguments = stub.process_arguments
+            helpers[endpoint.by] = ros.add_node(stubs.session, name, arguments=arguments)
+        owner = helpers[endpoint.by] if endpoint.helper else node
         yield from _create_endpoint(stubs, owner, endpoint, stub.edges)
 
 

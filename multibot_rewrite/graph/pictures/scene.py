@@ -9,6 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
+from multibot_rewrite.graph.patterns import with_patterns
 from multibot_rewrite.graph.pictures.states import (
     FAULTY,
     LEAK,
@@ -129,7 +130,7 @@ class _RobotOf(NamedTuple):
 
 def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[Finding]) -> Scene:
     """What is drawn of ``graph`` with its plan and findings."""
-    view = make_view(plan, graph)
+    view = make_view(plan, with_patterns(plan, graph))
     targets = find_targets(view, found)
     states = make_states(found, targets)
     edges = sorted(_edges(view, states))
