@@ -149,7 +149,7 @@ def test_a_robot_that_closes(layout: str, tmp_path: Path) -> None:
 
 BREAKS = [
     # The controller's joints are not those of the hardware.
-    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 9, "rover.urdf:18"),
+    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 9, "rover.urdf:23"),
     ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MF811", 10, "rover.urdf"),
     # The hardware lacks what the controller claims.
     ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
