@@ -26,20 +26,22 @@ from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, Endpoin
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.steps.document import read_document
 
-FIXED = "fixed"
+FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
 BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"
 ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,), "BIDIRECTIONAL": ("",)}
 
 
 class System(NamedTuple):
     """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the ends of
-    its topics and services, those of nodes for all robots, and the frames that anything sends."""
+    its topics and services, those of nodes for all robots, the frames that anything sends, and its
+    MoveIt files."""
 
     given: tuple[GivenNode, ...]
     exports: tuple[Exported, ...]
     ends: tuple[End, ...]
     shared: tuple[End, ...]
     sent: frozenset[str]
+    moveit: tuple[YamlText, ...]
 
 
 def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
@@ -63,6 +65,7 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
         tuple(ends),
         tuple(shared),
         frozenset(sent),
+        tuple(_documents(robot, "moveit")),
     )
 
 
@@ -85,6 +88,7 @@ def system_after(
         tuple(ends),
         tuple(_planned(it) for it in fleet.table.names if not it.robot),
         frozenset(it.child for it in description_edges(robot.member.inventory)),
+        tuple(_read(it) for it in own if MOVEIT in it.text),
     )
 
 
