@@ -104,10 +104,10 @@ def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
     node, names = running.node, ", ".join(kept)
     message = f"on {release} no rule reaches it for {names}, though one is written"
     hint = f"give its rules to the process of {node.home.host or node.name}"
-    if running.way == PLUGIN:
+    if node.home.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
         hint = "name their stack, and start each with its spawner's --controller-ros-args"
-    if running.way == PLUGIN and not controller_way(release).spawner:
+    elif running.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"
     place = {"robot": node.robot, "node": node.node, "names": tuple(kept)}
