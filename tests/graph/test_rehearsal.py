@@ -6,6 +6,7 @@ import pytest
 from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.cli import rehearse
+from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.graph.expectation import expect
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.rehearsal import (
@@ -108,6 +109,19 @@ def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag
     two = one._replace(rules=rules, home=Home(plugin="acme", written=True))
     ((_, stub),) = stub_nodes(Table("both", (one, two), (), (), NEWEST_LTS), {})
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
+
+
+@pytest.mark.parametrize(
+    ("release", "given"), [("humble", True), ("jazzy", True), ("lyrical", False)]
+)
+def test_a_manager_that_stands_in_for_controllers_has_their_rules(
+    release: str, given: bool
+) -> None:
+    fleet = make_fleet(str(ROBOTS / "rover_gz.urdf"), ["r"], [], {"layout": "L1"}, release=release)
+    found = {stub.name: stub for _, stub in stub_nodes(fleet.table, {})}
+    assert "/tf" in {it.name for it in found["controller_manager"].endpoints}
+    assert ("/tf:=tf" in found["controller_manager"].arguments) == given
+    assert "/tf:=tf" in found["robot_state_publisher"].arguments
 
 
 def test_robots_share_processes_when_they_are_many() -> None:
