@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import Naming, OwnNames
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
@@ -59,8 +58,8 @@ class Job(NamedTuple):
     naming: Naming
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
+    release: str
     own: OwnSource = OF_ALL
-    release: str = NEWEST_LTS
     read: FilesRead = NO_FILES
 
     @property
@@ -89,7 +88,8 @@ def read_job(
     file: str = "",
     words: Sequence[str] = (),
     trust: bool = False,
-    release: str = NEWEST_LTS,
+    *,
+    release: str,
 ) -> Job:
     """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
 
@@ -109,8 +109,8 @@ def read_jobs(
     xacro_args: Arguments | None,
     vocabulary: Iterable[str],
     file: str,
-    trust: bool = False,
-    release: str = NEWEST_LTS,
+    trust: bool,
+    release: str,
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
@@ -143,8 +143,8 @@ def reader(
     urdf: Source | None,
     vocabulary: tuple[str, ...],
     file: str,
-    trust: bool = False,
-    release: str = NEWEST_LTS,
+    trust: bool,
+    release: str,
 ) -> Reader:
     """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
 
@@ -156,7 +156,7 @@ def reader(
         found = _files_read(args, [own, beside] if beside else [own])
         pair = (beside.data, beside.file) if beside else None
         name = file or own.file
-        return Job(own.data, name, naming, vocabulary, pair, release=release, read=found)
+        return Job(own.data, name, naming, vocabulary, pair, release, read=found)
 
     return lambda args: read(frozenset(args.items()))
 
