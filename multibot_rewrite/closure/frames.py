@@ -26,12 +26,15 @@ class Sender(NamedTuple):
 def tree_gaps(description: Iterable[Edge], senders: Sequence[Sender]) -> Iterator[Gap]:
     """Nodes whose transforms are in another tree than those of the first node.
 
-    A driver that is not known may join the description to the odometry, but not two trees that nodes
-    of the robot send.
+    If no node sends the root of the description, a driver that is not known may: that joins the two.
     """
-    whole = _Trees()
-    for edge in (*description, *(edge for it in senders for edge in it.edges)):
+    whole, joints = _Trees(), list(description)
+    sent = [edge for it in senders for edge in it.edges]
+    for edge in (*joints, *sent):
         whole.join(edge.parent, edge.child)
+    children = {edge.child for edge in (*joints, *sent)}
+    for root in {edge.parent for edge in joints} - children if sent else ():
+        whole.join(sent[0].parent, root)
     moving = [it for it in senders if it.edges]
     for it in moving[1:]:
         first, own = moving[0].edges[0], it.edges[0]
