@@ -58,7 +58,7 @@ def test_a_client_needs_its_server() -> None:
     assert list(topic_gaps([calls, serves])) == []
 
 
-def test_the_only_idle_topic_of_its_type_is_meant_and_where_it_is() -> None:
+def test_the_only_topic_of_its_type_is_meant_and_where_it_is() -> None:
     other = end("bridge", "publishes", "/r/other_name")._replace(place=Place("b.yaml", 7))
     gap = next(topic_gaps([READS, other]))
     assert (gap.near, gap.near_place, gap.place) == ("/r/other_name", Place("b.yaml", 7), HERE)
@@ -76,12 +76,6 @@ def test_the_only_idle_topic_of_its_type_is_meant_and_where_it_is() -> None:
 )
 def test_what_is_not_meant(sent: End) -> None:
     assert told(sent)[0] == ("ekf", "/r/imu/data", "")
-
-
-def test_what_is_read_already_is_not_meant() -> None:
-    idle, used = (end("bridge", "publishes", f"/r/{it}/data") for it in ("front", "back"))
-    reader = end("rviz", "subscribes", "/r/back/data")
-    assert told(idle, used, reader) == [("ekf", "/r/imu/data", "/r/front/data")]
 
 
 def test_of_several_the_one_with_the_same_last_word_is_meant() -> None:
@@ -193,13 +187,18 @@ OFF = ekf(publish_tf=False, odom_frame="odom", base_link_frame="base", world_fra
 
 def test_a_transform_that_is_switched_off_and_that_nobody_sends() -> None:
     both = [OFF, OFF._replace(name="second")]
-    (gap,) = frame_gaps(both, load_nodes(NEWEST_LTS), ["odom"])
+    (gap,) = frame_gaps(both, load_nodes(NEWEST_LTS), ["imu_link"])
     place = Place("ekf.yaml", 5)
     assert (gap.kind, gap.name, gap.node, gap.place) == ("frame", "base", "ekf", place)
 
 
 def test_a_transform_that_another_one_sends_is_no_gap() -> None:
-    assert list(frame_gaps([OFF], load_nodes(NEWEST_LTS), ["base", "odom"])) == []
+    assert list(frame_gaps([OFF], load_nodes(NEWEST_LTS), ["base"])) == []
+
+
+def test_a_filter_of_the_map_would_send_another_one() -> None:
+    of_map = OFF._replace(values={**OFF.values, "world_frame": Given("map", FILE)})
+    assert [it.name for it in frame_gaps([of_map], load_nodes(NEWEST_LTS), [])] == ["odom"]
 
 
 def test_a_filter_that_sends_has_no_gap() -> None:
