@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.releases import NEWEST_LTS
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -198,4 +197,4 @@ class Table(NamedTuple):
     nodes: tuple[NodeTable, ...]
     names: tuple[EndpointName, ...]
     problems: tuple[Finding, ...]
-    release: str = NEWEST_LTS
+    release: str

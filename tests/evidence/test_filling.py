@@ -14,7 +14,7 @@ from multibot_rewrite.remap.stacks import load_nodes, load_stack
 
 
 def given(text: str, file: str = "params.yaml") -> list[GivenNode]:
-    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes())
+    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes("jazzy"))
 
 
 def run(known: str, text: str, release: str = "jazzy") -> NodeFacts:

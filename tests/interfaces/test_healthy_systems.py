@@ -21,7 +21,7 @@ from multibot_rewrite.interfaces.compare import is_same
 from multibot_rewrite.interfaces.records import Fact
 from multibot_rewrite.interfaces.table import from_table
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.releases import NEWEST_LTS, RELEASES
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeFacts, NodeTable, Table
 from multibot_rewrite.remap.stacks import built_in
@@ -77,7 +77,7 @@ def system(release: str, name: str) -> tuple[list[tuple[str, NodeFacts]], Table,
     library = built_in(release)
     nodes = tuple(dict.fromkeys(it for stack in SYSTEMS[name] for it in stack_of(library, stack)))
     naming = make_naming("L2")
-    table = build_table(("robot1", "robot2"), nodes, naming)
+    table = build_table(("robot1", "robot2"), nodes, naming, release=NEWEST_LTS)
     kinds = [(KINDS.get(it.name, it.name), it) for it in nodes]
     return kinds, table, expect(table, naming, {"robot1": (), "robot2": ()}, nodes)
 

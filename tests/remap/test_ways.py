@@ -41,7 +41,7 @@ def table(release: str, *facts: NodeFacts, tags: tuple[str, ...] = ()) -> Table:
         robot: [(NodeFacts("controller_manager", "gz", ()), tag(robot, *tags))]
         for robot in (("robot1", "robot2") if tags else ())
     }
-    return build_table(["robot1", "robot2"], facts, make_naming("L1"), plugins, release)
+    return build_table(["robot1", "robot2"], facts, make_naming("L1"), plugins, release=release)
 
 
 def tag(robot: str, *rules: str) -> NodeTable:
