@@ -44,7 +44,11 @@ def interface(context: Context, value: str) -> str:
     owner, slash, last = value.rpartition("/")
     if not slash:
         return value
-    if "/" in owner or is_component(context, owner):
+    first, inside, rest = owner.partition("/")
+    if inside and not is_component(context, rest.rpartition("/")[2]):
+        # drive/linear/velocity: no part of the robot, so only drive is a controller.
+        return f"{_chain(context, first)}/{rest}/{last}"
+    if inside or is_component(context, owner):
         return f"{_chain(context, owner)}/{last}"
     # Descriptions do not declare all their gpios.
     return f"{spell(context.names, 'gpio', owner)}/{last}"
@@ -56,17 +60,12 @@ def is_component(context: Context, value: str) -> bool:
 
 
 def _chain(context: Context, value: str) -> str:
-    """What is before an interface: parts of the robot, and controllers that export interfaces.
-
-    ``drive/linear`` ends in no part of the robot: only ``drive`` is a controller."""
-    first, *rest = value.split("/")
-    if rest and not is_component(context, rest[-1]):
-        return "/".join((_link_of_chain(context, first), *rest))
-    return "/".join(_link_of_chain(context, it) for it in (first, *rest))
-
-
-def _link_of_chain(context: Context, value: str) -> str:
-    return component(context, value) if is_component(context, value) else controller(context, value)
+    """What is before a name: parts of the robot, and controllers that export interfaces."""
+    parts = (
+        component(context, it) if is_component(context, it) else controller(context, it)
+        for it in value.split("/")
+    )
+    return "/".join(parts)
 
 
 def component(context: Context, value: str) -> str:
