@@ -35,7 +35,7 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, own, _ = self.job
+        data, file, naming, _, urdf, _, own = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
         return pipeline.prepare(data, file, naming, tree, beside, own)
@@ -127,7 +127,9 @@ def rewrite(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     release = release_here(distro)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
+    job = read_job(
+        source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
+    )
     return next(rewrite_job(job, [robot], again))
 
 
@@ -228,7 +230,9 @@ def explain(
     naming = make_naming(layout, affix, topics, separators, shared_frames, shared_topics, groups)
     check_robot_name(robot)
     release = release_here(distro)
-    job = read_job(source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release)
+    job = read_job(
+        source, naming, urdf, xacro_args, vocabulary, file, [robot], trust, release=release
+    )
     from multibot_rewrite.reports.explain import explain_line  # a rewrite does not need it
 
     urdf_declarations = job.urdf_declarations
@@ -269,9 +273,11 @@ def strip(
     before, release = b"", release_here(distro)
     if xacro is not None:
         made, beside = (xacro, None) if urdf is None else (source, xacro)
-        of = read_job(made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release)
+        of = read_job(
+            made, naming, beside, xacro_args, vocabulary, "", [robot], trust, release=release
+        )
         naming, before = of.naming, b"" if beside else of.data
-    job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release)
+    job = read_job(source, naming, urdf, None, vocabulary, file, (), trust, release=release)
     beside_urdf = job.urdf_declarations
     return pipeline.strip(job.data, job.file, robot, naming, job.tree, beside_urdf, before)
 

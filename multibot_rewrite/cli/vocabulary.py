@@ -37,8 +37,8 @@ def run(options: argparse.Namespace) -> int:
     files = (*configured_vocabulary("-"), *options.vocabulary)
     if options.output:
         check_target(options.output, files)
+    builtin_tree(files, release_here(options.distro))
     # Without a release the rows of all are shown, each with its own.
-    builtin_tree(files)
     vocabulary = load_vocabulary(files, options.distro or "")
     types = [options.type] if options.type else list(TYPES)
     found = vocabulary.sections(*types) if name is None else _found(vocabulary, name, types)

@@ -14,7 +14,8 @@ from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 OUTSIDE = frozenset(
     """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
     joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
-    parameter_events robot_description external_wrench manual_control speed_scaling_input""".split()  # noqa: SIM905
+    parameter_events robot_description external_wrench manual_control speed_scaling_input footprint
+    feedback""".split()  # noqa: SIM905
 )
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
 
@@ -23,7 +24,8 @@ class End(NamedTuple):
     """An end of a topic, service or action in the running system.
 
     ``role`` is empty where it is not known which end. ``type`` may be empty. ``code_name`` is the name
-    in the node's code. ``sure`` is false for an end that is there on a condition only.
+    in the node's code, ``owner`` the node's name without a robot. ``sure`` is false for an end that is
+    there on a condition only.
     """
 
     node: str
@@ -32,13 +34,14 @@ class End(NamedTuple):
     name: str
     type: str
     code_name: str
+    owner: str
     place: Place | None = None
     sure: bool = True
 
     @property
     def key(self) -> tuple[str, ...]:
         """The same before and after a rewrite."""
-        return self.kind, self.role, self.code_name
+        return self.kind, self.role, self.owner, self.code_name
 
 
 def topic_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:

@@ -148,7 +148,9 @@ def _named(endpoint: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint
     names = list(_set_names(endpoint.parameter, values))
     for parameter, name in names:
         if name:
-            set_ = endpoint._replace(name=name, parameter=parameter)
+            # The node makes it absolute itself: /scan, or /robot1/scan below robot1.
+            full = f"/{name}" if endpoint.above and name[0] not in "/~" else name
+            set_ = endpoint._replace(name=full, parameter=parameter)
             yield set_._replace(fixed="", when="", condition="")
     if not names and "<" not in endpoint.name:
         fixed = endpoint.fixed if endpoint.fixed and not endpoint.parameter else ""

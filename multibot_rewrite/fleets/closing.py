@@ -5,21 +5,26 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from multibot_rewrite.closure.bridges import bridge_gaps
 from multibot_rewrite.closure.frames import frame_gaps
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.closure.interfaces import interface_gaps
+from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.closure.topics import closed, topic_gaps
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
+from multibot_rewrite.fleets.bridge_merge import as_spawned
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.output_values import OutputText
+from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import robot_nodes
-from multibot_rewrite.fleets.systems import System, system_after, system_before
+from multibot_rewrite.fleets.systems import BRIDGE_FILE, System, system_after, system_before
+from multibot_rewrite.remap.bridged_topics import bridged_topics
 
 # So many names in one line.
 _LISTED = 8
@@ -145,6 +150,75 @@ drive:
 )
 
 
+NOT_MOVED = declare(
+    "MF815",
+    "moveit-controller-not-there",
+    WARNING,
+    what="MoveIt sends trajectories to a controller that none of the robot's parameter files declares, "
+    "or for a joint that the controller does not move. An error where the rewrite has made it so.",
+    why="MoveIt plans, and execution fails: no controller takes the trajectory.",
+    fix="Use the controller's name and its joints.",
+    bad="""\
+moveit_simple_controller_manager:
+  controller_names: [arm_controler]
+  arm_controler: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [elbow]}
+""",
+    good="""\
+moveit_simple_controller_manager:
+  controller_names: [arm_controller]
+  arm_controller: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [elbow]}
+""",
+    line=3,
+    formats=("moveit",),
+    beside={
+        "robot.urdf": _ARM,
+        "controllers.yaml": """\
+controller_manager:
+  ros__parameters:
+    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+arm_controller:
+  ros__parameters: {joints: [elbow], command_interfaces: [position], state_interfaces: [position]}
+""",
+    },
+    options={"companions": {"params": "controllers.yaml"}},
+)
+NO_GZ_TOPIC = declare(
+    "MF816",
+    "bridge-row-without-gz-topic",
+    WARNING,
+    what="A row of a bridge reads a gz topic that nothing in the description sends, while a sensor or "
+    "plugin sends another one of the type.",
+    why="The bridge waits for data that never comes.",
+    fix="Give the row the topic of the sensor.",
+    bad="""\
+- ros_topic_name: scan
+  gz_topic_name: lidar/scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+  direction: GZ_TO_ROS
+""",
+    good="""\
+- ros_topic_name: scan
+  gz_topic_name: scan
+  ros_type_name: sensor_msgs/msg/LaserScan
+  gz_type_name: gz.msgs.LaserScan
+  direction: GZ_TO_ROS
+""",
+    line=2,
+    formats=("bridge",),
+    beside={
+        "robot.urdf": """\
+<robot name="rover">
+  <link name="base_link"/>
+  <gazebo reference="base_link">
+    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
+  </gazebo>
+</robot>
+""",
+    },
+)
+
+
 def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Iterator[Finding]:
     """What is open in the robots of a fleet; robots of the same sources are looked at once.
 
@@ -161,6 +235,9 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         yield from _interfaces(robot, made, now)
         yield from _frames(robot, frame_gaps(before.given, library, before.sent))
         yield from _topics(robot, before, after)
+        old, new = (list(moveit_gaps(it.moveit, it.given)) for it in (before, after))
+        yield from _moveit(robot, old, new)
+        yield from _bridge(plan, robot, texts)
 
 
 def _interfaces(
@@ -211,6 +288,35 @@ def _topics(robot: RewrittenRobot, before: System, after: System) -> Iterator[Fi
         yield _all_open(robot, rest)
 
 
+def _moveit(
+    robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
+) -> Iterator[Finding]:
+    known = {it.key for it in before}
+    for it in (*before, *(it for it in after if it.key not in known)):
+        level = WARNING if it.key in known else ERROR
+        message = f"MoveIt uses {it.name}, which no controller of {robot.spec.name} has"
+        yield _found(NOT_MOVED, robot, it, message, _meant(it), level)
+
+
+def _bridge(
+    plan: FleetPlan, robot: RewrittenRobot, texts: Sequence[OutputText]
+) -> Iterator[Finding]:
+    """Rows of the robot's bridge against the gz topics of its written description."""
+    own = {robot.spec.namespace: robot.member.inventory}
+    topics, _ = bridged_topics(own, plan.fleet.naming)
+    sent = {f"/{it.gz.lstrip('/')}": it.gz_type for it in as_spawned(topics, [robot])}
+    for text in (
+        it for it in texts if it.path == f"{robot.spec.name}/{BRIDGE_FILE}" and it.sources
+    ):
+        for it in bridge_gaps(read_yaml(text.text.encode(), text.path), sent):
+            message = (
+                f"the bridge of {robot.spec.name} reads gz topic {it.name}, which nothing sends"
+            )
+            source = line_in_source(text, it.place.line) if it.place else None
+            at = it._replace(place=Place(*source)) if source else it
+            yield _found(NO_GZ_TOPIC, robot, at, message, _meant(it))
+
+
 def _all_open(robot: RewrittenRobot, gaps: Sequence[Gap]) -> Finding:
     names = sorted({it.name for it in gaps})
     shown = ", ".join(names[:_LISTED])
@@ -222,7 +328,7 @@ def _all_open(robot: RewrittenRobot, gaps: Sequence[Gap]) -> Finding:
 
 def _meant(gap: Gap) -> str:
     if not gap.near:
-        return "name one that is there"
+        return f"see {gap.near_place}" if gap.near_place else "name one that is there"
     where = f" ({gap.near_place})" if gap.near_place else ""
     return f"did you mean {gap.near}{where}?"
 

@@ -13,7 +13,6 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import with_included
 from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.remap.nodl.lookup import find_interfaces
@@ -57,7 +56,7 @@ def make_fleet(
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
-    release: str = NEWEST_LTS,
+    release: str,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
@@ -82,8 +81,8 @@ def make_fleet(
 
 def facts_of(
     stacks: Sequence[str],
-    nodes: str | None = None,
-    release: str = NEWEST_LTS,
+    nodes: str | None,
+    release: str,
     nodl: Sequence[str] = (),
 ) -> tuple[NodeFacts, ...]:
     """The nodes that a robot with these stacks runs in a release, each once.
@@ -127,7 +126,7 @@ def assemble(
     members: Sequence[Member],
     facts: tuple[NodeFacts, ...],
     naming: Naming,
-    release: str = NEWEST_LTS,
+    release: str,
 ) -> Fleet:
     """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
@@ -136,7 +135,7 @@ def assemble(
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
-    table = build_table([it.robot for it in members], facts, naming, plugins, release)
+    table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
     return Fleet(
         table,
         inventories,

@@ -17,7 +17,6 @@ from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.job import Job, Reader, job_for, reader
 from multibot_rewrite.sources.own_names import ROBOT
@@ -65,8 +64,8 @@ def read_jobs(
     robots: Sequence[RobotSpec],
     naming: Naming,
     vocabulary: Sequence[str],
-    trust: bool = False,
-    release: str = NEWEST_LTS,
+    trust: bool,
+    release: str,
 ) -> dict[Sources, Jobs]:
     """Read every description and SRDF once; raises as ``read_job``. ``trust`` lets xacro files do
     anything."""

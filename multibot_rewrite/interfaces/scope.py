@@ -133,7 +133,7 @@ def _value(index: Index, scope: Scope, function: str, name: str, depth: int) -> 
     if name.startswith("@"):
         return _parameter(index, scope, function, name, depth)
     for text in _candidates(index, scope, function, name):
-        if text not in ("", f"<{name}>", "<?>"):
+        if text.strip() and text not in (f"<{name}>", "<?>"):
             found = text_in(index, scope, function, text, depth + 1)
             if found.parameter or (found.text and found.text != f"<{name}>"):
                 return found

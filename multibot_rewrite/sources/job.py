@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import Naming, OwnNames
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
@@ -46,8 +45,8 @@ class Job(NamedTuple):
     naming: Naming
     vocabulary: tuple[str, ...]
     urdf: tuple[bytes, str] | None
+    release: str
     own: OwnSource = OF_ALL
-    release: str = NEWEST_LTS
 
     @property
     def tree(self) -> Tree:
@@ -75,7 +74,8 @@ def read_job(
     file: str = "",
     words: Sequence[str] = (),
     trust: bool = False,
-    release: str = NEWEST_LTS,
+    *,
+    release: str,
 ) -> Job:
     """Read the sources; raises InputError, and UsageError for arguments that no xacro takes.
 
@@ -95,8 +95,8 @@ def read_jobs(
     xacro_args: Arguments | None,
     vocabulary: Iterable[str],
     file: str,
-    trust: bool = False,
-    release: str = NEWEST_LTS,
+    trust: bool,
+    release: str,
 ) -> dict[str, Job]:
     """The job of each robot: one for all that the arguments do not name. Raises as ``read_job``."""
     given = xacro_args or {}
@@ -129,8 +129,8 @@ def reader(
     urdf: Source | None,
     vocabulary: tuple[str, ...],
     file: str,
-    trust: bool = False,
-    release: str = NEWEST_LTS,
+    trust: bool,
+    release: str,
 ) -> Reader:
     """Reads the sources with xacro arguments, with the same ones once; raises as ``read_job``."""
 
@@ -139,7 +139,7 @@ def reader(
         args = dict(pairs)
         data, name = read_source(source, args_for(source, urdf, args), trust)
         beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
-        return Job(data, file or name, naming, vocabulary, beside, release=release)
+        return Job(data, file or name, naming, vocabulary, beside, release)
 
     return lambda args: read(frozenset(args.items()))
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import NEWEST_LTS, has_release
+from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
@@ -132,7 +132,7 @@ class KnownNodes(NamedTuple):
 
 
 @lru_cache
-def built_in_nodes(release: str = NEWEST_LTS) -> KnownNodes:
+def built_in_nodes(release: str) -> KnownNodes:
     """The nodes that this package knows, with the defaults of a release."""
     text = (
         files("multibot_rewrite.companions.params")
@@ -142,7 +142,7 @@ def built_in_nodes(release: str = NEWEST_LTS) -> KnownNodes:
     return _known({}, {}, frozenset(), text, "params.yaml", release)
 
 
-def load_known_nodes(path: str = "", release: str = NEWEST_LTS) -> KnownNodes:
+def load_known_nodes(path: str, release: str) -> KnownNodes:
     """The built-in nodes, and those that a file of the same shape adds or changes.
 
     Raises UsageError, with file and line, for whatever is wrong in it.

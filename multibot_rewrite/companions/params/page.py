@@ -13,6 +13,7 @@ from multibot_rewrite.companions.params.known_nodes import (
     built_in_nodes,
     has_default,
 )
+from multibot_rewrite.releases import NEWEST_LTS
 
 START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
 HEAD = """
@@ -54,4 +55,4 @@ def _inserted(node: KnownNode) -> str:
 
 
 if __name__ == "__main__":
-    sys.stdout.write(page(built_in_nodes()))
+    sys.stdout.write(page(built_in_nodes(NEWEST_LTS)))
