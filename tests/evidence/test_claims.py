@@ -59,7 +59,8 @@ ROS2_CONTROLLERS = [
     (
         "joint_trajectory_controller/JointTrajectoryController",
         "joints: [a], command_joints: [pid/a], command_interfaces: [velocity], "
-        "state_interfaces: [position], speed_scaling: {state_interface: scale/factor, command_interface: scale/cmd}",
+        "state_interfaces: [position], "
+        "speed_scaling: {state_interface: scale/factor, command_interface: scale/cmd}",
         command("pid/a/velocity", "scale/cmd") | state("a/position", "scale/factor"),
     ),
     (
