@@ -182,10 +182,21 @@ def _interfaces(
     robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
 ) -> Iterator[Finding]:
     known = {it.key for it in before}
-    for it in (*before, *(it for it in after if it.key not in known)):
-        level = WARNING if it.key in known else ERROR
-        message = f"{it.node} of {robot.spec.name} claims {it.name}, which no ros2_control exports"
-        yield at_gap(NO_INTERFACE, robot, it, message, meant(it), level)
+    rest = [it for it in after if it.key not in known]
+    for level, gaps in ((WARNING, before), (ERROR, rest)):
+        for first, *more in _by_place(gaps):
+            names = f"{first.name} and {len(more)} more" if more else first.name
+            claims = f"{first.node} of {robot.spec.name} claims {names}"
+            message = f"{claims}, which no ros2_control exports"
+            yield at_gap(NO_INTERFACE, robot, first, message, meant(first), level)
+
+
+def _by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
+    """The gaps of each controller that are written at one place."""
+    found: dict[object, list[Gap]] = {}
+    for it in gaps:
+        found.setdefault((it.node, it.place), []).append(it)
+    return found.values()
 
 
 def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
