@@ -7,7 +7,13 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.params.known_nodes import Branch, KnownNodes, Param, guess
+from multibot_rewrite.companions.params.known_nodes import (
+    Branch,
+    KnownNode,
+    KnownNodes,
+    Param,
+    guess,
+)
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.model import InputError
@@ -67,6 +73,11 @@ def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> 
     tree = section.node.tree if section.node else known.anywhere
     _walk(document, section.body, [(tree, ())], known, names)
     return names
+
+
+def params_at(node: KnownNode, name: str, key: yaml.ScalarNode) -> list[Param]:
+    """What is known of a parameter by its dotted name, in this release or another."""
+    return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
 
 
 def _walk(
