@@ -176,9 +176,9 @@ def test_a_layer_whose_sources_are_in_another_file_may_read_any() -> None:
 def test_what_no_rule_reaches_is_fixed_unless_a_parameter_could_name_it() -> None:
     known = load_nodes("jazzy")["ekf_filter_node"]
     named = Endpoint(
-        "topic", "publishes", "a", parameter="a_topic", fixed="made absolute", condition="on"
+        "topic", "publishes", "a", parameter="a_topic", fixed="made absolute", condition="wanted"
     )
     bare = named._replace(name="b", parameter="")
     node = known._replace(endpoints=(named, bare))
-    found = filled(node, given("ekf_filter_node:\n  ros__parameters: {on: true}\n")[0])
+    found = filled(node, given("ekf_filter_node:\n  ros__parameters: {wanted: true}\n")[0])
     assert [(it.name, it.fixed) for it in found.endpoints] == [("a", ""), ("b", "made absolute")]
