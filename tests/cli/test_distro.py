@@ -102,3 +102,14 @@ def test_a_vocabulary_is_checked_for_its_release(
     assert multibot.main([*words, "humble"]) == 2
     assert "there is no [element nowhere]" in capsys.readouterr().err
     assert multibot.main([*words, "jazzy"]) == 0
+
+
+def test_a_section_of_another_release_is_named(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "lamp.vocab").write_text("[plugin lamp]\nreleases: <=jazzy\nlink uses link\n")
+    words = ["vocabulary", "lamp", "--vocabulary", "lamp.vocab", "--distro"]
+    assert multibot.main([*words, "lyrical"]) == 2
+    said = "'lamp' is not in lyrical, only in humble, jazzy; name one of them with --distro"
+    assert said in capsys.readouterr().err
+    assert multibot.main([*words, "humble"]) == 0
