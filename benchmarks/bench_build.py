@@ -28,6 +28,7 @@ from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.fleets.robot_groups import group_robots
+from multibot_rewrite.releases import NEWEST_LTS
 
 PAGE = Path(__file__).parent.parent / "docs" / "benchmark-build.md"
 ROBOTS = 100
@@ -157,7 +158,7 @@ def write_fleets(folder: Path) -> tuple[str, str]:
 
 def made(fleet: str) -> Outputs:
     """All files of a fleet, in memory."""
-    return make_outputs(plan_fleet(read_fleet(fleet)))
+    return make_outputs(plan_fleet(read_fleet(fleet, "", {})))
 
 
 def write_raw(files: Outputs, folder: str) -> None:
@@ -233,9 +234,11 @@ def rows(folder: Path) -> list[Row]:
 
 def least(folder: Path, runs: int = 100) -> float:
     """Milliseconds for the parameter file of the first robot, at best."""
-    kin = next(iter(group_robots(plan_fleet(read_fleet(str(folder / "one.yaml"))))))
+    kin = next(iter(group_robots(plan_fleet(read_fleet(str(folder / "one.yaml"), "", {})))))
     data = (folder / "params.yaml").read_bytes()
-    context = make_context(kin.context.names.declared, kin.context.names.naming, kin.facts)
+    context = make_context(
+        kin.context.names.declared, kin.context.names.naming, kin.facts, distro=NEWEST_LTS
+    )
 
     def first() -> str:
         return fill_template(

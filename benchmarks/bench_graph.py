@@ -37,6 +37,7 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 from multibot_rewrite.remap.stacks import built_in
@@ -256,11 +257,13 @@ def pure() -> Iterator[Row]:
 
 
 def tables() -> Iterator[Row]:
-    nodes = stack_of(built_in(), "nav2")
+    nodes = stack_of(built_in(NEWEST_LTS), "nav2")
     names = [f"robot{at}" for at in range(1000)]
     for layout in ("frames-per-robot", "postfix"):
         naming = make_naming(layout)
-        values = timed(lambda naming=naming: build_table(names, nodes, naming), 3)  # type: ignore[misc]
+        values = timed(
+            lambda naming=naming: build_table(names, nodes, naming, release=NEWEST_LTS), 3
+        )  # type: ignore[misc]
         yield row(f"remap tables of nav2, {layout}", "1000 robots", values, "ms", "1000")
 
 

@@ -23,6 +23,7 @@ from multibot_rewrite.companions.params.rewrite import rewrite_params
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.stacks import load_stack
 
 ROOT = Path(__file__).parent.parent
@@ -38,7 +39,7 @@ DECLARED: dict[str, dict[str, None]] = {
 def context(layout: str, affix: str) -> Context:
     """Nav2 on a robot of three links."""
     naming = make_naming(layout=layout, affix=affix)
-    return make_context(DECLARED, naming, load_stack("nav2"))  # type: ignore[arg-type]
+    return make_context(DECLARED, naming, load_stack("nav2", NEWEST_LTS), distro=NEWEST_LTS)  # type: ignore[arg-type]
 
 
 def first(data: bytes, setting: Context) -> str:

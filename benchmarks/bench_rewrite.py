@@ -33,6 +33,7 @@ from multibot_rewrite import MultibotError, pipeline
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import collect
@@ -76,7 +77,7 @@ The proof reads and walks the output anew, so it costs more than the rewrite. It
 
 def unproved(source: bytes) -> bytes:
     """One robot without the proof: document, collect, plan, apply."""
-    naming, tree = make_naming(), builtin_tree()
+    naming, tree = make_naming(), builtin_tree((), NEWEST_LTS)
     inventory = collect(read_document(source, "robot"), tree)
     return fill(cut(source, make_plan(inventory, naming).edits), "robot1")
 
@@ -174,7 +175,7 @@ def in_public(public: PublicFiles) -> list[Row]:
 def in_memory(source: bytes) -> Row:
     """A thousand robots in memory against as many copies."""
     robots = [f"robot{number}" for number in range(FLEET)]
-    pieces = pipeline.prepare(source, "robot", make_naming(), builtin_tree()).pieces
+    pieces = pipeline.prepare(source, "robot", make_naming(), builtin_tree((), NEWEST_LTS)).pieces
     place, output = bytearray(source), fill(pieces, robots[0])
 
     def copy() -> None:

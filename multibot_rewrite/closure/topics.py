@@ -14,7 +14,8 @@ from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 OUTSIDE = frozenset(
     """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
     joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
-    parameter_events robot_description external_wrench manual_control speed_scaling_input""".split()  # noqa: SIM905
+    parameter_events robot_description external_wrench manual_control speed_scaling_input footprint
+    feedback""".split()  # noqa: SIM905
 )
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
 
@@ -23,7 +24,8 @@ class End(NamedTuple):
     """An end of a topic, service or action in the running system.
 
     ``role`` is empty where it is not known which end. ``type`` may be empty. ``code_name`` is the name
-    in the node's code. ``sure`` is false for an end that is there on a condition only.
+    in the node's code, ``owner`` the node's name without a robot. ``sure`` is false for an end that is
+    there on a condition only.
     """
 
     node: str
@@ -32,20 +34,21 @@ class End(NamedTuple):
     name: str
     type: str
     code_name: str
+    owner: str
     place: Place | None = None
     sure: bool = True
 
     @property
     def key(self) -> tuple[str, ...]:
         """The same before and after a rewrite."""
-        return self.kind, self.role, self.code_name
+        return self.kind, self.role, self.owner, self.code_name
 
 
 def topic_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:
     """What the nodes of a robot need and nothing sends. ``more`` are ends of nodes for all robots."""
-    idle = list(_idle(ends))
+    given = [it for it in ends if it.role in GIVES]
     for it in _needed(ends, more, sent=False):
-        near = _near(it, idle)
+        near = _near(it, given)
         where = near.place if near else None
         yield Gap(it.kind, it.name, it.node, it.key, it.place, near.name if near else "", where)
 
@@ -67,17 +70,9 @@ def _is_from_outside(end: End) -> bool:
     return any(name.rpartition("/")[2] in OUTSIDE for name in (end.name, end.code_name))
 
 
-def _idle(ends: Sequence[End]) -> Iterator[End]:
-    """What is sent and read by no node of the robot: one of these may be meant."""
-    read = {(it.kind, it.name) for it in ends if it.role not in GIVES}
-    yield from (it for it in ends if it.role in GIVES and (it.kind, it.name) not in read)
-
-
-def _near(end: End, idle: Iterable[End]) -> End | None:
-    """What may be meant: of the same type, and the only one or with a like name."""
-    others = (it for it in idle if it.kind == end.kind and it.node != end.node)
+def _near(end: End, given: Iterable[End]) -> End | None:
+    """What may be meant: another one of the same type, with the same last word or the likest name."""
+    others = (it for it in given if it.kind == end.kind and it.node != end.node)
     alike = {it.name: it for it in others if end.type and it.type == end.type}
-    if len(alike) == 1:
-        return next(iter(alike.values()))
     last = [name for name in alike if name.endswith("/" + end.name.rpartition("/")[2])]
-    return alike.get(last[0] if len(last) == 1 else nearest(end.name, alike))
+    return alike.get(nearest(end.name, last or alike, alike=0.0))

@@ -9,7 +9,6 @@ from multibot_rewrite.companions.names.rename_map import NO_OWN, CompanionNames
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, FileTemplate
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import Naming
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.remap.targets import placed
 from multibot_rewrite.rewriters.forms import Declared
@@ -24,7 +23,7 @@ class Context(NamedTuple):
     names: CompanionNames
     topics: CompanionNames
     nodes: Mapping[str, str]
-    distro: str = NEWEST_LTS
+    distro: str
 
 
 class Companion(NamedTuple):
@@ -38,7 +37,7 @@ def make_context(
     declared: Declared,
     naming: Naming,
     facts: Iterable[NodeFacts],
-    distro: str = NEWEST_LTS,
+    distro: str,
     own: Mapping[tuple[str, str], str] = NO_OWN,
 ) -> Context:
     """The context of a description (not rewritten) and the nodes that its robots run; ``own`` as in

@@ -13,7 +13,6 @@ from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edge
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import with_included
 from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.remap.nodl.lookup import find_interfaces
@@ -34,7 +33,7 @@ class Fleet(NamedTuple):
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
-    differs from their namespace, with it."""
+    differs from their namespace, with it. ``read`` are the files that were read for descriptions."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -44,6 +43,7 @@ class Fleet(NamedTuple):
     sources: dict[str, str]
     origins: dict[str, str]
     tags: dict[str, str]
+    read: tuple[str, ...]
 
 
 def make_fleet(
@@ -57,7 +57,7 @@ def make_fleet(
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
-    release: str = NEWEST_LTS,
+    release: str,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
@@ -82,8 +82,8 @@ def make_fleet(
 
 def facts_of(
     stacks: Sequence[str],
-    nodes: str | None = None,
-    release: str = NEWEST_LTS,
+    nodes: str | None,
+    release: str,
     nodl: Sequence[str] = (),
 ) -> tuple[NodeFacts, ...]:
     """The nodes that a robot with these stacks runs in a release, each once.
@@ -127,7 +127,7 @@ def assemble(
     members: Sequence[Member],
     facts: tuple[NodeFacts, ...],
     naming: Naming,
-    release: str = NEWEST_LTS,
+    release: str,
 ) -> Fleet:
     """The fleet of robots that run the same nodes of a release."""
     inventories = {it.robot: it.inventory for it in members}
@@ -136,7 +136,9 @@ def assemble(
     for it in members:
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
-    table = build_table([it.robot for it in members], facts, naming, plugins, release)
+    table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
+    unread = dict.fromkeys(found for it in members for found in it.unread)
+    table = table._replace(problems=(*table.problems, *unread))
     return Fleet(
         table,
         inventories,
@@ -146,7 +148,12 @@ def assemble(
         _sources(members),
         _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
+        _read(members),
     )
+
+
+def _read(members: Sequence[Member]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(path for it in members for path in it.read))
 
 
 def _sources(members: Sequence[Member]) -> dict[str, str]:
@@ -182,6 +189,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.sources, **other.sources},
             {**first.origins, **other.origins},
             {**first.tags, **other.tags},
+            tuple(dict.fromkeys((*first.read, *other.read))),
         )
     return first
 

@@ -21,7 +21,6 @@ from multibot_rewrite.releases import RELEASES, chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 
 SCHEMA = "fleet.schema.json"
-NOTHING: Mapping[str, str] = {}
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
@@ -105,7 +104,7 @@ class _Read(NamedTuple):
     files: tuple[str, ...]
 
 
-def read_fleet(path: str, distro: str = "", environment: Mapping[str, str] = NOTHING) -> FleetFile:
+def read_fleet(path: str, distro: str, environment: Mapping[str, str]) -> FleetFile:
     """Read a fleet file and those it includes; raises InputError with file and line.
 
     The release is ``distro``, else that of the file, else as ``chosen_release`` says.

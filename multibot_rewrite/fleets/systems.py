@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
@@ -19,27 +20,30 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges, sent_by
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
 from multibot_rewrite.rosnames import expand
 from multibot_rewrite.steps.document import read_document
 
-FIXED = "fixed"
+FIXED, MOVEIT = "fixed", "moveit_simple_controller_manager"
 BRIDGE_FILE, BRIDGE_NODE = "bridge.yaml", "ros_gz_bridge"
 ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,), "BIDIRECTIONAL": ("",)}
 
 
 class System(NamedTuple):
     """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the ends of
-    its topics and services, those of nodes for all robots, and the frames that anything sends."""
+    its topics and services, those of nodes for all robots, the frames that anything sends, its
+    MoveIt files, and the nodes that send transforms."""
 
     given: tuple[GivenNode, ...]
     exports: tuple[Exported, ...]
     ends: tuple[End, ...]
     shared: tuple[End, ...]
     sent: frozenset[str]
+    moveit: tuple[YamlText, ...]
+    senders: tuple[Sender, ...] = ()
 
 
 def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
@@ -63,6 +67,8 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
         tuple(ends),
         tuple(shared),
         frozenset(sent),
+        tuple(_documents(robot, "moveit")),
+        tuple(_sender(it, given, _root(robot)) for it in nodes if it.sends),
     )
 
 
@@ -77,20 +83,23 @@ def system_after(
     ]
     file = robot.member.source.file
     written = read_document(robot.description, file)
+    owners = {f"{it.namespace.rstrip('/')}/{it.name}": it.node for it in fleet.table.nodes}
     ends = [end for it in bridges for end in bridge_ends(it)]
-    ends += [_planned(it) for it in fleet.table.names if it.robot == robot.spec.namespace]
+    ends += [_planned(it, owners) for it in fleet.table.names if it.robot == robot.spec.namespace]
     return System(
         tuple(given_nodes(params, known)),
         tuple(exported(written.root, file)),
         tuple(ends),
-        tuple(_planned(it) for it in fleet.table.names if not it.robot),
+        tuple(_planned(it, owners) for it in fleet.table.names if not it.robot),
         frozenset(it.child for it in description_edges(robot.member.inventory)),
+        tuple(_read(it) for it in own if MOVEIT in it.text),
     )
 
 
-def _planned(it: EndpointName) -> End:
+def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
     end = it.endpoint
-    return End(it.node, end.kind, end.role, it.name, end.type, end.name, None, not end.when)
+    own = (end.kind, end.role, it.name, end.type, end.name, owners.get(it.node, it.node))
+    return End(it.node, *own, None, not end.when)
 
 
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
@@ -98,6 +107,19 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     plain = {text: name for (_, name), text in robot.names.own.items()}
     owner, slash, rest = export.name.partition("/")
     return export._replace(name=f"{plain.get(owner, owner)}{slash}{rest}")
+
+
+def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:
+    place = next((it.place for it in given if it.name == node.name), None)
+    return Sender(f"/{node.name}", tuple(sent_by(node, root)), place)
+
+
+def _root(robot: RewrittenRobot) -> str:
+    """The first link that no joint has as its child."""
+    joints = robot.member.source.root.iter("joint")
+    children = {end.get("link") for it in joints for end in it.iterfind("child")}
+    links = (it.get("name", "") for it in robot.member.source.root.iterfind("link"))
+    return next((it for it in links if it not in children), "")
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:
@@ -125,12 +147,14 @@ def _ends_of(node: NodeFacts, given: Iterable[GivenNode]) -> Iterator[End]:
         place = values[it.parameter].place if it.parameter in values else None
         # A node with parameters is meant to run.
         sure = not it.when and (section is not None or not node.when)
-        yield End(f"/{node.name}", it.kind, it.role, full, it.type, it.name, place, sure)
+        own = (it.kind, it.role, full, it.type, it.name, node.name)
+        yield End(f"/{node.name}", *own, place, sure)
 
 
 def _plugin_ends(node: ReadNode) -> Iterator[End]:
     for it in node.endpoints:
-        yield End(node.full_name, it.kind, it.role, it.full, "", it.name, None, not it.off)
+        own = (it.kind, it.role, it.full, "", it.name, str(node.number))
+        yield End(node.full_name, *own, None, not it.off)
 
 
 def bridge_ends(document: YamlText) -> Iterator[End]:
@@ -145,4 +169,4 @@ def bridge_ends(document: YamlText) -> Iterator[End]:
         full = f"/{str(name.value).lstrip('/')}"
         for role in ROLES.get(words.get("direction", "BIDIRECTIONAL"), ("",)):
             type_ = words.get("ros_type_name", "")
-            yield End(f"/{BRIDGE_NODE}", TOPIC, role, full, type_, full, place)
+            yield End(f"/{BRIDGE_NODE}", TOPIC, role, full, type_, full, BRIDGE_NODE, place)

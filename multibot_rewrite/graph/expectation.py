@@ -116,7 +116,10 @@ def expect(
         full = tuple(
             dict.fromkeys((*(it for _, it in nodes.get(name, ())), *private.get(name, ())))
         )
-        may_miss += tuple(it for it in private.get(name, ()) if it.startswith(may_miss))
+        must = _private_nodes(it for it in table.names if not it.endpoint.when).get(name, ())
+        may_miss += tuple(
+            it for it in private.get(name, ()) if it not in must or it.startswith(may_miss)
+        )
         tf = tf_topic(name, naming)
         tag = word if word != name else ""
         robots.append(PlannedRobot(name, full, own, tf, tuple(left), may_miss, tag))
@@ -162,7 +165,7 @@ def _private_nodes(names: Iterable[EndpointName]) -> dict[str, tuple[str, ...]]:
     found: dict[str, tuple[str, ...]] = {}
     for name in names:
         full = f"{name.node}{name.endpoint.by}"
-        if name.endpoint.by and not name.endpoint.when and full not in found.get(name.robot, ()):
+        if name.endpoint.by and full not in found.get(name.robot, ()):
             found[name.robot] = (*found.get(name.robot, ()), full)
     return found
 

@@ -1,6 +1,7 @@
-"""``python -m multibot_rewrite.interfaces FOLDER... --release jazzy``: what known nodes declare.
+"""``python -m multibot_rewrite.interfaces FOLDER...``: what known nodes declare.
 
-Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed.
+Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed;
+with ``--compare RELEASE``, the differences to the nodes that are known of that release.
 """
 
 from __future__ import annotations
@@ -10,26 +11,35 @@ import sys
 from pathlib import Path
 
 from multibot_rewrite.interfaces.checkouts import read_folder
+from multibot_rewrite.interfaces.compare import differences
 from multibot_rewrite.interfaces.known_nodes import extracted
 from multibot_rewrite.interfaces.records import joined
 from multibot_rewrite.interfaces.scope import indexed
 from multibot_rewrite.interfaces.table import to_table
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.remap.stacks import built_in
 
 
 def main(arguments: list[str]) -> int:
-    """Print the table; 2 for wrong arguments."""
+    """Print the table, or differences; 1 where there are some, 2 for wrong arguments."""
     parser = argparse.ArgumentParser(
         prog="python -m multibot_rewrite.interfaces", description=__doc__
     )
     parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER")
+    parser.add_argument("--compare", choices=RELEASES, metavar="RELEASE")
     given = parser.parse_args(arguments)
     try:
         source = joined([read_folder(folder) for folder in sorted(given.folders)])
     except UsageError as error:
         print(f"interfaces: {error}", file=sys.stderr)
         return 2
-    sys.stdout.write(to_table(extracted(indexed(source))))
+    facts = tuple(extracted(indexed(source)))
+    if given.compare:
+        rows = sorted(set(differences(facts, built_in(given.compare))))
+        sys.stdout.writelines("\t".join(row) + "\n" for row in rows)
+        return int(bool(rows))
+    sys.stdout.write(to_table(facts))
     return 0
 
 

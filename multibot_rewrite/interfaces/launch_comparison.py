@@ -10,8 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib.resources import files
 from typing import NamedTuple
 
-import yaml
-
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.interfaces.parameter_tables import LaunchFact
 from multibot_rewrite.releases import has_release
 
@@ -42,13 +41,13 @@ class LaunchDifference(NamedTuple):
 def launch_files() -> Mapping[str, Sequence[str]]:
     """Stack -> its launch files, as ``launch_stacks.yaml`` has them."""
     text = files("multibot_rewrite.interfaces").joinpath("launch_stacks.yaml").read_text("utf-8")
-    found: Mapping[str, Sequence[str]] = yaml.safe_load(text)
+    found: Mapping[str, Sequence[str]] = load_yaml(text)
     return found
 
 
 def stack_nodes(stacks: str, stack: str, release: str) -> tuple[StackNode, ...]:
     """The nodes of a stack in a release, from the text of stacks.yaml; not those it includes."""
-    entries = yaml.safe_load(stacks)["stacks"][stack].get("nodes", ())
+    entries = load_yaml(stacks)["stacks"][stack].get("nodes", ())
     rows = [it if isinstance(it, dict) else {"node": it} for it in entries]
     return tuple(_node(it) for it in rows if has_release(it.get("releases", ""), release))
 

@@ -13,6 +13,8 @@ from typing import NamedTuple
 import yaml
 from lxml import etree
 
+from multibot_rewrite.bounded import compose_yaml
+
 NODE, LIFECYCLE, CONTAINER, COMPONENT = "node", "lifecycle_node", "container", "component"
 # Actions of Python files, and elements of XML and YAML files.
 _ACTIONS = {
@@ -47,7 +49,7 @@ def launched_nodes(file: str, text: str) -> tuple[LaunchedNode, ...]:
             return tuple(_of_python(ast.parse(text)))
         if file.endswith((".xml", ".launch")):
             return tuple(_of_xml(text))
-        return tuple(_of_yaml(yaml.compose(text, Loader=yaml.SafeLoader)))
+        return tuple(_of_yaml(compose_yaml(text)))
     except (SyntaxError, ValueError, etree.XMLSyntaxError, yaml.YAMLError):
         return ()
 

@@ -13,8 +13,7 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
-import yaml
-
+from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.interfaces.parameter_facts import EMPTY, NO_DEFAULT, YAML, ParameterFact
 from multibot_rewrite.releases import has_release
 
@@ -68,14 +67,14 @@ class Owners(NamedTuple):
 def owners() -> Owners:
     """What ``parameter_owners.yaml`` says."""
     text = files("multibot_rewrite.interfaces").joinpath("parameter_owners.yaml").read_text("utf-8")
-    found = yaml.safe_load(text)
+    found = load_yaml(text)
     return Owners(found["also"], found["below"])
 
 
 def our_parameters(text: str, known: Owners) -> tuple[OurParameter, ...]:
     """The rows of params.yaml; a parameter with several forms has a row for each."""
     rows = []
-    for node, entry in yaml.safe_load(text)["nodes"].items():
+    for node, entry in load_yaml(text)["nodes"].items():
         packages = (entry.get("package", ""), *known.also.get(node, ()))
         for path, given in (entry.get("params") or {}).items():
             for form in given if isinstance(given, list) else [given]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import yaml
 
+from multibot_rewrite.bounded import compose_yaml
 from multibot_rewrite.interfaces.parameter_facts import text_of
 
 # The types of parameters; an array may have a length behind it: double_array_fixed_6.
@@ -32,7 +33,7 @@ class FileParameter(NamedTuple):
 def file_parameters(text: str) -> tuple[FileParameter, ...]:
     """The parameters of a file; none if it is another kind of YAML."""
     try:
-        root = yaml.compose(text, Loader=yaml.SafeLoader)
+        root = compose_yaml(text)
     except yaml.YAMLError:
         return ()
     found = [

@@ -10,6 +10,11 @@ from collections.abc import Iterator
 from importlib.resources import files
 from pathlib import Path
 
+from multibot_rewrite.interfaces.launch_comparison import (
+    launch_differences,
+    launch_files,
+    stack_nodes,
+)
 from multibot_rewrite.interfaces.parameter_comparison import differences, our_parameters, owners
 from multibot_rewrite.interfaces.parameter_facts import ParameterFact, read_parameters
 from multibot_rewrite.interfaces.parameter_tables import read_launches
@@ -25,8 +30,14 @@ tag or commit, file and line. A *difference* is a parameter of ours that a relea
 default, or a text of the sources that looks like a name and is not in our table. *Corrected* are those
 that our table no longer has, *excepted* those with a reason in `parameters_exceptions.tsv`.
 
-| release | parameters | texts | bounded | launched | components | differences | corrected | excepted |
-|---|--:|--:|--:|--:|--:|--:|--:|--:|
+| release | parameters | texts | bounded | differences | corrected | excepted |
+|---|--:|--:|--:|--:|--:|--:|
+"""
+_LAUNCH = """
+Our stacks against the launch files that start them (`launch_stacks.yaml`): nodes and remap rules.
+
+| release | launched nodes | components | differences | corrected | excepted |
+|---|--:|--:|--:|--:|--:|
 """
 _SOURCES = """
 | repository | humble | jazzy | kilted | lyrical | rolling |
@@ -38,29 +49,44 @@ def page(tables: Path) -> str:
     """The section, from the tables of a folder."""
     facts = {it: read_parameters(_text(tables / f"parameters_{it}.tsv")) for it in RELEASES}
     rows = "".join(_row(tables, release, facts[release]) for release in RELEASES)
-    return START + _TEXT + rows + _SOURCES + "".join(_versions(facts))
+    launches = "".join(_launches(tables, release) for release in RELEASES)
+    return START + _TEXT + rows + _LAUNCH + launches + _SOURCES + "".join(_versions(facts))
 
 
 def _row(tables: Path, release: str, facts: tuple[ParameterFact, ...]) -> str:
-    launched = read_launches(_text(tables / f"launch_{release}.tsv"))
     known = owners()
     table = files("multibot_rewrite.companions.params").joinpath("params.yaml").read_text("utf-8")
     left = len({it.key for it in differences(our_parameters(table, known), facts, release, known)})
-    corrected = sum(
-        release in line.rpartition("\t")[2].split()
-        for line in _text(tables / "parameters_corrected.tsv").splitlines()
-    )
+    corrected = _corrected(tables / "parameters_corrected.tsv", release)
     counts = (
         len({(it.package, it.owner, it.path) for it in facts}),
         len({(it.package, it.owner, it.path) for it in facts if it.type.startswith("string")}),
         sum(bool(it.bounds) for it in facts),
-        len(launched),
-        sum(it.node.kind == "component" for it in launched),
         left + corrected,
         corrected,
         left,
     )
     return f"| {release} | {' | '.join(map(str, counts))} |\n"
+
+
+def _launches(tables: Path, release: str) -> str:
+    """The row of a release about launch files."""
+    facts = read_launches(_text(tables / f"launch_{release}.tsv"))
+    stacks = files("multibot_rewrite.remap").joinpath("stacks.yaml").read_text("utf-8")
+    left = sum(
+        1
+        for stack, paths in launch_files().items()
+        for _ in launch_differences(stack, stack_nodes(stacks, stack, release), facts, paths)
+    )
+    corrected = _corrected(tables / "launch_corrected.tsv", release)
+    components = sum(it.node.kind == "component" for it in facts)
+    counts = (len(facts), components, left + corrected, corrected, left)
+    return f"| {release} | {' | '.join(map(str, counts))} |\n"
+
+
+def _corrected(table: Path, release: str) -> int:
+    """The differences that a table has for a release, in its last column."""
+    return sum(release in it.rpartition("\t")[2].split() for it in _text(table).splitlines())
 
 
 def _versions(facts: dict[str, tuple[ParameterFact, ...]]) -> Iterator[str]:

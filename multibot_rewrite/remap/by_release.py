@@ -71,15 +71,21 @@ def _node(node: NodeFacts, release: str) -> NodeFacts:
         when=_condition(node.when, node.releases, node.package, release),
         frames=frames,
         sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
+        claims=tuple(it for it in node.claims if has_release(it.releases, release)),
     )
 
 
 def _endpoints(endpoints: Iterable[Endpoint], package: str, release: str) -> tuple[Endpoint, ...]:
     return tuple(
-        it._replace(when=_condition(it.when, it.releases, package, release)) if it.releases else it
+        _endpoint(it, package, release) if it.releases or it.above else it
         for it in endpoints
         if has_release(it.releases, release)
     )
+
+
+def _endpoint(it: Endpoint, package: str, release: str) -> Endpoint:
+    above = it.above if it.above and has_release(it.above, release) else ""
+    return it._replace(when=_condition(it.when, it.releases, package, release), above=above)
 
 
 def _condition(when: str, words: str, package: str, release: str) -> str:

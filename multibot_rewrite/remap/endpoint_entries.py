@@ -34,7 +34,7 @@ from multibot_rewrite.remap.yaml_with_lines import (
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")
-ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", "if", *FACT_KEYS)
+ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", "if", "above", *FACT_KEYS)
 _TYPE = lazy_compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 # Part of a name that is only known at run time.
 _MADE = lazy_compile(r"<[^<>/]+>")
@@ -60,6 +60,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper", "by" in keys),
         condition=condition_of(keys),
+        above=releases_of(keys, "above"),
         releases=releases_of(keys),
         source=source_of(keys),
     )

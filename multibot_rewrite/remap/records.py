@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.findings.finding import Finding
-from multibot_rewrite.releases import NEWEST_LTS
 
 TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
@@ -25,7 +24,8 @@ class Endpoint(NamedTuple):
     not. ``remapped`` is its name after the remap rule of the stack's usual launch file: the table's
     rule must lead there, since only the first match counts. ``condition`` is what its node's parameters
     must hold for it to exist (``remap.conditions``), for where these are known. ``named_from`` is what
-    nodes.yaml calls it, if a stack gives it another name.
+    nodes.yaml calls it, if a stack gives it another name. ``above`` are the releases in which its node
+    resolves a relative name from its parameter in the namespace above its own.
     ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
     can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
     what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its own.
@@ -45,6 +45,7 @@ class Endpoint(NamedTuple):
     remapped: str = ""
     condition: str = ""
     named_from: str = ""
+    above: str = ""
     releases: str = ""
     source: tuple[str, ...] = ()
     by: str = ""
@@ -75,11 +76,12 @@ class SentTransform(NamedTuple):
 
 class Claim(NamedTuple):
     """Interfaces that a controller claims: ``kind`` is command or state, ``template`` a name with
-    parameters in <> (``evidence.claims``); ``condition`` as in ``Endpoint``."""
+    parameters in <> (``evidence.claims``); ``condition`` and ``releases`` as in ``Endpoint``."""
 
     kind: str
     template: str
     condition: str = ""
+    releases: str = ""
 
 
 class NodeFacts(NamedTuple):
@@ -196,4 +198,4 @@ class Table(NamedTuple):
     nodes: tuple[NodeTable, ...]
     names: tuple[EndpointName, ...]
     problems: tuple[Finding, ...]
-    release: str = NEWEST_LTS
+    release: str

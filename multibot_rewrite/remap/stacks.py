@@ -1,4 +1,5 @@
-"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``stacks.yaml`` and files of users.
+"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``stacks.yaml`` and files
+of users.
 
 ``python -m multibot_rewrite.remap.stacks`` prints their reference page.
 """
@@ -11,21 +12,20 @@ from importlib.resources import files
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.by_release import in_release
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
 
-BUILT_IN = ("nodes.yaml", "stacks.yaml")
+BUILT_IN = ("nodes.yaml", "controllers.yaml", "stacks.yaml")
 
 
-def load_nodes(release: str = NEWEST_LTS) -> dict[str, NodeFacts]:
+def load_nodes(release: str) -> dict[str, NodeFacts]:
     """Every built-in node of a release by name."""
     return dict(built_in(release).nodes)
 
 
 @lru_cache
-def load_stack(name: str, release: str = NEWEST_LTS) -> tuple[NodeFacts, ...]:
+def load_stack(name: str, release: str) -> tuple[NodeFacts, ...]:
     """The nodes of a built-in stack, or a built-in node.
 
     Raises UsageError for an unknown name, and for a stack that the release lacks.
@@ -34,12 +34,12 @@ def load_stack(name: str, release: str = NEWEST_LTS) -> tuple[NodeFacts, ...]:
 
 
 @lru_cache
-def built_in(release: str = NEWEST_LTS) -> NodeLibrary:
+def built_in(release: str) -> NodeLibrary:
     """The nodes and stacks of a release that this package knows."""
     return in_release(every_release(), release)
 
 
-def user_stack(path: str, release: str = NEWEST_LTS) -> NodeLibrary:
+def user_stack(path: str, release: str) -> NodeLibrary:
     """The built-in nodes and stacks and those of a file; ``stack_of`` selects a stack.
 
     A built-in node that the file changes is changed in the file's own stacks only. Raises UsageError

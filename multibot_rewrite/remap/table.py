@@ -10,7 +10,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -38,7 +37,8 @@ def build_table(
     nodes: Sequence[NodeFacts],
     naming: Naming,
     plugins: Mapping[str, Pairs] = NOTHING,
-    release: str = NEWEST_LTS,
+    *,
+    release: str,
 ) -> Table:
     """The remap table of a fleet with its problems; nodes for all robots are in it once.
 

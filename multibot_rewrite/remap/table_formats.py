@@ -87,7 +87,7 @@ def as_data(table: Table) -> dict[str, object]:
     """The table as plain data, as in the YAML and JSON formats."""
     return {
         "layout": table.layout,
-        "release": table.release,
+        "distro": table.release,
         "robots": {
             robot: {
                 it.node.node: {

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
 from multibot_rewrite.remap.records import ACTION, TOPIC, EndpointName, Table
-from multibot_rewrite.remap.ways import PLUGIN, controller_way
+from multibot_rewrite.remap.ways import MANAGER, PLUGIN, controller_way
 from multibot_rewrite.rosnames import resolve_bound
 
+# A second robot shows what rules for all of a process do.
+ENOUGH = 2
 NOT_TAKEN = declare(
     "MR105",
     "rule-not-taken",
@@ -62,13 +65,22 @@ def not_taken(table: Table) -> Iterator[Finding]:
         owners.setdefault(it.name, set()).add(it.robot)
         if not (it.endpoint.fixed or it.endpoint.when):
             names.setdefault((it.robot, it.node), []).append(it)
-    for running in running_nodes(table):
+    for running in _worth_a_look(table):
         plain = tuple((it.source, it.target) for it in running.node.rules)
         if running.node.home.process_wide or running.rules != plain:
             own = names.get((running.node.robot, running.node.full_name), ())
             wrong = dict.fromkeys(_wrong(own, running, owners))
             if wrong:
                 yield _finding(running, list(wrong), table.release)
+
+
+def _worth_a_look(table: Table) -> Iterator[RunningNode]:
+    """What descriptions decide, of all robots; of the stack's nodes, which all have alike, two."""
+    seen: Counter[str] = Counter()
+    for it in running_nodes(table):
+        seen[it.node.node] += 1
+        if it.node.home.plugin or it.node.home.host == MANAGER or seen[it.node.node] <= ENOUGH:
+            yield it
 
 
 def _wrong(
@@ -92,10 +104,10 @@ def _finding(running: RunningNode, kept: list[str], release: str) -> Finding:
     node, names = running.node, ", ".join(kept)
     message = f"on {release} no rule reaches it for {names}, though one is written"
     hint = f"give its rules to the process of {node.home.host or node.name}"
-    if running.way == PLUGIN:
+    if node.home.process_wide and controller_way(release).spawner:
         message = f"on {release} its controllers do not get its rules for {names}"
         hint = "name their stack, and start each with its spawner's --controller-ros-args"
-    if running.way == PLUGIN and not controller_way(release).spawner:
+    elif running.way == PLUGIN:
         message = f"on {release} it gets the rules of the first robot alone, none for {names}"
         hint = "give each robot a namespace, with --topics namespace"
     place = {"robot": node.robot, "node": node.node, "names": tuple(kept)}

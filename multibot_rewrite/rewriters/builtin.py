@@ -5,13 +5,12 @@ from __future__ import annotations
 from functools import lru_cache
 
 from multibot_rewrite.model import VocabularyError
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.rewriters.vocabulary import advice, load_vocabulary
 
 
 @lru_cache(maxsize=8)
-def builtin_tree(vocabulary: tuple[str, ...] = (), release: str = NEWEST_LTS) -> Tree:
+def builtin_tree(vocabulary: tuple[str, ...], release: str) -> Tree:
     """The tree of a release: of the vocabulary built in, installed, and named in ``vocabulary``; made
     once."""
     sections = load_vocabulary(vocabulary, release)

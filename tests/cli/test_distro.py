@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from multibot_rewrite.cli import urdf_lint, urdf_postfix
+from multibot_rewrite.cli import multibot, urdf_lint, urdf_postfix
 
 MODEL = """<sdf version="1.12"><model name="rover" namespace="fleet"><link name="base"/>
 <plugin filename="gz-sim-diff-drive-system" name="d"><topic>cmd_vel</topic></plugin></model></sdf>
@@ -92,3 +92,13 @@ def test_a_configuration_names_a_release_that_is_known(
     (folder / "urdf-lint.toml").write_text('distro = "noetic"')
     assert urdf_lint.main(["m.urdf"]) == 2
     assert "distro is 'noetic', use one of humble, " in capsys.readouterr().err
+
+
+def test_a_vocabulary_is_checked_for_its_release(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "my.vocab").write_text("[element arm]\nat: nowhere\nreleases: humble\n")
+    words = ["vocabulary", "robot", "--vocabulary", "my.vocab", "--distro"]
+    assert multibot.main([*words, "humble"]) == 2
+    assert "there is no [element nowhere]" in capsys.readouterr().err
+    assert multibot.main([*words, "jazzy"]) == 0

@@ -19,6 +19,7 @@ from multibot_rewrite.cli.declared import COMMANDS
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.library import rewrite
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.lookup import look_up
 from multibot_rewrite.rewriters.vocabulary import TYPES, load_vocabulary
@@ -568,12 +569,12 @@ def test_a_default_that_is_never_inserted_is_marked(multibot: Multibot, folder: 
 
 @pytest.mark.slow
 def test_the_list_has_every_section(multibot: Multibot) -> None:
-    sections = load_vocabulary().sections(*TYPES)
+    sections = load_vocabulary((), NEWEST_LTS).sections(*TYPES)
     listed = multibot("vocabulary").out.splitlines()
     assert len(listed) == len(sections) + 1
     table = multibot.json("vocabulary", "--type", "hardware")["sections"]
     assert {section["type"] for section in table} == {"hardware"}
-    assert len(table) == len(load_vocabulary().sections("hardware"))
+    assert len(table) == len(load_vocabulary((), NEWEST_LTS).sections("hardware"))
 
 
 def test_the_type_narrows_a_name(multibot: Multibot) -> None:
@@ -582,7 +583,7 @@ def test_the_type_narrows_a_name(multibot: Multibot) -> None:
 
 
 def test_an_element_is_found_by_its_tag_the_exact_name_first() -> None:
-    found = look_up(load_vocabulary(), "sensor", ["element"])
+    found = look_up(load_vocabulary((), NEWEST_LTS), "sensor", ["element"])
     names = [section.names[0] for section in found]
     assert names[0] == "sensor"
     assert {"robot.sensor", "link.sensor"} <= set(names)

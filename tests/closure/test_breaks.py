@@ -23,6 +23,7 @@ FILES = {
   <link name="right_wheel_link"/>
   <link name="imu_link"/>
   <link name="lidar_link"/>
+  <link name="finger_link"/>
   <joint name="left_wheel_joint" type="continuous">
     <parent link="base_link"/><child link="left_wheel_link"/><axis xyz="0 1 0"/>
   </joint>
@@ -30,6 +31,10 @@ FILES = {
     <parent link="base_link"/><child link="right_wheel_link"/><axis xyz="0 1 0"/>
   </joint>
   <joint name="imu_joint" type="fixed"><parent link="base_link"/><child link="imu_link"/></joint>
+  <joint name="finger_joint" type="prismatic">
+    <parent link="base_link"/><child link="finger_link"/>
+    <limit lower="0" upper="1" effort="1" velocity="1"/>
+  </joint>
   <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
   <ros2_control name="rover_base" type="system">
     <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
@@ -42,6 +47,10 @@ FILES = {
       <command_interface name="velocity"/>
       <state_interface name="velocity"/>
       <state_interface name="position"/>
+    </joint>
+    <joint name="finger_joint">
+      <command_interface name="effort"/>
+      <state_interface name="effort"/>
     </joint>
   </ros2_control>
   <gazebo>
@@ -65,6 +74,7 @@ controller_manager:
     update_rate: 100
     joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
     base_controller: {type: diff_drive_controller/DiffDriveController}
+    gripper_controller: {type: joint_trajectory_controller/JointTrajectoryController}
 base_controller:
   ros__parameters:
     left_wheel_names: [left_wheel_joint]
@@ -76,6 +86,11 @@ base_controller:
     enable_odom_tf: false
 joint_state_broadcaster:
   ros__parameters: {frame_id: base_link}
+gripper_controller:
+  ros__parameters:
+    joints: [finger_joint]
+    command_interfaces: [effort]
+    state_interfaces: [effort]
 """,
     "ekf.yaml": """\
 ekf_filter_node:
@@ -87,11 +102,28 @@ ekf_filter_node:
     world_frame: odom
     publish_tf: true
 """,
+    "bridge.yaml": """\
+- ros_topic_name: imu/data
+  gz_topic_name: imu/data
+  ros_type_name: sensor_msgs/msg/Imu
+  gz_type_name: gz.msgs.IMU
+  direction: GZ_TO_ROS
+""",
+    "moveit.yaml": """\
+moveit_simple_controller_manager:
+  controller_names: [gripper_controller]
+  gripper_controller:
+    type: FollowJointTrajectory
+    action_ns: follow_joint_trajectory
+    joints: [finger_joint]
+""",
     "fleet.yaml": """\
 distro: jazzy
 description: rover.urdf
 companions:
   params: [controllers.yaml, ekf.yaml]
+  bridge: bridge.yaml
+  moveit: moveit.yaml
 robots: [{name: robot1, pose: {x: 0}}, {name: robot2, pose: {x: 2}}]
 """,
 }
@@ -105,7 +137,7 @@ def found(folder: Path, files: dict[str, str], layout: str = "frames-per-robot")
         (folder / name).write_text(text)
     fleet = folder / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
-    plan = plan_fleet(read_fleet(str(fleet)))
+    plan = plan_fleet(read_fleet(str(fleet), "", {}))
     every = {*plan.fleet.table.problems, *make_outputs(plan).findings}
     return [it for it in every if it.level != NOTE and not it.code.startswith(BESIDE)]
 
@@ -117,11 +149,11 @@ def test_a_robot_that_closes(layout: str, tmp_path: Path) -> None:
 
 BREAKS = [
     # The controller's joints are not those of the hardware.
-    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 8, "rover.urdf:18"),
-    ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MF811", 9, "rover.urdf"),
+    ("controllers.yaml", "[left_wheel_joint]", "[left_whel_joint]", "MF811", 9, "rover.urdf:23"),
+    ("controllers.yaml", "[right_wheel_joint]", "[wheel_joint]", "MF811", 10, "rover.urdf"),
     # The hardware lacks what the controller claims.
-    ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 8, ""),
-    ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 8, ""),
+    ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
+    ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 9, ""),
     (
         "controllers.yaml",
         "enable_odom_tf: false",
@@ -130,8 +162,10 @@ BREAKS = [
         0,
         "",
     ),
+    # The filter's odometry is not that of the controller's parameters: nothing joins the two.
+    ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MF813", 15, ""),
     # Nobody sends odom -> base_link.
-    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 8, ""),
+    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 15, ""),
     # Both send it.
     ("controllers.yaml", "enable_odom_tf: false", "enable_odom_tf: true", "MF607", 1, ""),
     ("controllers.yaml", "    enable_odom_tf: false\n", "", "MF607", 1, ""),
@@ -139,6 +173,38 @@ BREAKS = [
     ("ekf.yaml", "imu0: imu/data", "imu0: imu_0/data", "MF812", 4, ""),
     ("ekf.yaml", "odom0: base_controller/odom", "odom0: diff_drive/odom", "MF812", 3, ""),
     ("controllers.yaml", "base_controller", "drive_controller", "MF812", 3, ""),
+    (
+        "bridge.yaml",
+        "ros_topic_name: imu/data",
+        "ros_topic_name: imu_0/data",
+        "MF812",
+        4,
+        "bridge.yaml:1",
+    ),
+    # The bridge reads a topic of Gazebo that no sensor sends.
+    ("bridge.yaml", "gz_topic_name: imu/data", "gz_topic_name: imu_0/data", "MF816", 2, ""),
+    ("rover.urdf", "<topic>imu/data</topic>", "<topic>imu_0/data</topic>", "MF816", 2, ""),
+    # MoveIt sends to a controller that is not there, or for another joint.
+    ("moveit.yaml", "gripper_controller", "hand_controller", "MF815", 3, ""),
+    ("moveit.yaml", "[finger_joint]", "[left_wheel_joint]", "MF815", 6, "controllers.yaml:20"),
+    ("controllers.yaml", "gripper_controller", "gripper", "MF815", 3, "controllers.yaml"),
+    # The hardware is commanded by effort.
+    (
+        "controllers.yaml",
+        "command_interfaces: [effort]",
+        "command_interfaces: [velocity]",
+        "MF811",
+        20,
+        "rover.urdf",
+    ),
+    (
+        "rover.urdf",
+        'state_interface name="effort"',
+        'state_interface name="force"',
+        "MF811",
+        20,
+        "",
+    ),
 ]
 
 

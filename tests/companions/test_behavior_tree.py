@@ -13,13 +13,14 @@ from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "tool": None}, "joint": {"wheel": None}}
-FACTS = stack_of(built_in(), "nav2")
+FACTS = stack_of(built_in(NEWEST_LTS), "nav2")
 
 
 def context(layout: str = "L2", distro: str = "jazzy", **more: str) -> Context:
@@ -252,7 +253,11 @@ def test_another_file_is_said() -> None:
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_services_are_those_that_the_table_has(layout: str) -> None:
     naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
-    served = {it.name for it in build_table(["amr", "b"], FACTS, naming).names if it.robot == "amr"}
+    served = {
+        it.name
+        for it in build_table(["amr", "b"], FACTS, naming, release=NEWEST_LTS).names
+        if it.robot == "amr"
+    }
     for name in ("local_costmap/clear_entirely_local_costmap", "planner_selector", "spin"):
         port = "server_name" if name == "spin" else "service_name"
         node = etree.fromstring(one(f'<A {port}="{name}"/>', layout))

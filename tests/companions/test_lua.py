@@ -11,6 +11,7 @@ from multibot_rewrite.companions.lua import OWN_FILES, frames_to_edit, rewrite_l
 from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 
 LAYOUTS = ("L1", "L2", "L3", "L4")
 DECLARED = {"link": {"base_link": None, "imu_link": None}, "joint": {}}
@@ -18,7 +19,7 @@ DECLARED = {"link": {"base_link": None, "imu_link": None}, "joint": {}}
 
 def context(layout: str = "L2") -> Context:
     naming = make_naming(layout, "postfix" if layout == "L4" else "prefix")
-    return make_context(DECLARED, naming, ())  # type: ignore[arg-type]
+    return make_context(DECLARED, naming, (), distro=NEWEST_LTS)  # type: ignore[arg-type]
 
 
 def text_of(text: str, layout: str = "L2") -> str:

@@ -18,6 +18,7 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.stacks import built_in
 
@@ -31,9 +32,9 @@ LAYOUTS = ("L1", "L2", "L3", "L4")
 def context(layout: str = "L2", affix: str = "", srdf: bool = True, **more: str) -> Context:
     declared = {"link": dict.fromkeys(LINKS), "joint": dict.fromkeys(JOINTS)}
     affix = affix or ("postfix" if layout == "L4" else "prefix")
-    facts = stack_of(built_in(), "moveit")
+    facts = stack_of(built_in(NEWEST_LTS), "moveit")
     naming = make_naming(layout, affix, **more)
-    made = make_context(declared, naming, facts)  # type: ignore[arg-type]
+    made = make_context(declared, naming, facts, distro=NEWEST_LTS)  # type: ignore[arg-type]
     return with_srdf(made, SRDF) if srdf else made  # type: ignore[arg-type]
 
 
@@ -49,7 +50,7 @@ def text_of(text: str, it: Context) -> str:
 @pytest.mark.parametrize("frame", ["map", "odom", "world", "earth", "utm", "local_enu"])
 def test_frames_that_nodes_send_are_not_missed_in_the_description(frame: str) -> None:
     """REP 105 and navsat_transform_node; the same frames as in parameter files."""
-    assert built_in_nodes().sent >= {frame}
+    assert built_in_nodes(NEWEST_LTS).sent >= {frame}
     assert not is_undeclared(context("L2", shared_frames=()), "frame", frame)
     assert is_undeclared(context("L2", shared_frames=()), "frame", "base_lnik")
 

@@ -22,6 +22,7 @@ from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -44,7 +45,7 @@ needs_corpus = pytest.mark.skipif(not FILES, reason=f"no corpus of MoveIt files:
 def description(folder: str) -> Names:
     """What the folder's URDFs and SRDFs declare; what its files name where there is no URDF."""
     found: dict[str, dict[str, None]] = {it: {} for it in ("joint", "link", "frame", "group")}
-    tree = builtin_tree()
+    tree = builtin_tree((), NEWEST_LTS)
     for kind in ("urdf", "srdf"):
         for path in sorted((CORPUS / kind / folder).rglob(f"*.{kind}")):
             try:
@@ -107,7 +108,7 @@ def text_of(document: YamlText, context: Context) -> str:
 def prove(path: Path, layout: str, counted: Counter[str]) -> None:
     file = str(path.relative_to(HOME))
     names = description(path.relative_to(HOME).parts[0])
-    context = make_context(names, make_naming(**LAYOUTS[layout]), ())  # type: ignore[arg-type]
+    context = make_context(names, make_naming(**LAYOUTS[layout]), (), distro=NEWEST_LTS)  # type: ignore[arg-type]
     document = read_yaml(path.read_bytes(), file)
     try:
         kind = file_kind(document)

@@ -37,6 +37,7 @@ from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import extend, stack_of
 from multibot_rewrite.remap.stacks import built_in
 
@@ -141,8 +142,12 @@ def test_a_robots_name_in_a_file_is_an_error() -> None:
 
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:
-    library = extend(built_in(), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n")
-    context = make_context(DECLARED, make_naming(layout="L2"), stack_of(library, "s"))  # type: ignore[arg-type]
+    library = extend(
+        built_in(NEWEST_LTS), "stacks: {s: {nodes: [{node: map_server, shared: true}]}}", "n"
+    )
+    context = make_context(
+        DECLARED, make_naming(layout="L2"), stack_of(library, "s"), distro=NEWEST_LTS
+    )  # type: ignore[arg-type]
     source = section("map_server", "topic_name: /map", "frame_id: base_link")
     companion = rewrite_params(read_yaml((source * 2).encode(), "p"), context)
     assert fill_template(companion.template, "robot1", "r1") == source * 2
@@ -282,7 +287,9 @@ def test_what_rcl_reads_as_no_string_is_no_name(word: str) -> None:
 @pytest.mark.parametrize("word", ["y", "no", "1", "1e3"])
 def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
     declared = {**DECLARED, "joint": {word: None}}
-    context = make_context(declared, make_naming(layout="L2", affix="prefix"), ())  # type: ignore[arg-type]
+    context = make_context(
+        declared, make_naming(layout="L2", affix="prefix"), (), distro=NEWEST_LTS
+    )  # type: ignore[arg-type]
     source = section("joint_trajectory_controller", f"joints: ['{word}']")
     companion = rewrite_params(read_yaml(source.encode(), "p"), context)
     assert f"joints: ['r1_{word}']" in fill_template(companion.template, "robot1", "r1")
@@ -495,8 +502,8 @@ def test_mistakes_in_names_are_reported(node: str, line: str, code: str, words: 
 
 def test_one_key_cannot_be_two() -> None:
     text = "stacks: {s: {nodes: [{node: local_costmap/local_costmap, shared: true}]}}"
-    nodes = stack_of(extend(built_in(), text, "n"), "s")
-    context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
+    nodes = stack_of(extend(built_in(NEWEST_LTS), text, "n"), "s")
+    context = make_context(DECLARED, make_naming(layout="L2"), nodes, distro=NEWEST_LTS)  # type: ignore[arg-type]
     inner = "    ros__parameters: {use_sim_time: true}\n"
     source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
     found = rewrite_params(read_yaml(source.encode(), "p"), context).findings
@@ -506,8 +513,8 @@ def test_one_key_cannot_be_two() -> None:
 def test_a_topic_with_a_wrong_target_by_a_rule_is_reported() -> None:
     """At the root ``/scan:=front`` takes the relative ``scan`` too, in a namespace it does not."""
     text = "stacks: {s: {nodes: [{node: slam_toolbox, remaps: {/scan: front}}]}}"
-    nodes = stack_of(extend(built_in(), text, "n"), "s")
-    context = make_context(DECLARED, make_naming(layout="L2"), nodes)  # type: ignore[arg-type]
+    nodes = stack_of(extend(built_in(NEWEST_LTS), text, "n"), "s")
+    context = make_context(DECLARED, make_naming(layout="L2"), nodes, distro=NEWEST_LTS)  # type: ignore[arg-type]
     document = read_yaml(section("slam_toolbox", "scan_topic: scan").encode(), "p")
     found = rewrite_params(document, context, facts=nodes).findings
     assert [it.message for it in found if it.code == "MF120"] == [
@@ -576,7 +583,7 @@ def test_a_file_that_is_none_is_refused_in_one_line(text: str, words: str) -> No
 
 
 def test_the_data_is_what_it_seems() -> None:
-    known = built_in_nodes()
+    known = built_in_nodes(NEWEST_LTS)
     assert len(known.nodes) > 90
     assert {it.kind for node in known.nodes.values() for it in node.params.values()} <= set(KINDS)
     assert set(known.types.values()) <= set(known.nodes)
@@ -590,7 +597,7 @@ def test_a_users_file_adds_to_what_is_known(tmp_path: object) -> None:
     with open(path, "w") as file:
         file.write(text + "  amcl: {params: {extra: frame}}\n")
     source = section("rover", "wheels: [elbow]", "mast.a: tool0") + section("amcl", "extra: laser")
-    text, findings = made(source, known=load_known_nodes(path))
+    text, findings = made(source, known=load_known_nodes(path, NEWEST_LTS))
     assert "wheels: [r1_elbow]" in text
     assert "mast.a: r1/tool0" in text
     assert "extra: r1/laser" in text
@@ -618,7 +625,7 @@ def test_a_mistake_in_a_users_file_is_reported_with_its_line(
     with open(path, "w") as file:
         file.write(text)
     with pytest.raises(UsageError, match=r"more\.yaml:\d") as error:
-        load_known_nodes(path)
+        load_known_nodes(path, NEWEST_LTS)
     assert words in str(error.value)
 
 
@@ -686,7 +693,7 @@ def test_robots_differ_in_their_names_alone(policy: tuple[str, str], robot: str)
 
 def test_the_page_has_the_table_and_codes_that_exist() -> None:
     text = (ROOT / "docs" / "params.md").read_text()
-    assert text.endswith(page(built_in_nodes()))
+    assert text.endswith(page(built_in_nodes(NEWEST_LTS)))
     codes_named = set(re.findall(r"MF1\d\d", text))
     assert codes_named
     assert codes_named <= set(catalogue.rules())
@@ -707,7 +714,7 @@ def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
     path = tmp_path / "more.yaml"
     path.write_text(re.findall(r"```yaml\n(.*?)```", text, re.DOTALL)[0])
     source = section("front_mast", "mast_serial: 1", "motors: [elbow]", "limits: {elbow: {max: 1}}")
-    text, _ = made(source, known=load_known_nodes(str(path)))
+    text, _ = made(source, known=load_known_nodes(str(path), NEWEST_LTS))
     assert "base: r1/mast_base" in text
     assert "motors: [r1_elbow]" in text
     assert "limits: {r1_elbow: {max: 1}}" in text

@@ -28,6 +28,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 
 INSTALL = "pip install ros-jazzy-rclpy ros-jazzy-rmw-fastrtps-cpp ros-jazzy-common-interfaces"
 pytestmark = [
@@ -68,7 +69,7 @@ class Case:
 
     def __init__(self, document: YamlText, context: Context, text: str) -> None:
         self.source, self.text = document.text, text
-        sections = identify_sections(raw_sections(document), context, built_in_nodes())
+        sections = identify_sections(raw_sections(document), context, built_in_nodes(NEWEST_LTS))
         exact = {it.path: it for it in sections if not it.wild and not it.shared}
         self.old = [apart(f"/{path}") for path in exact]
         self.new = [apart(full(it)) for it in exact.values()]
@@ -89,7 +90,7 @@ def cases(sources: dict[str, bytes], policies: Sequence[tuple[str, str]]) -> Ite
             try:
                 document = read_yaml(data, file)
                 naming = make_naming(layout=layout, affix=affix)
-                context = make_context(declared(document), naming, facts())  # type: ignore[arg-type]
+                context = make_context(declared(document), naming, facts(), distro=NEWEST_LTS)  # type: ignore[arg-type]
                 companion = rewrite_params(document, context, robots=(ROBOT,))
             except InputError:
                 continue

@@ -19,6 +19,7 @@ from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.stacks import built_in
 from multibot_rewrite.remap.table import build_table
 
@@ -492,10 +493,10 @@ def test_frames_and_topics_may_have_two_words() -> None:
 
 
 def test_names_follow_the_table_where_they_do_not_follow_the_rule() -> None:
-    facts = built_in().stacks["navigation"].nodes
+    facts = built_in(NEWEST_LTS).stacks["navigation"].nodes
     robot = robots_of(declared(), "L4", ["r"])[0]
     naming = robot.names.naming._replace(topics="prefix")
-    known = fleet_topics(build_table(["r"], facts, naming), facts, "r")
+    known = fleet_topics(build_table(["r"], facts, naming, release=NEWEST_LTS), facts, "r")
     names = robot.topics._replace(naming=naming)
     wanted = known["/global_costmap/costmap"]
     assert wanted != robot_topic(names, "/global_costmap/costmap")

@@ -14,11 +14,11 @@ from multibot_rewrite.remap.stacks import load_nodes, load_stack
 
 
 def given(text: str, file: str = "params.yaml") -> list[GivenNode]:
-    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes())
+    return given_nodes([read_yaml(text.encode(), file)], built_in_nodes("jazzy"))
 
 
-def run(known: str, text: str) -> NodeFacts:
-    return filled(load_nodes()[known], given(text)[0])
+def run(known: str, text: str, release: str = "jazzy") -> NodeFacts:
+    return filled(load_nodes(release)[known], given(text)[0])
 
 
 def names(node: NodeFacts, role: str) -> set[str]:
@@ -92,6 +92,11 @@ def test_a_costmap_has_the_layers_of_its_list() -> None:
     assert "keepout/toggle_filter" in names(node, "serves")
 
 
+def test_costmaps_resolve_topics_below_the_robot_from_kilted_on() -> None:
+    node = run("local_costmap/local_costmap", COSTMAP, "kilted")
+    assert names(node, "subscribes") >= {"/front/scan", "/scan_back", "/keepout_info"}
+
+
 def test_a_twist_mux_reads_its_topics_and_locks() -> None:
     text = """\
 twist_mux:
@@ -125,7 +130,9 @@ CONTROLLERS = """\
 
 
 def test_controllers_are_those_that_the_files_declare() -> None:
-    found = nodes_of(load_stack("ros2_control"), given(CONTROLLERS, "c.yaml"), load_nodes())
+    found = nodes_of(
+        load_stack("ros2_control", "jazzy"), given(CONTROLLERS, "c.yaml"), load_nodes("jazzy")
+    )
     by_name = {it.name: it for it in found.nodes}
     assert "diff_drive_controller" not in by_name
     drive = by_name["platform_velocity_controller"]
@@ -137,21 +144,30 @@ def test_controllers_are_those_that_the_files_declare() -> None:
 
 def test_a_node_of_a_file_may_run_and_then_sends_only_what_no_other_sends() -> None:
     amcl = "amcl:\n  ros__parameters: {base_frame_id: base_link}\n"
-    beside = nodes_of(load_stack("slam_toolbox"), given(amcl), load_nodes())
+    beside = nodes_of(load_stack("slam_toolbox", "jazzy"), given(amcl), load_nodes("jazzy"))
     assert next(it for it in beside.nodes if it.name == "amcl").sends == ()
-    alone = nodes_of((), given(amcl), load_nodes())
+    alone = nodes_of((), given(amcl), load_nodes("jazzy"))
     assert len(next(it for it in alone.nodes if it.name == "amcl").sends) == 1
     assert all(it.when for it in alone.nodes)
 
 
 def test_a_node_of_the_stack_under_another_name_is_not_there_twice() -> None:
-    found = nodes_of((load_nodes()["ekf_filter_node"],), given(EKF), load_nodes())
+    found = nodes_of((load_nodes("jazzy")["ekf_filter_node"],), given(EKF), load_nodes("jazzy"))
     assert [it.name for it in found.nodes] == ["ekf_node"]
 
 
 def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
     text = "/r1/amcl:\n  ros__parameters: {scan_topic: front}\n"
-    found = nodes_of(load_stack("localization"), given(text), load_nodes())
+    found = nodes_of(load_stack("localization", "jazzy"), given(text), load_nodes("jazzy"))
     (amcl,) = (it for it in found.nodes if it.name.endswith("amcl"))
     assert amcl.name == "amcl"
     assert "front" in names(amcl, "subscribes")
+
+
+def test_a_layer_whose_sources_are_in_another_file_may_read_any() -> None:
+    text = COSTMAP.replace("        observation_sources: front back\n", "").replace(
+        'observation_sources: "", ', ""
+    )
+    old = "      # No layer of this costmap.\n"
+    node = run("local_costmap/local_costmap", text.partition(old)[0])
+    assert {it.name for it in node.endpoints if it.when} >= {"<source>"}

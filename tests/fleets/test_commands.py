@@ -52,7 +52,7 @@ def test_each_controller_of_each_robot_has_its_line(
 def test_the_tables_of_a_build_say_the_same(tmp_path: Path) -> None:
     made = outputs(tmp_path, "lyrical")
     found = yaml.safe_load(made["remappings.yaml"])
-    assert found["release"] == "lyrical"
+    assert found["distro"] == "lyrical"
     controller = found["robots"]["robot2"]["diff_drive_controller"]
     assert (controller["way"], controller["remappings"]) == ("spawner", [["/tf", "tf"]])
     namespace: dict[str, dict[str, dict[str, object]]] = {}

@@ -28,7 +28,7 @@ robots: [{name: r1}, {name: r2}]
 
 
 def planned(folder: Path, text: str = SMALL, **files: str) -> FleetPlan:
-    return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files))))
+    return plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
 
 
 def written(made: Outputs) -> list[OutputText]:

@@ -35,7 +35,7 @@ PAGE = (ROOT / "docs" / "fleet-file.md").read_text()
 
 
 def read(folder: Path, text: str, **files: str) -> FleetFile:
-    return read_fleet(str(fleet_folder(folder, text, **files)))
+    return read_fleet(str(fleet_folder(folder, text, **files)), "", {})
 
 
 def robot(folder: Path, keys: str, above: str = "") -> RobotSpec:
@@ -337,7 +337,7 @@ def test_a_file_of_another_encoding_is_one_line(tmp_path: Path) -> None:
     path = fleet_folder(tmp_path, ONE)
     path.write_bytes(b"robots:\n  - {name: \xe9}\n")
     with pytest.raises(InputError, match=r"fleet\.yaml:2: it is not UTF-8; save it as UTF-8"):
-        read_fleet(str(path))
+        read_fleet(str(path), "", {})
 
 
 # ---------------------------------------------------------------- schema and page

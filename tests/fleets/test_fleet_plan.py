@@ -24,7 +24,7 @@ LAYOUTS = [("L1", "prefix"), ("L2", "prefix"), ("L3", "postfix"), ("L4", "postfi
 
 
 def made(folder: Path, text: str, **files: str) -> dict[str, str]:
-    plan = plan_fleet(read_fleet(str(fleet_folder(folder, text, **files))))
+    plan = plan_fleet(read_fleet(str(fleet_folder(folder, text, **files)), "", {}))
     return {it.path: it.data.decode() for it in make_outputs(plan).files}
 
 
@@ -204,7 +204,7 @@ def test_two_stacks_whose_names_meet_are_reported(tmp_path: Path) -> None:
         "robots:\n  - {name: a, description: rover.urdf, stack: nav2}\n"
         "  - {name: b, description: rover.urdf, stack: moveit}\n"
     )
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text))))
+    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
     assert {it.robot for it in plan.fleet.table.nodes} >= {"a", "b"}
     assert not [it for it in plan.fleet.table.problems if it.code == "MR102"]
 
@@ -218,7 +218,9 @@ def test_affixes_that_make_one_name_of_two_are_refused(tmp_path: Path) -> None:
         "  - {name: one, postfix: b, description: one.urdf}\n"
         "  - {name: two, postfix: left_b, description: two.urdf}\n"
     )
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two))))
+    plan = plan_fleet(
+        read_fleet(str(fleet_folder(tmp_path, text, one__urdf=one, two__urdf=two)), "", {})
+    )
     told = [it for it in make_outputs(plan).findings if it.code == "MF601"]
     assert [it.level for it in told] == ["error"]
     assert "two robots have the same link 'arm_left_b': 'one' and 'two'" in told[0].message
@@ -242,7 +244,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
     text = SMALL.replace("stack: nav2\n", "stack: no_robot_state_publisher\n").replace(
         "  params: [params.yaml]\n", ""
     )
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text))))
+    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, text)), "", {}))
     found = with_start_pose_nodes(plan)
     assert [it.name for it in found.table.nodes] == ["start_pose"]
     assert found.edges["robot1", "start_pose"][0][:2] == ("map", "robot1/base_link")
@@ -250,7 +252,7 @@ def test_a_held_robot_is_a_planned_publisher(tmp_path: Path) -> None:
 
 
 def test_each_robot_alone_is_the_fleet_in_parts(tmp_path: Path) -> None:
-    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, mixed()))))
+    plan = plan_fleet(read_fleet(str(fleet_folder(tmp_path, mixed())), "", {}))
     parts = list(split_per_robot(plan))
     assert [it.robots for it in parts] == [(it,) for it in plan.robots]
     own = [name for it in parts for name in it.fleet.table.names]

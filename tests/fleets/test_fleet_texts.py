@@ -21,6 +21,7 @@ from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.bridged_topics import BridgedTopic
 from multibot_rewrite.remap.bridged_topics import bridged_topics as generated_bridge
 from multibot_rewrite.rosnames import check_full_name, check_topic_name
@@ -32,7 +33,7 @@ TYPES = "  ros_type_name: a/msg/B\n  gz_type_name: gz.msgs.B\n"
 def context(layout: str, *links: str) -> Any:
     declared = defaultdict(dict, {"link": dict.fromkeys(links), "joint": {"hip": None}})
     side = "postfix" if layout == "L4" else "prefix"
-    return make_context(declared, make_naming(layout, side), ())
+    return make_context(declared, make_naming(layout, side), (), distro=NEWEST_LTS)
 
 
 def bridged(text: str, layout: str = "L2", *links: str) -> BridgeFile:
@@ -284,7 +285,7 @@ def fleet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
             "  - {name: r1, description: rover.urdf, pose: {x: 1.0, y: -0.5, yaw: 1.57}}\n"
             "  - {name: r2, description: rover.urdf, namespace: two, model: second}\n"
         )
-        return plan_fleet(read_fleet("fleet.yaml"))
+        return plan_fleet(read_fleet("fleet.yaml", "", {}))
 
     return make
 

@@ -17,6 +17,7 @@ from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
 from multibot_rewrite.graph.snapshot import from_json, to_json
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.releases import NEWEST_LTS
 
 COLLISION = FIXTURES / "graphs" / "MG202.json"
 PUBLISHER = "robot_state_publisher"
@@ -110,9 +111,11 @@ def test_a_state_publisher_of_the_users_own_is_the_only_one(tmp_path: Path, rove
     nodes.write_text(
         "stacks:\n  mine:\n    about: x\n    nodes: [{node: " + PUBLISHER + ", as: rsp}]\n"
     )
-    fleet = make_fleet(rover, ["a"], ["mine"], {}, nodes=str(nodes))
+    fleet = make_fleet(rover, ["a"], ["mine"], {}, nodes=str(nodes), release=NEWEST_LTS)
     assert [it.name for it in fleet.facts] == ["rsp"]
-    assert [it.name for it in make_fleet(rover, ["a"], ["robot_state"], {}).facts] == [
+    assert [
+        it.name for it in make_fleet(rover, ["a"], ["robot_state"], {}, release=NEWEST_LTS).facts
+    ] == [
         PUBLISHER,
         "joint_state_publisher",
     ]
@@ -122,19 +125,23 @@ def test_a_state_publisher_of_the_users_own_is_the_only_one(tmp_path: Path, rove
 
 
 def test_it_is_left_out_by_a_stack(tmp_path: Path, rover: str) -> None:
-    assert PUBLISHER not in {it.name for it in facts_of(["teleop", NO_STATE_PUBLISHER])}
+    assert PUBLISHER not in {
+        it.name for it in facts_of(["teleop", NO_STATE_PUBLISHER], None, NEWEST_LTS)
+    }
     nodes = tmp_path / "nodes.yaml"
     nodes.write_text(
         f"stacks:\n  mine:\n    about: x\n    include: [teleop, {NO_STATE_PUBLISHER}]\n"
     )
-    assert PUBLISHER not in {it.name for it in facts_of(["mine"], str(nodes))}
-    plan = expected(make_fleet(rover, ["a"], ["teleop", NO_STATE_PUBLISHER], {}))
+    assert PUBLISHER not in {it.name for it in facts_of(["mine"], str(nodes), NEWEST_LTS)}
+    plan = expected(
+        make_fleet(rover, ["a"], ["teleop", NO_STATE_PUBLISHER], {}, release=NEWEST_LTS)
+    )
     assert plan.robots[0].frames == ("base_link/a", "lidar_link/a")
 
 
 def test_it_cannot_be_asked_for_and_left_out() -> None:
     with pytest.raises(UsageError, match="asked for and left out; leave out one of the stacks"):
-        facts_of([NO_STATE_PUBLISHER, "robot_state"])
+        facts_of([NO_STATE_PUBLISHER, "robot_state"], None, NEWEST_LTS)
 
 
 NOTHING = "every graph would be as planned"
@@ -178,7 +185,7 @@ def test_a_table_of_nothing_says_so(rover: str, capsys: pytest.CaptureFixture[st
 @pytest.fixture
 def plan(rover: str) -> dict[str, object]:
     """A plan of two robots as plain values."""
-    made = expected(make_fleet(rover, ["robot1", "robot2"], [], {}))
+    made = expected(make_fleet(rover, ["robot1", "robot2"], [], {}, release=NEWEST_LTS))
     value: dict[str, object] = yaml.safe_load(to_yaml(made))
     return value
 
@@ -237,7 +244,7 @@ def test_no_public_description_makes_an_empty_plan(corpus: dict[str, Path]) -> N
     for path in corpus.values():
         try:
             rewrite(path, "robot1", again=True)
-            fleet = make_fleet(path, ["robot1", "robot2"], [], {})
+            fleet = make_fleet(path, ["robot1", "robot2"], [], {}, release=NEWEST_LTS)
         except (InputError, UsageError):
             continue
         except Exception as error:

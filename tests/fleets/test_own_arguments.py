@@ -18,7 +18,7 @@ from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.rewritten_robots import read_jobs
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.sources import job
-from multibot_rewrite.sources.read import read_source
+from multibot_rewrite.sources.read import SourceText, read_whole
 
 XACROS = FIXTURES / "xacros"
 SRDF = """\
@@ -155,14 +155,15 @@ def test_a_further_robot_is_one_more_expansion(
 ) -> None:
     read: list[str] = []
 
-    def counted(source: str, args: Any, trust: bool) -> tuple[bytes, str]:
+    def counted(source: str, args: Any, trust: bool) -> SourceText:
         read.append(str(source))
-        return read_source(source, args, trust)
+        return read_whole(source, args, trust)
 
-    monkeypatch.setattr(job, "read_source", counted)
+    monkeypatch.setattr(job, "read_whole", counted)
     text = FLEET.replace("srdf: arm.srdf\n", "") + "arguments: {tf_prefix: '{robot}_'}\nrobots:\n"
     robots = [f"  - {{name: r{at}, pose: {{y: {at}}}}}\n" for at in range(5)]
-    read_jobs(read_fleet(str(fleet(tmp_path, text + "".join(robots)))).robots, make_naming(), ())
+    file = read_fleet(str(fleet(tmp_path, text + "".join(robots))), "", {})
+    read_jobs(file.robots, make_naming(), (), False, file.distro)
     # One for each robot, one for a robot of another name, one without the argument.
     assert len(read) == 5 + 2
 
@@ -180,7 +181,7 @@ def test_one_value_for_several_robots_is_refused(tmp_path: Path) -> None:
 def test_an_unknown_placeholder_has_its_line(tmp_path: Path) -> None:
     path = fleet(tmp_path, FLEET + BY_PLACEHOLDER.replace("{robot}", "{tf}"))
     with pytest.raises(InputError, match=r"fleet\.yaml:9: 'left': tf_prefix:=\{tf\}_: unknown"):
-        read_fleet(str(path))
+        read_fleet(str(path), "", {})
 
 
 def test_a_fleet_with_own_arguments_can_be_pickled(tmp_path: Path) -> None:

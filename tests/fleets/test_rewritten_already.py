@@ -20,7 +20,9 @@ NAMESPACE = DRIVE.format("<ros><namespace>{}</namespace></ros>")
 def planned(folder: Path, robot: str, link: str, namespace: str) -> FleetPlan:
     """The plan of a fleet of one robot, whose description has a link and a namespace."""
     text = ROBOT.format(link, NAMESPACE.format(namespace))
-    return plan_fleet(read_fleet(str(fleet_folder(folder, FLEET.format(robot), rover__urdf=text))))
+    return plan_fleet(
+        read_fleet(str(fleet_folder(folder, FLEET.format(robot), rover__urdf=text)), "", {})
+    )
 
 
 BOTH = "{name: r7, namespace: site7, prefix: s1}"

@@ -37,6 +37,7 @@ from multibot_rewrite.graph.snapshot import (
     Snapshot,
 )
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import (
     PUBLISHES,
     SERVES,
@@ -836,7 +837,7 @@ def test_a_tf_listener_that_no_rule_reached() -> None:
 def robots_called(*names: str, layout: str = "L2") -> Expectation:
     naming = make_naming(layout)
     declared = {name: [spelled(naming, name, "frame", link) for link in LINKS] for name in names}
-    return expect(build_table(names, NODES, naming), naming, declared)
+    return expect(build_table(names, NODES, naming, release=NEWEST_LTS), naming, declared)
 
 
 @pytest.mark.parametrize(

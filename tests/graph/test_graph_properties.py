@@ -26,6 +26,7 @@ from multibot_rewrite.graph.snapshot import (
     to_json,
 )
 from multibot_rewrite.naming import Naming, affix, make_naming, spelled
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import (
     CALLS,
     PUBLISHES,
@@ -90,7 +91,7 @@ def fleets(draw: st.DrawFn) -> Fleet:
     nodes = [NodeFacts(name, "p", (*draw(some), tf, still)) for name in names]
     links = draw(st.lists(st.sampled_from(LINKS), min_size=1, max_size=4, unique=True))
     frames = {robot: [spelled(naming, robot, "frame", link) for link in links] for robot in robots}
-    plan = expect(build_table(robots, nodes, naming), naming, frames)
+    plan = expect(build_table(robots, nodes, naming, release=NEWEST_LTS), naming, frames)
     return Fleet(plan, beside(plan, as_planned(plan), naming))
 
 

@@ -29,6 +29,7 @@ from multibot_rewrite.graph.snapshot import (
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.model import ProofError, UsageError
 from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.bridged_topics import TF_TYPE
 from multibot_rewrite.remap.node_library import NodeLibrary, stack_of
 from multibot_rewrite.remap.records import (
@@ -51,11 +52,11 @@ from multibot_rewrite.rosnames import bind, expand, resolve_bound
 LAYOUTS = ("L1", "L2", "L3", "L4")
 ROBOTS = ("robot1", "robot2")
 # The parts without the nodes: nobody described these.
-UNKNOWN = NodeLibrary(built_in().parts, {}, {})
+UNKNOWN = NodeLibrary(built_in(NEWEST_LTS).parts, {}, {})
 TEXT, IMAGE, TRIGGER = "std_msgs/msg/String", "sensor_msgs/msg/Image", "std_srvs/srv/Trigger"
 FETCH = "acme_msgs/action/Fetch"
-EVERY_NODE = tuple(end for end in built_in().parts["every_node"] if end.name != "/clock")
-LIFECYCLE = built_in().parts["lifecycle"]
+EVERY_NODE = tuple(end for end in built_in(NEWEST_LTS).parts["every_node"] if end.name != "/clock")
+LIFECYCLE = built_in(NEWEST_LTS).parts["lifecycle"]
 
 
 # Node, kind, role and name.
@@ -185,8 +186,8 @@ def assert_served(
     seen = graph(*nodes, base=base)
     names = [node.name for node in seen.nodes]
     found = learned(seen, *names, base=base or "/", library=library)
-    real = build_table(ROBOTS, nodes, naming)
-    table = build_table(ROBOTS, [node.facts for node in found], naming)
+    real = build_table(ROBOTS, nodes, naming, release=NEWEST_LTS)
+    table = build_table(ROBOTS, [node.facts for node in found], naming, release=NEWEST_LTS)
     assert said(table) == said(real)
     assert led(nodes, table) == led(nodes, real)
     assert set(table.problems) <= set(real.problems)
@@ -195,7 +196,7 @@ def assert_served(
 @cache
 def stacks() -> dict[str, list[NodeFacts]]:
     """Every stack and node that is known, as its code is; one stack only leaves a node out."""
-    library = built_in()
+    library = built_in(NEWEST_LTS)
     names = sorted({*library.stacks, *library.nodes} - {NO_STATE_PUBLISHER})
     return {name: [bare(node) for node in stack_of(library, name)] for name in names}
 
@@ -209,7 +210,7 @@ def test_every_known_stack_is_learned_as_it_is_described(
 ) -> None:
     naming = make_naming(layout, affix)
     for nodes in stacks().values():
-        assert_served(nodes, base, built_in(), naming)
+        assert_served(nodes, base, built_in(NEWEST_LTS), naming)
 
 
 # Written without ``~`` below the node's own name, which only who knows the code can tell.
@@ -297,9 +298,11 @@ def test_a_name_below_the_nodes_own_is_taken_for_private(
     own = node(publishes(code))
     found = one(graph(own))
     assert spelled(found) == [(PUBLISHES, "~/x")]
-    table = build_table(ROBOTS, [found.facts], make_naming(layout))
+    table = build_table(ROBOTS, [found.facts], make_naming(layout), release=NEWEST_LTS)
     assert {name for *_, name in led([own], table)} == {leads}
-    written = build_table(ROBOTS, [node(publishes("/driver/x"))], make_naming(layout))
+    written = build_table(
+        ROBOTS, [node(publishes("/driver/x"))], make_naming(layout), release=NEWEST_LTS
+    )
     assert led([own], written) == said(written)
 
 
@@ -319,10 +322,10 @@ def test_tf_is_absolute_wherever_it_was_seen() -> None:
 def test_the_code_of_a_known_node_is_known() -> None:
     """slam_toolbox says /scan, and slam_toolbox/ before its services, whatever led them where."""
     own = node(subscribes("scan"), publishes("slam_toolbox/x"), name="slam_toolbox")
-    found = one(graph(own, base="/old"), base="/old", library=built_in())
+    found = one(graph(own, base="/old"), base="/old", library=built_in(NEWEST_LTS))
     assert (SUBSCRIBES, "/scan") in spelled(found)
     known = node(publishes("slam_toolbox/scan_visualization"), name="slam_toolbox")
-    found = one(graph(known), library=built_in())
+    found = one(graph(known), library=built_in(NEWEST_LTS))
     assert spelled(found) == [(PUBLISHES, "/slam_toolbox/scan_visualization")]
 
 
@@ -459,14 +462,14 @@ def test_what_every_node_has_is_a_part_where_it_is_whole() -> None:
     "part", ["lifecycle", "bond", "tf_listener", "tf_broadcaster", "diagnostics", "tf_buffer"]
 )
 def test_a_part_that_is_whole_is_named(part: str, base: str) -> None:
-    whole = built_in().parts[part]
+    whole = built_in(NEWEST_LTS).parts[part]
     found = one(graph(node(*whole), base=base), base=base or "/")
     assert (found.parts, found.own) == ((part,), ())
     assert found.facts.endpoints == whole
 
 
 def test_in_a_namespace_an_absolute_name_is_not_a_parts_relative_one() -> None:
-    bond = [end._replace(name="/bond") for end in built_in().parts["bond"]]
+    bond = [end._replace(name="/bond") for end in built_in(NEWEST_LTS).parts["bond"]]
     assert one(graph(node(*bond))).parts == ("bond",)
     assert one(graph(node(*bond), base="/old"), base="/old").parts == ()
 
@@ -494,7 +497,9 @@ def test_types_that_are_none_or_many() -> None:
 # ---------------------------------------------------------------- helper nodes
 
 LISTENER = NodeFacts(
-    "transform_listener_impl_55d0c0ffee", "", (*built_in().parts["tf_listener"], *EVERY_NODE)
+    "transform_listener_impl_55d0c0ffee",
+    "",
+    (*built_in(NEWEST_LTS).parts["tf_listener"], *EVERY_NODE),
 )
 
 
@@ -525,7 +530,7 @@ def test_a_helper_of_another_process_is_not_taken() -> None:
 
 
 def test_what_a_node_asks_for_itself_is_not_its_helpers() -> None:
-    seen = graph(node(*built_in().parts["tf_listener"]), LISTENER, process="p")
+    seen = graph(node(*built_in(NEWEST_LTS).parts["tf_listener"]), LISTENER, process="p")
     found = one(seen)
     assert found.parts == ("tf_listener",)
     assert not any(end.helper for end in found.facts.endpoints)
@@ -634,10 +639,10 @@ def test_an_endpoint_that_no_node_can_have(end: tuple[str, str, str, str], said:
 
 def test_a_known_node_is_compared() -> None:
     (amcl,) = stacks()["amcl"]
-    found = one(graph(amcl), library=built_in())
+    found = one(graph(amcl), library=built_in(NEWEST_LTS))
     assert found.remarks == ("known as amcl of nav2_amcl; as described there",)
     some = tuple(end for end in amcl.endpoints if end.name != "scan")
-    found = one(graph(node(*some, publishes("~/x"), name="amcl")), library=built_in())
+    found = one(graph(node(*some, publishes("~/x"), name="amcl")), library=built_in(NEWEST_LTS))
     (remark,) = found.remarks
     assert remark.endswith("; additional: publishes ~/x; not seen: subscribes scan")
 
@@ -647,14 +652,16 @@ def test_conditions_and_the_clock_are_no_news() -> None:
     always = tuple(end for end in amcl.endpoints if not end.when)
     assert always != amcl.endpoints
     clock = subscribes("/clock", "rosgraph_msgs/msg/Clock")
-    found = one(graph(amcl._replace(endpoints=(*always, clock))), library=built_in())
+    found = one(graph(amcl._replace(endpoints=(*always, clock))), library=built_in(NEWEST_LTS))
     assert found.remarks[0].endswith("as described there")
 
 
 def test_what_is_made_at_run_time_is_no_news() -> None:
     (costmap,) = stacks()["local_costmap/local_costmap"]
     more = (publishes("my_layer"), subscribes("/robot/front"))
-    found = one(graph(costmap._replace(endpoints=costmap.endpoints + more)), library=built_in())
+    found = one(
+        graph(costmap._replace(endpoints=costmap.endpoints + more)), library=built_in(NEWEST_LTS)
+    )
     assert found.remarks[0].endswith("as described there")
 
 
@@ -699,7 +706,7 @@ def test_what_is_learned_gives_the_whole_table(
     note = "left out as tools: /rviz2; to learn one give its name to --node"
     said = f"multibot: note: {note}\nmultibot: 2 nodes learned as stack mine (facts of lyrical)\n"
     assert capsys.readouterr() == ("", said)
-    names = [node.name for node in stack_of(user_stack(mine), "mine")]
+    names = [node.name for node in stack_of(user_stack(mine, NEWEST_LTS), "mine")]
     assert names == ["driver", "eye"]
     rover = str(FIXTURES / "robots" / "rover.urdf")
     fleet = [rover, "robot1", "robot2", "--nodes", mine, "--stack", "mine", "--layout"]

@@ -23,6 +23,7 @@ from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.transforms import description_edges
 from multibot_rewrite.library import rewrite
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
@@ -90,7 +91,7 @@ def _lists() -> dict[str, list[Any]]:
 def edges(robot: str, layout: str) -> tuple[list[list[str]], list[list[str]]]:
     """Transforms of the rewritten rover, moving ones and fixed ones; the last moving is odometry."""
     text = rewrite(ROVER, robot, layout=layout).text
-    inventory = collect(read_document(text.encode(), ROVER), builtin_tree())
+    inventory = collect(read_document(text.encode(), ROVER), builtin_tree((), NEWEST_LTS))
     found = list(description_edges(inventory))
     moving = [[it.parent, it.child] for it in found if not it.static]
     fixed = [[it.parent, it.child] for it in found if it.static]

@@ -14,6 +14,7 @@ import pytest
 
 from multibot_rewrite.graph.snapshot import Snapshot, from_json
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.stacks import user_stack
@@ -85,7 +86,12 @@ def files(
 
 def table(file: Path, layout: str) -> Table:
     """The table of two robots that run what was learned."""
-    found = build_table(ROBOTS, stack_of(user_stack(str(file)), "mine"), make_naming(layout))
+    found = build_table(
+        ROBOTS,
+        stack_of(user_stack(str(file), NEWEST_LTS), "mine"),
+        make_naming(layout),
+        release=NEWEST_LTS,
+    )
     assert found.problems == ()
     return found
 

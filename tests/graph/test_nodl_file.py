@@ -16,6 +16,7 @@ from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.learning.learn import learn
 from multibot_rewrite.graph.learning.nodl_file import NodlFile, to_nodl
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Qos, Snapshot, to_json
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.stacks import built_in
 
 HEALTHY = str(FIXTURES / "graphs" / "healthy.json")
@@ -32,8 +33,8 @@ def end(kind: str, role: str, name: str, type_: str, qos: Qos | None = None) -> 
 
 def document(*ends: GraphEndpoint) -> NodlFile:
     graph = Snapshot((GraphNode("/robot1/arm", "1"),), ends, (), environment())
-    (node,) = learn(graph, ["/robot1/arm"], "/robot1", built_in())
-    return to_nodl(node, graph, "/robot1", built_in())
+    (node,) = learn(graph, ["/robot1/arm"], "/robot1", built_in(NEWEST_LTS))
+    return to_nodl(node, graph, "/robot1", built_in(NEWEST_LTS))
 
 
 def section(name: str, *ends: GraphEndpoint) -> list[dict[str, object]]:
@@ -171,8 +172,8 @@ def test_what_is_learned_of_nav2_is_valid_by_the_published_schema() -> None:
     validator = nodl_validator()
     graph = healthy(nav2("L1"))
     names = [it.name for it in graph.nodes if it.name.startswith("/robot1/")]
-    for node in learn(graph, names, "/robot1", built_in()):
-        text = to_nodl(node, graph, "/robot1", built_in()).text
+    for node in learn(graph, names, "/robot1", built_in(NEWEST_LTS)):
+        text = to_nodl(node, graph, "/robot1", built_in(NEWEST_LTS)).text
         assert [it.message for it in validator.iter_errors(yaml.safe_load(text))] == []
 
 

@@ -6,6 +6,7 @@ import pytest
 from paths import FIXTURES, ROBOTS
 
 from multibot_rewrite.cli import rehearse
+from multibot_rewrite.fleets.fleet import make_fleet
 from multibot_rewrite.graph.expectation import expect
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.rehearsal import (
@@ -25,6 +26,7 @@ from multibot_rewrite.graph.transforms import Edge, edges_of, frames_of, with_od
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.readback.reading import read
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
@@ -66,7 +68,9 @@ MAPPER = NodeFacts("mapper", "mapper", (Endpoint(TOPIC, SUBSCRIBES, "scan", LASE
 
 
 def table(layout: str = "L2") -> Table:
-    return build_table(("robot1", "robot2"), (NODE, MAPPER), make_naming(layout))
+    return build_table(
+        ("robot1", "robot2"), (NODE, MAPPER), make_naming(layout), release=NEWEST_LTS
+    )
 
 
 def drive(layout: str = "L2", left_out: tuple[str, ...] = ()) -> StubNode:
@@ -103,8 +107,21 @@ def test_a_node_of_the_plugins_and_of_the_stack_is_one_with_the_rules_of_its_tag
     one = NodeTable("r", "manager", "/r", "manager", (NodeRule("r", "manager", "a", "b", "", ""),))
     rules = (NodeRule("r", "manager", "c", "d", "", ""),)
     two = one._replace(rules=rules, home=Home(plugin="acme", written=True))
-    ((_, stub),) = stub_nodes(Table("both", (one, two), (), ()), {})
+    ((_, stub),) = stub_nodes(Table("both", (one, two), (), (), NEWEST_LTS), {})
     assert stub.arguments == ("--ros-args", "-r", "__ns:=/r", "-r", "c:=d")
+
+
+@pytest.mark.parametrize(
+    ("release", "given"), [("humble", True), ("jazzy", True), ("lyrical", False)]
+)
+def test_a_manager_that_stands_in_for_controllers_has_their_rules(
+    release: str, given: bool
+) -> None:
+    fleet = make_fleet(str(ROBOTS / "rover_gz.urdf"), ["r"], [], {"layout": "L1"}, release=release)
+    found = {stub.name: stub for _, stub in stub_nodes(fleet.table, {})}
+    assert "/tf" in {it.name for it in found["controller_manager"].endpoints}
+    assert ("/tf:=tf" in found["controller_manager"].arguments) == given
+    assert "/tf:=tf" in found["robot_state_publisher"].arguments
 
 
 def test_robots_share_processes_when_they_are_many() -> None:
@@ -153,13 +170,15 @@ def test_the_plan_has_the_substituted_types(layout: str) -> None:
 
 def rewritten(layout: str) -> tuple[Inventory, Naming]:
     text = rewrite(str(ROVER), "robot1", layout=layout).text
-    return collect(read_document(text.encode(), "rover.urdf"), builtin_tree()), make_naming(layout)
+    return collect(
+        read_document(text.encode(), "rover.urdf"), builtin_tree((), NEWEST_LTS)
+    ), make_naming(layout)
 
 
 def sent(layout: str, *stacks: str) -> dict[str, list[Edge]]:
     inventory, naming = rewritten(layout)
-    nodes = [node for stack in stacks for node in stack_of(built_in(), stack)]
-    reading = read(inventory.document.source, "rover.urdf", builtin_tree().vocabulary)
+    nodes = [node for stack in stacks for node in stack_of(built_in(NEWEST_LTS), stack)]
+    reading = read(inventory.document.source, "rover.urdf", builtin_tree((), NEWEST_LTS).vocabulary)
     plugins = [facts for facts, _ in plugin_nodes(reading, "robot1")]
     found = edges_of("robot1", inventory, nodes, plugins, naming)
     return {node.removesuffix("_robot1"): edges for (_, node), edges in found.items() if edges}

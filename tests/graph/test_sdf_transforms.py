@@ -5,6 +5,7 @@ from __future__ import annotations
 from paths import FIXTURES
 
 from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
@@ -19,7 +20,7 @@ MODEL = (
 
 
 def inventory(data: bytes) -> Inventory:
-    return collect(read_document(data, "robot.sdf"), builtin_tree())
+    return collect(read_document(data, "robot.sdf"), builtin_tree((), NEWEST_LTS))
 
 
 def parent(name: str) -> str:

@@ -146,3 +146,14 @@ def test_the_command_prints_known_nodes(tmp_path: Path, capsys: pytest.CaptureFi
     assert row.split("\t")[:9] == [
         *("twist_mux", "4", "a.cpp", "1", "twist_mux", "calls", "c", "a/srv/B", "")
     ]
+
+
+def test_the_command_prints_differences(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "twist_mux@4"
+    folder.mkdir()
+    (folder / "a.cpp").write_text(
+        'struct TwistMux { void f() { create_client<a::srv::B>("c"); } };'
+    )
+    assert main([str(folder), "--compare", "jazzy"]) == 1
+    rows = [row.split("\t")[:5] for row in capsys.readouterr().out.splitlines()]
+    assert ["twist_mux", "calls", "c", "a/srv/B", "not in nodes.yaml"] in rows

@@ -10,7 +10,7 @@ import re
 from functools import cache
 
 import pytest
-from paths import FIXTURES
+from paths import FIXTURES, ROOT
 
 from multibot_rewrite.interfaces.compare import (
     OURS,
@@ -21,6 +21,7 @@ from multibot_rewrite.interfaces.compare import (
     excepted,
     exceptions_of,
 )
+from multibot_rewrite.interfaces.endpoints_page import page
 from multibot_rewrite.interfaces.records import Fact
 from multibot_rewrite.interfaces.table import from_table
 from multibot_rewrite.releases import RELEASES
@@ -116,3 +117,7 @@ def test_exceptions_are_patterns() -> None:
     seen = Difference("amcl", "serves", "x/y", "", WAY)
     assert excepted(seen, (one,)) == "for a test"
     assert not re.search("x", excepted(seen._replace(name="y"), (one,)))
+
+
+def test_the_page_is_current() -> None:
+    assert page(FIXTURES) in (ROOT / "docs" / "interfaces.md").read_text()

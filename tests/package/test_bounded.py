@@ -21,6 +21,7 @@ from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import from_json
 from multibot_rewrite.lint.config.baseline import read_baseline
 from multibot_rewrite.model import InputError, MultibotError
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.stacks import user_stack
 from multibot_rewrite.remap.yaml_with_lines import read_yaml_with_lines
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
@@ -160,9 +161,9 @@ def test_json_within_the_bounds_is_read_as_before(text: str) -> None:
 
 READ_TEXT: dict[str, Reader] = {
     "description": read_file,
-    "nodes": user_stack,
-    "parameters": load_known_nodes,
-    "vocabulary": lambda path: load_vocabulary((path,)),
+    "nodes": lambda path: user_stack(path, NEWEST_LTS),
+    "parameters": lambda path: load_known_nodes(path, NEWEST_LTS),
+    "vocabulary": lambda path: load_vocabulary((path,), NEWEST_LTS),
     "baseline": read_baseline,
 }
 

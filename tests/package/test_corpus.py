@@ -15,6 +15,7 @@ from refusal_reasons import Outcome, is_true, reason
 
 from multibot_rewrite import MultibotError, ProofError, rewrite, rewrite_all, strip
 from multibot_rewrite.checks.twice import already_rewritten
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -90,7 +91,7 @@ def refused_as_rewritten(files: Mapping[str, Path], robots: Sequence[str]) -> di
     """For each robot the files that are rewritten for it already."""
     found: dict[str, set[str]] = {robot: set() for robot in robots}
     for name, path in files.items():
-        inventory = collect(read_document(path.read_bytes(), name), builtin_tree())
+        inventory = collect(read_document(path.read_bytes(), name), builtin_tree((), NEWEST_LTS))
         for robot in robots:
             if any(already_rewritten(inventory, [robot], again=False)):
                 found[robot].add(name)

@@ -15,6 +15,7 @@ from lxml import etree
 from paths import FIXTURES
 
 from multibot_rewrite.model import Site
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import TreeNode, qualified
 from multibot_rewrite.rewriters.vocabulary import (
@@ -104,7 +105,7 @@ def trouble(fact: Fact) -> str:
 def host_trouble(fact: Fact) -> str:
     """The same for a plugin or a hardware class, under each of its names."""
     for name in fact.names:
-        found = load_vocabulary().find(fact.type, name)
+        found = load_vocabulary((), NEWEST_LTS).find(fact.type, name)
         flavours = [
             r for r in found if not (fact.ros in ("1", "2") and r.ros not in ("", fact.ros))
         ]
@@ -120,14 +121,14 @@ def host_trouble(fact: Fact) -> str:
 def host_site(section: VocabularySection, path: str) -> Site | None:
     """The row of a plugin or hardware class for a path, its own or one that holds for all."""
     common = {"plugin": "plugin", "hardware": "ros2_control"}[section.type]
-    (shared,) = load_vocabulary().find("element", common)
+    (shared,) = load_vocabulary((), NEWEST_LTS).find("element", common)
     return {site.path: site for site in shared.sites + section.sites}.get(path)
 
 
 def element_trouble(fact: Fact) -> str:
     """The same for a place in a document."""
     steps, attribute = split_path(fact.path[1:])
-    tree = builtin_tree()
+    tree = builtin_tree((), NEWEST_LTS)
     node: TreeNode | None = tree.formats.get(steps[0])
     for step in steps[1:]:
         tag, asked, value = split_step(step)

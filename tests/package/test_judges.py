@@ -19,6 +19,7 @@ from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import MultibotError
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.readback.reading import read
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 
 pytestmark = pytest.mark.slow
@@ -41,14 +42,14 @@ def verdicts(path: Path, layout: str, folder: Path) -> dict[str, set[str]]:
     """What each of the five says; empty where the description is refused."""
     try:
         first, _ = rewrite_all(path, ROBOTS, layout=layout)
-        table = make_fleet(path, ROBOTS, (), {"layout": layout}).table
+        table = make_fleet(path, ROBOTS, (), {"layout": layout}, release=NEWEST_LTS).table
     except MultibotError:
         return {}
     settings = Settings(robots=ROBOTS, naming=make_naming(layout), select=CODES)
     file = folder / "fleet.yaml"
     robots = "\n".join(f"  - {{name: {it}}}" for it in ROBOTS)
     file.write_text(f"layout: {layout}\ndescription: {path}\nrobots:\n{robots}\n")
-    plan = plan_fleet(read_fleet(str(file)))
+    plan = plan_fleet(read_fleet(str(file), "", {}))
     return {
         "rewrite": named(first.findings),
         "lint": named(lint_file(str(path), settings)),
@@ -80,7 +81,7 @@ def test_five_judges_agree_about_every_file(corpus: dict[str, Path], tmp_path: P
 
 
 def test_both_readings_know_the_same_plugins(corpus: dict[str, Path]) -> None:
-    vocabulary = builtin_tree().vocabulary
+    vocabulary = builtin_tree((), NEWEST_LTS).vocabulary
     wrong = {}
     for name, path in corpus.items():
         data = path.read_bytes()

@@ -35,6 +35,7 @@ from multibot_rewrite import (
     strip,
 )
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rosnames import check_robot_name, propose_token
 
@@ -202,7 +203,7 @@ def test_a_robots_place_in_the_call_does_not_matter(
 @settings(max_examples=100)
 def test_a_policy_that_renames_nothing_changes_no_byte(robot: Robot) -> None:
     nothing = make_naming()._replace(separators={})
-    template = pipeline.prepare(robot.text, "robot", nothing, builtin_tree())
+    template = pipeline.prepare(robot.text, "robot", nothing, builtin_tree((), NEWEST_LTS))
     assert list(pipeline.render(template, [ROBOT, "r2"], again=True)) == [robot.text] * 2
 
 

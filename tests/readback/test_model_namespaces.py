@@ -29,7 +29,7 @@ def model(attributes: str, inside: str = DRIVE.format("cmd_vel")) -> str:
 
 
 def topics(text: bytes, release: str, path: str = "topic") -> list[str]:
-    found = read(text, "m.sdf", load_vocabulary(release=release)).names
+    found = read(text, "m.sdf", load_vocabulary((), release)).names
     return [it.name for it in found if it.kind == TOPIC and it.path == path]
 
 
@@ -104,7 +104,7 @@ SOURCES = [
 @pytest.mark.parametrize("release", [*RELEASED, MAIN])
 @pytest.mark.parametrize("source", SOURCES)
 def test_two_robots_do_not_meet(source: str, release: str, layout: str) -> None:
-    vocabulary = load_vocabulary(release=release)
+    vocabulary = load_vocabulary((), release)
     texts = dict(written(source, layout, release))
     readings = {robot: read(text, robot, vocabulary) for robot, text in texts.items()}
     assert [it.name.name for it in meetings(readings, make_naming(layout))] == []

@@ -26,7 +26,7 @@ SDF = """<sdf version="1.9"><model name="m"{}><link name="a"/><link name="b"/>{}
 
 
 def missed(text: str, release: str = "jazzy") -> list[str]:
-    return [it.name for it in read(text.encode(), "f", load_vocabulary(release=release)).missed]
+    return [it.name for it in read(text.encode(), "f", load_vocabulary((), release)).missed]
 
 
 @pytest.mark.parametrize(

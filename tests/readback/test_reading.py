@@ -5,11 +5,14 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 
 
 def reading(inside: str, root: str = "robot") -> Reading:
-    return read(f"<{root} name='r'>{inside}</{root}>".encode(), "r.urdf", load_vocabulary())
+    return read(
+        f"<{root} name='r'>{inside}</{root}>".encode(), "r.urdf", load_vocabulary((), NEWEST_LTS)
+    )
 
 
 def names(inside: str, *kinds: str) -> list[str]:

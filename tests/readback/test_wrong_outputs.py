@@ -10,6 +10,7 @@ from multibot_rewrite import rewrite
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.readback.meeting import meetings, same_for_all
 from multibot_rewrite.readback.reading import read
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 
 RUNNING = b"""\
@@ -39,14 +40,16 @@ def named(kind: str, name: str) -> str:
 
 def shared(text: bytes, layout: str) -> set[str]:
     """What all robots would have of one robot's text."""
-    reading = read(text, "rover", load_vocabulary())
+    reading = read(text, "rover", load_vocabulary((), NEWEST_LTS))
     found = same_for_all(reading, "robot1", make_naming(layout))
     return {named(it.kind, it.name) for it in found}
 
 
 def met(texts: dict[str, bytes], layout: str) -> set[str]:
     """Where robots meet, by their texts."""
-    readings = {robot: read(text, robot, load_vocabulary()) for robot, text in texts.items()}
+    readings = {
+        robot: read(text, robot, load_vocabulary((), NEWEST_LTS)) for robot, text in texts.items()
+    }
     found = meetings(readings, make_naming(layout))
     return {named(it.name.kind, it.name.name) for it in found}
 

@@ -8,6 +8,7 @@ from paths import FIXTURES
 
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.bridged_topics import BridgedTopic, as_yaml, bridge_data, bridged_topics
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
@@ -37,7 +38,8 @@ ROBOT = """\
 def fleet(layout: str, source: str | bytes = ROBOT):
     rewrites = rewrite_all(source, ROBOTS, layout=layout)
     inventories = {
-        one.robot: collect(read_document(one.data, "rover"), builtin_tree()) for one in rewrites
+        one.robot: collect(read_document(one.data, "rover"), builtin_tree((), NEWEST_LTS))
+        for one in rewrites
     }
     return bridged_topics(inventories, make_naming(layout))
 
@@ -150,7 +152,7 @@ def test_the_file_is_what_the_bridge_reads() -> None:
 
 
 def test_the_data_names_sections_and_elements_that_the_vocabulary_has() -> None:
-    vocabulary = load_vocabulary(packages=False)
+    vocabulary = load_vocabulary((), NEWEST_LTS, packages=False)
     for section, topics in bridge_data()["plugins"].items():
         (rewriter,) = vocabulary.find("plugin", section)
         assert {topic[0] for topic in topics} <= {site.path for site in rewriter.sites}, section

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.nodl.facts import NOT_IN_NODL, KnownNodes, nodes_of
 from multibot_rewrite.remap.nodl.lookup import INDEX, NONE, Identity, find_interfaces, load
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, Endpoint, NodeFacts
@@ -34,7 +35,7 @@ def installed(prefix: Path, key: str, text: str) -> str:
 
 
 def node_of(stack: str, *paths: str) -> NodeFacts:
-    (node,) = nodes_of(KnownNodes(built_in(), find_interfaces(paths)), stack)
+    (node,) = nodes_of(KnownNodes(built_in(NEWEST_LTS), find_interfaces(paths)), stack)
     return node
 
 
@@ -169,7 +170,7 @@ def test_a_document_is_above_the_tables(tmp_path: Path) -> None:
         f"  - {{name: /scan, type: acme_msgs/msg/Scan, {QOS}}}\n"
         "service_servers: [{name: /amcl/get_state, type: lifecycle_msgs/srv/GetState}]\n"
     )
-    (before,) = nodes_of(KnownNodes(built_in(), NONE), "amcl")
+    (before,) = nodes_of(KnownNodes(built_in(NEWEST_LTS), NONE), "amcl")
     amcl = amcl_as(tmp_path, text)
     scan = ends(amcl, SUBSCRIBES)["/scan"]
     assert (scan.type, scan.when) == ("acme_msgs/msg/Scan", "")
@@ -238,7 +239,7 @@ def test_a_node_of_a_stack_keeps_the_stacks_changes(tmp_path: Path) -> None:
     path = written(tmp_path, "nav2_controller__controller_server.nodl.yaml", text)
     found = {
         it.name: it
-        for it in nodes_of(KnownNodes(built_in(), find_interfaces([path])), "navigation")
+        for it in nodes_of(KnownNodes(built_in(NEWEST_LTS), find_interfaces([path])), "navigation")
     }
     velocity = ends(found["controller_server"])["/cmd_vel"]
     assert (velocity.remapped, velocity.type) == ("cmd_vel_nav", "acme/msg/Velocity")
@@ -252,7 +253,9 @@ def test_a_document_is_found_by_the_usual_name_of_a_node_that_a_stack_renames(
     )
     found = {
         it.name: it
-        for it in nodes_of(KnownNodes(built_in(), find_interfaces([path])), "localization")
+        for it in nodes_of(
+            KnownNodes(built_in(NEWEST_LTS), find_interfaces([path])), "localization"
+        )
     }
     assert found["lifecycle_manager_localization"].interface == path
 
@@ -270,7 +273,7 @@ def test_a_node_of_the_users_own_file_stays_and_names_its_document_otherwise(
 ) -> None:
     mine = "nodes:\n  amcl: {package: nav2_amcl, publishes: {mine: std_msgs/msg/String}}\n"
     nodes = written(tmp_path, "mine.yaml", mine)
-    library = user_stack(nodes)
+    library = user_stack(nodes, NEWEST_LTS)
     path = written(tmp_path, "nav2_amcl__amcl.nodl.yaml", document("theirs"))
     interfaces = find_interfaces([path])
     (own,) = nodes_of(KnownNodes(library, interfaces, frozenset({"amcl"})), "amcl")

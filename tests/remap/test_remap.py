@@ -16,6 +16,7 @@ from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -79,7 +80,7 @@ NODES = (PUBLISHER, DRIVER, COSTMAP, BRIDGE)
 
 
 def table(layout: str, nodes: tuple[NodeFacts, ...] = NODES, **policy: str) -> Table:
-    return build_table(ROBOTS, nodes, make_naming(layout, **policy))
+    return build_table(ROBOTS, nodes, make_naming(layout, **policy), release=NEWEST_LTS)
 
 
 def rules(found: Table, robot: str, node: str) -> dict[str, str]:
@@ -166,7 +167,7 @@ def test_below_a_namespace_of_its_own_a_target_is_absolute() -> None:
 
 def test_a_shared_node_may_have_a_namespace() -> None:
     maps = NodeFacts("maps/server", "x", (Endpoint(TOPIC, PUBLISHES, "map"),), shared=True)
-    found = build_table(ROBOTS, (maps,), make_naming("both"))
+    found = build_table(ROBOTS, (maps,), make_naming("both"), release=NEWEST_LTS)
     (node,) = found.nodes
     assert (node.namespace, node.name) == ("/maps", "server")
     assert [it.name for it in found.names] == ["/maps/map"]
@@ -264,14 +265,17 @@ def plugin(*given: tuple[str, str]) -> dict[str, list[tuple[NodeFacts, NodeTable
     ],
 )
 def test_rules_that_do_harm_or_nothing(given: list[tuple[str, str]], codes: list[str]) -> None:
-    found = build_table(ROBOTS, (), make_naming("L2"), plugin(*given))
+    found = build_table(ROBOTS, (), make_naming("L2"), plugin(*given), release=NEWEST_LTS)
     assert [problem.code for problem in found.problems] == codes
 
 
 def test_one_robot_alone_is_held_against_another() -> None:
     alone = {"robot1": plugin()["robot1"]}
-    assert [p.code for p in build_table(["robot1"], (), make_naming("L2"), alone).problems] == []
-    found = build_table(["robot1"], (DRIVER,), make_naming("L2"))
+    assert [
+        p.code
+        for p in build_table(["robot1"], (), make_naming("L2"), alone, release=NEWEST_LTS).problems
+    ] == []
+    found = build_table(["robot1"], (DRIVER,), make_naming("L2"), release=NEWEST_LTS)
     assert {name.robot for name in found.names} == {"robot1"}
 
 
@@ -281,7 +285,7 @@ ODOM, TF = "publish_odom", "publish_odom_tf or publish_wheel_tf"
 
 
 def reading(data: bytes) -> Reading:
-    return read(data, "rover", builtin_tree().vocabulary)
+    return read(data, "rover", builtin_tree((), NEWEST_LTS).vocabulary)
 
 
 def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
@@ -290,7 +294,7 @@ def test_plugins_of_a_rewritten_description_keep_robots_apart() -> None:
         plugins = {}
         for one in rewrite_all(source, ROBOTS, layout=layout):
             plugins[one.robot] = list(plugin_nodes(reading(one.data), one.robot))
-        found = build_table(ROBOTS, (), make_naming(layout), plugins)
+        found = build_table(ROBOTS, (), make_naming(layout), plugins, release=NEWEST_LTS)
         assert [p for p in found.problems if p.level == ERROR] == [], layout
         drive = [n for n in found.names if n.robot == "robot1" and n.endpoint.name == "cmd_vel"]
         assert [n.name for n in drive] == [

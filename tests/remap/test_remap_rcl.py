@@ -10,6 +10,7 @@ import pytest
 from rcl_names import INSTALL, ask
 
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, NodeTable, Table
 from multibot_rewrite.remap.stacks import load_stack
 from multibot_rewrite.remap.table import build_table
@@ -36,8 +37,8 @@ POLICIES = [
 @pytest.fixture(scope="module", params=POLICIES, ids="-".join)
 def table(request: pytest.FixtureRequest) -> Table:
     layout, affix = request.param
-    nodes = dict.fromkeys(node for stack in STACKS for node in load_stack(stack))
-    return build_table(ROBOTS, list(nodes), make_naming(layout, affix))
+    nodes = dict.fromkeys(node for stack in STACKS for node in load_stack(stack, NEWEST_LTS))
+    return build_table(ROBOTS, list(nodes), make_naming(layout, affix), release=NEWEST_LTS)
 
 
 def rules_of(lines: list[str], node: NodeTable) -> list[str]:

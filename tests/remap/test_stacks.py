@@ -11,6 +11,7 @@ from paths import ROOT
 
 from multibot_rewrite.fleets.fleet import NO_STATE_PUBLISHER
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC, Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import (
@@ -54,29 +55,29 @@ def endpoint(node: NodeFacts, role: str, name: str) -> Endpoint:
 
 def extra(text: str) -> NodeLibrary:
     """The built-in library with a user's text."""
-    return extend(built_in(), text, "mine.yaml")
+    return extend(built_in(NEWEST_LTS), text, "mine.yaml")
 
 
 @pytest.mark.parametrize("name", WANTED)
 def test_a_stack_has_its_nodes(name: str) -> None:
-    assert {node.name for node in load_stack(name)} >= WANTED[name]
+    assert {node.name for node in load_stack(name, NEWEST_LTS)} >= WANTED[name]
 
 
-@pytest.mark.parametrize("name", sorted(built_in().stacks))
+@pytest.mark.parametrize("name", sorted(built_in(NEWEST_LTS).stacks))
 def test_a_stack_names_each_node_once(name: str) -> None:
-    names = [node.name for node in load_stack(name)]
+    names = [node.name for node in load_stack(name, NEWEST_LTS)]
     assert names or name == NO_STATE_PUBLISHER
     assert sorted(set(names)) == sorted(names)
 
 
 def test_shared_nodes_are_those_that_serve_all() -> None:
-    shared = {name for name, node in load_nodes().items() if node.shared}
+    shared = {name for name, node in load_nodes(NEWEST_LTS).items() if node.shared}
     assert shared == {"ros_gz_bridge", "rviz2", "map_merging"}
-    assert [node.shared for node in load_stack("rviz_nav2")] == [False]
+    assert [node.shared for node in load_stack("rviz_nav2", NEWEST_LTS)] == [False]
 
 
 def test_the_type_decides_the_kind() -> None:
-    node = load_nodes()["joint_trajectory_controller"]
+    node = load_nodes(NEWEST_LTS)["joint_trajectory_controller"]
     kinds = {e.name: e.kind for e in node.endpoints}
     assert kinds["~/joint_trajectory"] == TOPIC
     assert kinds["~/query_state"] == SERVICE
@@ -88,20 +89,20 @@ def test_the_page_of_stacks_is_current() -> None:
 
 
 def test_a_host_is_a_node() -> None:
-    nodes = load_nodes()
+    nodes = load_nodes(NEWEST_LTS)
     hosts = {name: node.host for name, node in nodes.items() if node.host}
     assert hosts["local_costmap/local_costmap"] == "controller_server"
     assert [name for name, host in hosts.items() if host not in nodes] == []
 
 
-@pytest.mark.parametrize("name", sorted(load_nodes()))
+@pytest.mark.parametrize("name", sorted(load_nodes(NEWEST_LTS)))
 def test_a_name_made_at_run_time_is_out_of_reach(name: str) -> None:
-    made = [e for e in load_nodes()[name].endpoints if "<" in e.name]
+    made = [e for e in load_nodes(NEWEST_LTS)[name].endpoints if "<" in e.name]
     assert [e.name for e in made if not e.fixed] == []
 
 
 def test_a_stack_says_what_is_made_at_run_time() -> None:
-    nodes = {node.name: node for node in load_stack("nav2")}
+    nodes = {node.name: node for node in load_stack("nav2", NEWEST_LTS)}
     scan = endpoint(nodes["global_costmap/global_costmap"], "subscribes", "/scan")
     assert (scan.fixed, scan.also) == ("", ("sensor_msgs/msg/PointCloud2",))
     manager = nodes["lifecycle_manager_localization"]
@@ -110,13 +111,13 @@ def test_a_stack_says_what_is_made_at_run_time() -> None:
 
 
 def test_only_a_process_wide_rule_reaches_the_tf_of_a_costmap() -> None:
-    nodes = load_nodes()
+    nodes = load_nodes(NEWEST_LTS)
     assert endpoint(nodes["local_costmap/local_costmap"], "subscribes", "/tf").helper
     assert not endpoint(nodes["amcl"], "subscribes", "/tf").helper
 
 
 def test_what_launch_files_remap_is_kept_in_mind() -> None:
-    nodes = {node.name: node for node in load_stack("nav2")}
+    nodes = {node.name: node for node in load_stack("nav2", NEWEST_LTS)}
     leads = {
         name: [e.remapped for e in node.endpoints if e.name == "cmd_vel"]
         for name, node in nodes.items()
@@ -135,7 +136,9 @@ def leads(node: NodeFacts, asked: Endpoint) -> str:
 
 def met(stack: str, asking: str, giving: str) -> tuple[set[str], set[str]]:
     """Where all endpoints of two roles lead, those of one role and those of the other."""
-    found = [(e.role, leads(node, e)) for node in load_stack(stack) for e in node.endpoints]
+    found = [
+        (e.role, leads(node, e)) for node in load_stack(stack, NEWEST_LTS) for e in node.endpoints
+    ]
     one, other = ({name for role, name in found if role == wanted} for wanted in (asking, giving))
     return {name for name in one if "<" not in name}, other
 
@@ -162,7 +165,7 @@ def test_teleop_goes_through_the_mux() -> None:
 
 
 def test_frames_are_reported_with_their_defaults() -> None:
-    frames = {it.parameter: it.default for it in load_nodes()["amcl"].frames}
+    frames = {it.parameter: it.default for it in load_nodes(NEWEST_LTS)["amcl"].frames}
     assert frames == {
         "base_frame_id": "base_footprint",
         "odom_frame_id": "odom",
@@ -176,7 +179,7 @@ def test_a_stack_says_what_it_is_about() -> None:
 
 
 def test_a_node_is_a_stack_of_its_own() -> None:
-    assert load_stack("rplidar_node") == (load_nodes()["rplidar_node"],)
+    assert load_stack("rplidar_node", NEWEST_LTS) == (load_nodes(NEWEST_LTS)["rplidar_node"],)
 
 
 def test_the_example_of_the_page_is_read() -> None:
@@ -189,7 +192,7 @@ def test_the_example_of_the_page_is_read() -> None:
 
 def test_unknown_stack_is_reported_with_the_nearest() -> None:
     with pytest.raises(UsageError, match=r"stack 'nav' is not known; did you mean 'nav2'\? known:"):
-        load_stack("nav")
+        load_stack("nav", NEWEST_LTS)
 
 
 def test_a_user_adds_nodes_and_stacks() -> None:
@@ -205,7 +208,7 @@ def test_a_user_adds_nodes_and_stacks() -> None:
 def test_a_users_file_is_read(tmp_path: Path) -> None:
     path = tmp_path / "mine.yaml"
     path.write_text("stacks:\n  cell:\n    nodes: [rviz2]\n")
-    assert [node.name for node in stack_of(user_stack(str(path)), "cell")] == ["rviz2"]
+    assert [node.name for node in stack_of(user_stack(str(path), NEWEST_LTS), "cell")] == ["rviz2"]
 
 
 def test_a_type_may_be_left_out() -> None:
@@ -217,7 +220,7 @@ def test_a_type_may_be_left_out() -> None:
 
 
 def test_an_empty_file_adds_nothing() -> None:
-    assert extra("") == built_in()
+    assert extra("") == built_in(NEWEST_LTS)
 
 
 def test_a_name_can_be_taken_out() -> None:
@@ -230,7 +233,7 @@ def test_a_name_can_be_taken_out() -> None:
 
 def test_the_same_node_by_two_ways_is_one() -> None:
     library = extra("stacks: {cell: {include: [localization, nav2]}}")
-    assert stack_of(library, "cell") == load_stack("nav2")
+    assert stack_of(library, "cell") == load_stack("nav2", NEWEST_LTS)
 
 
 def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
@@ -238,7 +241,7 @@ def test_what_a_file_says_anew_counts_in_its_stacks() -> None:
         "nodes: {amcl: {publishes: {x: std_msgs/msg/Empty}}}\nstacks: {cell: {nodes: [amcl]}}"
     )
     assert [e.name for e in stack_of(library, "cell")[0].endpoints] == ["x"]
-    assert stack_of(library, "nav2") == load_stack("nav2")
+    assert stack_of(library, "nav2") == load_stack("nav2", NEWEST_LTS)
 
 
 @pytest.mark.parametrize(
@@ -347,10 +350,10 @@ def test_what_is_wrong_is_reported_with_its_place(text: str, message: str) -> No
 
 def test_a_file_that_cannot_be_read_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"none\.yaml: cannot be read: No such file"):
-        user_stack(str(tmp_path / "none.yaml"))
+        user_stack(str(tmp_path / "none.yaml"), NEWEST_LTS)
     (tmp_path / "latin.yaml").write_bytes(b"about: \xe4")
     with pytest.raises(UsageError, match="it is not UTF-8"):
-        user_stack(str(tmp_path / "latin.yaml"))
+        user_stack(str(tmp_path / "latin.yaml"), NEWEST_LTS)
 
 
 def test_yaml_is_loaded_where_a_stack_is_asked_for_only() -> None:

@@ -101,7 +101,7 @@ def test_the_launch_form_has_each_key_once_and_what_is_started_alone(release: st
 
 def test_the_data_says_where_each_rule_stands() -> None:
     found = yaml.safe_load(FORMS["yaml"](table("lyrical", "gz_ros2_control", "nav2")))
-    assert found["release"] == "lyrical"
+    assert found["distro"] == "lyrical"
     own = found["robots"]["robot1"]
     ways = {node: (it["way"], it["at"]) for node, it in own.items()}
     assert ways["controller_manager"] == ("plugin", "controller_manager")

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import pytest
 
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import (
     ACTION,
     CALLS,
@@ -33,7 +34,7 @@ def node(name: str, *endpoints: Endpoint) -> NodeFacts:
 
 
 def table(layout: str, *nodes: NodeFacts) -> Table:
-    return build_table(ROBOTS, nodes, make_naming(layout))
+    return build_table(ROBOTS, nodes, make_naming(layout), release=NEWEST_LTS)
 
 
 def rules(made: Table, robot: str = "robot1") -> dict[str, str]:
@@ -114,7 +115,7 @@ def alike(*pairs: tuple[str, Sequence[Endpoint]]) -> Table:
         robot: [(node(f"{robot}_plugin", *ends), NodeTable(robot, "p", "/", f"{robot}_plugin", ()))]
         for robot, ends in pairs
     }
-    return build_table(ROBOTS, (), make_naming("both"), plugins)
+    return build_table(ROBOTS, (), make_naming("both"), plugins, release=NEWEST_LTS)
 
 
 def both(first: Endpoint, second: Endpoint) -> list[tuple[str, str]]:

@@ -24,7 +24,7 @@ from multibot_rewrite.remap.records import (
     Table,
 )
 from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.remap.ways import CONTROLLER_WAYS, deliveries
+from multibot_rewrite.remap.ways import CONTROLLER_WAYS, deliveries, rules_by_taker
 
 TF = Endpoint(TOPIC, PUBLISHES, "/tf")
 HEARD = Endpoint(TOPIC, SUBSCRIBES, "/tf", helper=True)
@@ -41,7 +41,7 @@ def table(release: str, *facts: NodeFacts, tags: tuple[str, ...] = ()) -> Table:
         robot: [(NodeFacts("controller_manager", "gz", ()), tag(robot, *tags))]
         for robot in (("robot1", "robot2") if tags else ())
     }
-    return build_table(["robot1", "robot2"], facts, make_naming("L1"), plugins, release)
+    return build_table(["robot1", "robot2"], facts, make_naming("L1"), plugins, release=release)
 
 
 def tag(robot: str, *rules: str) -> NodeTable:
@@ -111,6 +111,13 @@ def test_a_plugin_and_the_stack_are_one_node_in_the_plugin(release: str) -> None
     made = table(release, MANAGER, BASE, tags=("a:=b",))
     assert stands(made, "controller_manager") == [("plugin", "controller_manager", (("a", "b"),))]
     assert running(made, "controller_manager").rules == (("a", "b"),)
+
+
+def test_a_tag_has_what_is_written_there_and_not_what_a_controller_wants() -> None:
+    made = table("humble", MANAGER, BASE, tags=("a:=b",))
+    assert stands(made, "base_controller")[0][:2] == ("plugin", "controller_manager")
+    standing = rules_by_taker(deliveries(made))
+    assert standing["robot2", "controller_manager"] == (("a", "b"),)
 
 
 def test_a_plugins_node_has_its_own_rules_before_those_of_the_process() -> None:

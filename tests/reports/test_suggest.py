@@ -9,6 +9,7 @@ import pytest
 import multibot_rewrite
 from multibot_rewrite import rewrite
 from multibot_rewrite.checks.audit import is_unknown
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.reports.suggest import SuggestedSection, suggest, tag_kind, vocabulary_text
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
@@ -25,7 +26,9 @@ ROBOT = """<robot name="bot"><link name="base"/><link name="arm"/><link name="bo
 
 
 def described(body: str, tree: Tree | None = None) -> Inventory:
-    return collect(read_document(ROBOT.format(body).encode(), "bot.urdf"), tree or builtin_tree())
+    return collect(
+        read_document(ROBOT.format(body).encode(), "bot.urdf"), tree or builtin_tree((), NEWEST_LTS)
+    )
 
 
 def plugin(body: str, attributes: str = 'filename="libacme.so"') -> str:
@@ -56,7 +59,7 @@ def line_for(body: str) -> str:
 
 def loaded(text: str, folder: Path) -> Tree:
     (folder / "new.vocab").write_text(text)
-    return Tree(load_vocabulary((str(folder / "new.vocab"),)))
+    return Tree(load_vocabulary((str(folder / "new.vocab"),), NEWEST_LTS))
 
 
 # ---------------------------------------------------------------- what is guessed
@@ -272,13 +275,13 @@ def test_a_file_of_any_name(name: str, tmp_path: Path) -> None:
 def test_what_a_small_vocabulary_lacks_can_be_suggested(corpus: dict[str, Path]) -> None:
     """With the elements alone every plugin and hardware class of the corpus is unknown."""
     texts = {name: (HERE / name).read_text() for name in ("urdf.vocab", "sdf.vocab")}
-    bare = Tree(Vocabulary(texts))
+    bare = Tree(Vocabulary(texts, NEWEST_LTS))
     guessed = set()
     for path in list(corpus.values())[::6]:
         document = read_document(path.read_bytes(), path.name)
         sections = suggest(collect(document, bare))
         text = vocabulary_text(sections, path.name)
-        tree = Tree(Vocabulary(texts | {"new.vocab": text}))
+        tree = Tree(Vocabulary(texts | {"new.vocab": text}, NEWEST_LTS))
         there = collect(document, tree)
         assert not any(is_unknown(h.node.section) for h in there.hosts if h.node.section), path
         assert len(tree.vocabulary.sections("plugin", "hardware")) == text.count("\n["), path

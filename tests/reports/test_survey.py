@@ -12,6 +12,7 @@ from multibot_rewrite import InputError
 from multibot_rewrite.checks.mentions import find_mentions
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.pipeline import prepare
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.reports.survey import (
     Explained,
     Loaded,
@@ -34,14 +35,14 @@ EMPTY = Survey(0, {}, {}, {})
 
 
 def inventory(text: str, file: str = "a.urdf") -> Inventory:
-    return collect(read_document(text.encode(), file), builtin_tree())
+    return collect(read_document(text.encode(), file), builtin_tree((), NEWEST_LTS))
 
 
 def surveyed(body: str, file: str = "a.urdf") -> Survey:
     """A survey of a robot with the links base and arm, the joint hip and ``body``."""
     joint = '<joint name="hip" type="fixed"><parent link="base"/><child link="arm"/></joint>'
     text = f'<robot name="r"><link name="base"/><link name="arm"/>{joint}{body}</robot>'
-    return survey(inventory(text, file), builtin_tree())
+    return survey(inventory(text, file), builtin_tree((), NEWEST_LTS))
 
 
 def plugin(library: str, body: str = "") -> str:
@@ -162,8 +163,8 @@ def test_the_walk_is_that_of_the_warnings() -> None:
     """Exact and inside together are the MB901 of a rewrite that renames every link and joint."""
     body = plugin("libacme.so", '<x>hip</x><y a="base arm"/><z>3</z>')
     text = f'<robot name="r"><link name="base"/><link name="arm"/><joint name="hip"/>{body}</robot>'
-    found = survey(inventory(text), builtin_tree())
-    warned = prepare(text.encode(), "a.urdf", make_naming(), builtin_tree()).findings
+    found = survey(inventory(text), builtin_tree((), NEWEST_LTS))
+    warned = prepare(text.encode(), "a.urdf", make_naming(), builtin_tree((), NEWEST_LTS)).findings
     count = Counter(finding.code for finding in warned)
     assert sum(tally.times for tally in found.mentions.values()) == count["MB901"] == 2
 
@@ -246,7 +247,10 @@ def test_a_line_without_path_or_reason_is_refused(row: str) -> None:
 def test_every_plugin_of_the_corpus_is_counted(corpus: dict[str, Path]) -> None:
     """Counted a second way: elements <plugin> with a library, wherever a <gazebo> block has them."""
     files = list(corpus.values())[::10]
-    surveys = [survey(inventory(path.read_text(), path.name), builtin_tree()) for path in files]
+    surveys = [
+        survey(inventory(path.read_text(), path.name), builtin_tree((), NEWEST_LTS))
+        for path in files
+    ]
     total = add(surveys)
     query = etree.XPath("count(/robot//gazebo//plugin)")
     counts = [query(etree.fromstring(path.read_bytes())) for path in files]
@@ -259,6 +263,6 @@ def test_no_mention_of_the_corpus_is_lost(corpus: dict[str, Path]) -> None:
         found = inventory(path.read_text(), path.name)
         names = {*found.declared["link"], *found.declared["joint"]}
         values = slot_values(found.document.root)
-        warned = find_mentions(found, values, names, builtin_tree())
-        tallies = survey(found, builtin_tree()).mentions.values()
+        warned = find_mentions(found, values, names, builtin_tree((), NEWEST_LTS))
+        tallies = survey(found, builtin_tree((), NEWEST_LTS)).mentions.values()
         assert sum(tally.times for tally in tallies) == len(warned)

@@ -10,6 +10,7 @@ from paths import FIXTURES
 
 from multibot_rewrite import InputError, rewrite_all
 from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.reports import xacro_arguments
 from multibot_rewrite.reports.xacro_arguments import (
     Argument,
@@ -28,7 +29,7 @@ TWO_NAMES = """\
 
 
 def found(path: Path, **given: str) -> XacroArguments:
-    return find_arguments(str(path), given, builtin_tree())
+    return find_arguments(str(path), given, builtin_tree((), NEWEST_LTS))
 
 
 def by_name(path: Path, **given: str) -> dict[str, Argument]:
@@ -132,7 +133,7 @@ def test_what_is_too_much_is_not_tried(write: Path, monkeypatch: pytest.MonkeyPa
     assert found(path).untried == ("a3", "a4")
     # The clock is asked once at the start, then before each argument.
     hours = iter([0.0, 1.0, 2.0, 3600.0])
-    late = find_arguments(str(path), {}, builtin_tree(), lambda: next(hours))
+    late = find_arguments(str(path), {}, builtin_tree((), NEWEST_LTS), lambda: next(hours))
     assert [it.name for it in late.arguments] == ["a0", "a1"]
     assert late.untried == ("a2", "a3", "a4")
 

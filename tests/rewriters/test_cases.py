@@ -19,6 +19,7 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import Site
 from multibot_rewrite.naming import POSTFIX, Policy, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.vocabulary import VocabularySection, load_vocabulary
@@ -34,10 +35,12 @@ REFUSED = [case for case in CASES if case.expect == "refused"]
 # An element that holds others and no name of its own has nothing to show.
 REWRITERS = [
     rewriter
-    for rewriter in load_vocabulary().sections("element", "plugin", "hardware", "sensor")
+    for rewriter in load_vocabulary((), NEWEST_LTS).sections(
+        "element", "plugin", "hardware", "sensor"
+    )
     if rewriter.type != "element" or any(site.role != "keep" for site in rewriter.sites)
 ]
-BLOCKS = load_vocabulary().sections("block")
+BLOCKS = load_vocabulary((), NEWEST_LTS).sections("block")
 LEAST_CASES = 1050
 LEAST_REFEREED = 980
 # Not a word of rewrite's naming policy.
@@ -80,7 +83,7 @@ def beside(case: Case) -> dict[str, bytes]:
 def outside(case: Case) -> Declared:
     """What the URDF beside an SRDF declares."""
     urdf = case.options.get("urdf")
-    return {} if urdf is None else declarations(urdf.read_bytes(), "", builtin_tree())
+    return {} if urdf is None else declarations(urdf.read_bytes(), "", builtin_tree((), NEWEST_LTS))
 
 
 def places(findings: tuple[Finding, ...]) -> list[str]:

@@ -14,6 +14,7 @@ from case_files import read_case
 from paths import FIXTURES
 
 from multibot_rewrite import VocabularyError, rewrite, strip
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.vocabulary import load_vocabulary
 from multibot_rewrite.rewriters.vocabulary.__main__ import page
@@ -319,8 +320,8 @@ def test_a_user_file_called_like_a_built_in_one_hides_nothing(
 ) -> None:
     (tmp_path / "hardware.vocab").write_text(SECTION.format(name="aa"))
     monkeypatch.chdir(tmp_path)
-    builtin = load_vocabulary(packages=False).names("hardware")
-    vocabulary = load_vocabulary(("hardware.vocab",), packages=False)
+    builtin = load_vocabulary((), NEWEST_LTS, packages=False).names("hardware")
+    vocabulary = load_vocabulary(("hardware.vocab",), NEWEST_LTS, packages=False)
     assert vocabulary.names("hardware") == builtin
     assert [found.file for found in vocabulary.find("plugin", "aa")] == ["./hardware.vocab"]
 
@@ -328,7 +329,7 @@ def test_a_user_file_called_like_a_built_in_one_hides_nothing(
 def test_one_user_file_costs_no_parsing_of_the_rest(tmp_path: Path) -> None:
     mine = tmp_path / "mine.vocab"
     mine.write_text(SECTION.format(name="gazebo_ros_p3d") + "[block ros]\nextra uses link\n")
-    vocabulary = load_vocabulary((str(mine),), packages=False)
+    vocabulary = load_vocabulary((str(mine),), NEWEST_LTS, packages=False)
     parsed = {section.name for found in vocabulary._found.values() for section in found}
     assert {"plugin gazebo_ros_p3d (ROS 2)", "block ros"} <= parsed
     assert len(parsed) < 6

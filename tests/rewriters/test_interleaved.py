@@ -17,6 +17,7 @@ import pytest
 
 from multibot_rewrite import VocabularyError, pipeline
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters import tree as trees
 from multibot_rewrite.rewriters import vocabulary as vocabularies
 from multibot_rewrite.rewriters.tree import Tree
@@ -70,7 +71,7 @@ Spot = tuple[str, int]
 
 def cold() -> Tree:
     """A tree that nothing has asked for anything yet."""
-    return Tree(Vocabulary({"test.vocab": TEXT}))
+    return Tree(Vocabulary({"test.vocab": TEXT}, NEWEST_LTS))
 
 
 def prepared(tree: Tree) -> Template:
@@ -170,7 +171,7 @@ BROKEN = TEXT.replace("child@link uses link", "child@link loves link")
 
 def test_a_mistake_in_the_vocabulary_is_raised_again() -> None:
     """What could not be made whole is not there: it is no section without rows for the next."""
-    tree = Tree(Vocabulary({"test.vocab": BROKEN}))
+    tree = Tree(Vocabulary({"test.vocab": BROKEN}, NEWEST_LTS))
     for _ in range(2):
         with pytest.raises(VocabularyError, match=r"test\.vocab:13"):
             rewritten(tree)

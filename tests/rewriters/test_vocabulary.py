@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from multibot_rewrite import VocabularyError, rewrite
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.vocabulary import (
     TYPES,
@@ -54,13 +55,13 @@ def write(folder: Path, text: str) -> str:
 def complaint(path: str) -> str:
     """What the loader says about a file, wherever it notices."""
     with pytest.raises(VocabularyError) as caught:
-        check_vocabulary(load_vocabulary((path,)))
-        builtin_tree((path,))
+        check_vocabulary(load_vocabulary((path,), NEWEST_LTS))
+        builtin_tree((path,), NEWEST_LTS)
     return str(caught.value)
 
 
 def builtin() -> list[VocabularySection]:
-    return check_vocabulary(load_vocabulary())
+    return check_vocabulary(load_vocabulary((), NEWEST_LTS))
 
 
 @pytest.mark.parametrize(
@@ -115,7 +116,7 @@ def test_a_bad_path_is_refused(tmp_path: Path, bad: str) -> None:
 )
 def test_a_good_path_is_taken(tmp_path: Path, good: str) -> None:
     path = write(tmp_path, f"{HEAD}{good} uses link\n")
-    (mine,) = load_vocabulary((path,)).find("plugin", "mine")
+    (mine,) = load_vocabulary((path,), NEWEST_LTS).find("plugin", "mine")
     assert [site.path for site in mine.sites] == [good]
 
 
@@ -179,21 +180,21 @@ def test_a_mistake_in_a_section_that_is_used_stops_the_rewrite(tmp_path: Path) -
 
 def test_settings_and_notes_are_read(tmp_path: Path) -> None:
     path = write(tmp_path, HEAD + "about: in two lines\nserves: a b\n@x uses link # why not\n")
-    (mine,) = load_vocabulary((path,)).find("plugin", "mine")
+    (mine,) = load_vocabulary((path,), NEWEST_LTS).find("plugin", "mine")
     assert (mine.about, mine.topics, mine.line) == ("a test in two lines", ("a", "b"), 1)
     assert (mine.sites[0].note, mine.sites[0].line) == ("why not", 5)
 
 
 def test_an_own_site_wins_over_its_block(tmp_path: Path) -> None:
     text = "[block both]\n@a uses link\n@b uses link\n[plugin mine]\nwith: both\n@a uses joint\n"
-    (mine,) = load_vocabulary((write(tmp_path, text),)).find("plugin", "mine")
+    (mine,) = load_vocabulary((write(tmp_path, text),), NEWEST_LTS).find("plugin", "mine")
     assert {site.path: site.kinds for site in mine.sites} == {"@a": ("joint",), "@b": ("link",)}
 
 
 def test_the_builtin_vocabulary_has_no_mistake() -> None:
     rewriters = builtin()
     assert {section.type for section in rewriters} == set(TYPES)
-    assert builtin_tree().formats.keys() >= {"robot"}
+    assert builtin_tree((), NEWEST_LTS).formats.keys() >= {"robot"}
 
 
 @pytest.mark.parametrize("type_", TYPES)

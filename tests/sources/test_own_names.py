@@ -12,6 +12,7 @@ from paths import FIXTURES
 
 from multibot_rewrite import RewriteRefused, UsageError, explain, rewrite, rewrite_all, strip
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.sources.expand import expand
 from multibot_rewrite.sources.job import read_job
 from multibot_rewrite.sources.own_names import filled
@@ -309,7 +310,9 @@ def test_a_reference_without_the_argument_is_a_warning(tmp_path: Path) -> None:
 
 def test_a_default_that_is_replaced_is_followed_as_well(tmp_path: Path) -> None:
     path = made('<xacro:arg name="p" default="arm_"/>', '<link name="$(arg p)base"/>', tmp_path)
-    job = read_job(path, make_naming(), xacro_args={"p": "{robot}_"}, words=["left"])
+    job = read_job(
+        path, make_naming(), xacro_args={"p": "{robot}_"}, words=["left"], release=NEWEST_LTS
+    )
     assert job.own.plain == {("link", "arm_base"): "left_base"}
 
 

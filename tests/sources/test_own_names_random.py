@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from multibot_rewrite import RewriteRefused, pipeline
 from multibot_rewrite.library import rewrite_job
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.sources.job import Job, job_for
 from multibot_rewrite.steps.strip import own_places
 
@@ -83,7 +84,7 @@ def test_every_name_has_the_robots_name_once(
     naming = make_naming(**policy)
 
     def read(arguments: Mapping[str, str]) -> Job:
-        return Job(tree.source(arguments.get("p", "")), "random", naming, (), None)
+        return Job(tree.source(arguments.get("p", "")), "random", naming, (), None, NEWEST_LTS)
 
     job = job_for(read, {"p": value}, [robot])
     filled = value.replace("{robot}", robot)

@@ -20,6 +20,7 @@ from random_robots import LAYOUTS, Robot, random_robots
 
 from multibot_rewrite import ProofError, RewriteRefused, pipeline, rewrite, rewrite_all
 from multibot_rewrite.naming import Policy, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import declarations
@@ -38,7 +39,7 @@ def template(case: Case) -> Template:
     """The case, ready for any robot."""
     words = {key: it for key, it in case.options.items() if key not in NO_POLICY}
     urdf = case.options.get("urdf")
-    tree = builtin_tree()
+    tree = builtin_tree((), NEWEST_LTS)
     beside = {} if urdf is None else declarations(urdf.read_bytes(), "", tree)
     naming = make_naming(**cast(Policy, words))
     return pipeline.prepare(case.source, case.name, naming, tree, beside)
@@ -92,7 +93,7 @@ def prepared(robot: Robot, words: dict[str, str]) -> Template | None:
     """A random robot, ready; None where its names are refused."""
     try:
         naming = make_naming(**words)  # type: ignore[arg-type]
-        right = pipeline.prepare(robot.text, "robot", naming, builtin_tree())
+        right = pipeline.prepare(robot.text, "robot", naming, builtin_tree((), NEWEST_LTS))
         list(pipeline.render(right, ["robot1"], again=True))
     except RewriteRefused:
         return None

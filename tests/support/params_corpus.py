@@ -22,6 +22,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming, make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.stacks import load_stack
 
 FOLDERS = ("nav2_params", "localization_params", "controllers")
@@ -54,7 +55,7 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
     try:
         document = read_yaml(data, file)
         naming = make_naming(layout=layout, affix=affix)
-        context = make_context(declared(document), naming, facts())
+        context = make_context(declared(document), naming, facts(), distro=NEWEST_LTS)
         companion = rewrite_params(document, context, robots=(ROBOT,))
     except InputError as error:
         return Outcome(reason(str(error), file), "")
@@ -68,7 +69,7 @@ def outcome(data: bytes, file: str, layout: str, affix: str) -> Outcome:
 
 
 def facts() -> list[object]:
-    found = [node for name in STACKS for node in load_stack(name)]
+    found = [node for name in STACKS for node in load_stack(name, NEWEST_LTS)]
     return list(dict.fromkeys(found))
 
 

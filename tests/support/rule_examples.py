@@ -24,6 +24,7 @@ from multibot_rewrite.graph.check import check
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.naming import Policy
+from multibot_rewrite.releases import NEWEST_LTS
 
 # What every companion file of an example stands beside, unless ``beside`` has another robot.urdf.
 DESCRIPTION = """\
@@ -124,7 +125,7 @@ def companion_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 def lua_by_hand_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """The Lua file of a fleet that does not rewrite it."""
     _write(folder, {"robot.urdf": DESCRIPTION, "fleet.yaml": yaml.safe_dump(FLEET)})
-    (group,) = group_robots(plan_fleet(read_fleet(str(folder / "fleet.yaml"))))
+    (group,) = group_robots(plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {})))
     return list(frames_to_edit(example, str(folder / "example.lua"), group.context))
 
 
@@ -151,8 +152,8 @@ def _fleet(
     said = yaml.safe_load(text) or {}
     more = {it: value for it, value in {**FLEET, **rule.options, **keys}.items() if it not in said}
     _write(folder, {"fleet.yaml": text + (yaml.safe_dump(more) if more else "")})
-    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml")))
-    return [*plan.fleet.table.problems, *make_outputs(plan).findings]
+    plan = plan_fleet(read_fleet(str(folder / "fleet.yaml"), "", {}))
+    return list(make_outputs(plan).findings)
 
 
 def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
@@ -163,7 +164,9 @@ def remap_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     robots = options.pop("robots")
     file = str(folder / "nodes.yaml") if nodes else None
     policy = cast(Policy, options)
-    made = make_fleet(str(folder / "robot.urdf"), robots, list(nodes), policy, nodes=file)
+    made = make_fleet(
+        str(folder / "robot.urdf"), robots, list(nodes), policy, nodes=file, release=NEWEST_LTS
+    )
     return grouped(made.table.problems, {it: it for it in robots})
 
 

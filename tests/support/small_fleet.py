@@ -10,6 +10,7 @@ from graph_cases import (
 from multibot_rewrite.graph.expectation import Expectation, expect, spelled
 from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.records import (
     PUBLISHES,
     SERVES,
@@ -48,7 +49,7 @@ LINKS = ("base_link", "laser")
 
 def plan(layout: str = "L2") -> Expectation:
     naming = make_naming(layout)
-    return expect(build_table(ROBOTS, NODES, naming), naming, frames(layout))
+    return expect(build_table(ROBOTS, NODES, naming, release=NEWEST_LTS), naming, frames(layout))
 
 
 def frames(layout: str) -> dict[str, list[str]]:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.model import UsageError
-from multibot_rewrite.releases import NEWEST_LTS, has_release
+from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
@@ -34,9 +34,14 @@ from multibot_rewrite.remap.yaml_with_lines import (
     wrong,
 )
 
-NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "interface")
+NAME_KINDS = (
+    *("frame", "link", "joint", "sensor", "gpio", "component"),
+    *("hardware", "group", "interface"),
+)
 GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
-OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
+# Put before names by the node; an empty one is a default.
+PREFIX_KINDS = ("joint_prefix", "gpio_prefix", "joint_stem")
+OTHER_KINDS = ("stem", "link_prefix", *PREFIX_KINDS, "words", "text", "pattern", "doubles")
 SWITCH_KINDS = ("off", "no_prefix")
 KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, "exclusive", "keep")
 # Placeholders for a segment of a path; an id holds no name of a robot.
@@ -127,7 +132,7 @@ class KnownNodes(NamedTuple):
 
 
 @lru_cache
-def built_in_nodes(release: str = NEWEST_LTS) -> KnownNodes:
+def built_in_nodes(release: str) -> KnownNodes:
     """The nodes that this package knows, with the defaults of a release."""
     text = (
         files("multibot_rewrite.companions.params")
@@ -137,7 +142,7 @@ def built_in_nodes(release: str = NEWEST_LTS) -> KnownNodes:
     return _known({}, {}, frozenset(), text, "params.yaml", release)
 
 
-def load_known_nodes(path: str = "", release: str = NEWEST_LTS) -> KnownNodes:
+def load_known_nodes(path: str, release: str) -> KnownNodes:
     """The built-in nodes, and those that a file of the same shape adds or changes.
 
     Raises UsageError, with file and line, for whatever is wrong in it.
@@ -234,7 +239,7 @@ def _deprecated_types(keys: Mapping[str, YamlItem]) -> dict[str, str]:
 
 def has_default(param: Param) -> bool:
     """Does the parameter have a default, and a path without placeholders?"""
-    return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
+    return bool(param.default or param.kind in PREFIX_KINDS) and "<" not in param.path
 
 
 def _param_in(path: str, item: YamlItem, absolute: str, release: str) -> Param:

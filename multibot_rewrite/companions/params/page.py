@@ -6,12 +6,14 @@ import sys
 from collections.abc import Iterator
 
 from multibot_rewrite.companions.params.known_nodes import (
+    PREFIX_KINDS,
     KnownNode,
     KnownNodes,
     Param,
     built_in_nodes,
     has_default,
 )
+from multibot_rewrite.releases import NEWEST_LTS
 
 START = "<!-- from here on: python -m multibot_rewrite.companions.params.page -->\n"
 HEAD = """
@@ -47,10 +49,10 @@ def _listed(params: list[Param]) -> str:
 
 
 def _inserted(node: KnownNode) -> str:
-    kinds = ("frame", "link", "stem", "off", "joint_prefix")
+    kinds = ("frame", "link", "stem", "off", "interface", *PREFIX_KINDS)
     found = (it for it in node.params.values() if it.kind in kinds and has_default(it))
     return ", ".join(f"`{it.path}`{it.releases and f' (in {it.releases})'}" for it in found)
 
 
 if __name__ == "__main__":
-    sys.stdout.write(page(built_in_nodes()))
+    sys.stdout.write(page(built_in_nodes(NEWEST_LTS)))

@@ -87,7 +87,7 @@ from functools import lru_cache
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
-from multibot_rewrite.releases import NEWEST_LTS, has_release, is_release_words
+from multibot_rewrite.releases import has_release, is_release_words
 from multibot_rewrite.rewriters.vocabulary.grammar import (
     FORMS,
     KINDS,
@@ -130,9 +130,7 @@ class Vocabulary:
     them have, where that is empty.
     """
 
-    def __init__(
-        self, texts: Mapping[str, str], extended: bool = False, release: str = NEWEST_LTS
-    ) -> None:
+    def __init__(self, texts: Mapping[str, str], release: str, extended: bool = False) -> None:
         self.extended = extended
         self.release = release
         self._raw: dict[tuple[str, str], list[Raw]] = {}
@@ -252,9 +250,7 @@ def _released(chunk: str) -> str:
 
 
 @lru_cache(maxsize=8)
-def load_vocabulary(
-    extra: tuple[str, ...] = (), release: str = NEWEST_LTS, *, packages: bool = True
-) -> Vocabulary:
+def load_vocabulary(extra: tuple[str, ...], release: str, *, packages: bool = True) -> Vocabulary:
     """The built-in vocabulary, that of installed ``packages``, and the files named in ``extra``, as far
     as they hold in a ``release``; with an empty one all of it, which no document can be read with.
 
@@ -266,7 +262,7 @@ def load_vocabulary(
     texts = {name: _text(name, f"{HERE}/{name}") for name in builtin}
     try:
         texts |= {name: _text(name, path) for name, path in more.items()}
-        vocabulary = Vocabulary(texts, bool(more), release)
+        vocabulary = Vocabulary(texts, release, bool(more))
         vocabulary.sections_in(more)
     except VocabularyError as error:
         raise VocabularyError(f"{error}{advice(str(error)) if packages else ''}") from None

@@ -28,7 +28,7 @@ Topics under *only a remap moves* get a remap rule unless the file has one.
 
 def page() -> str:
     """The whole page as Markdown."""
-    sections = check_vocabulary(load_vocabulary(release="", packages=False))
+    sections = check_vocabulary(load_vocabulary((), "", packages=False))
     by_file = groupby(sorted(sections, key=lambda r: (r.file, r.line)), lambda r: r.file)
     parts = [HEAD]
     for file, rewriters in by_file:

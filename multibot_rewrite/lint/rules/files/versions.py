@@ -34,7 +34,6 @@ from multibot_rewrite.lint.schema.readers import (
 )
 from multibot_rewrite.lint.schema.versions import KNOWN, Version, read_version, version_of
 from multibot_rewrite.model import Edit
-from multibot_rewrite.releases import NEWEST_LTS
 
 QUATERNIONS = KNOWN[1]
 # What makes another version another file than the one that is read now.
@@ -206,7 +205,7 @@ def version_of_release(subject: Subject) -> Iterator[Problem]:
     root = subject.document.root
     declared, reads = read_version(root.get("version", "")), _reads(subject)
     if root.tag == "robot" and declared in KNOWN and declared > reads:
-        reader = reader_of(_release(subject), URDFDOM)
+        reader = reader_of(subject.settings.distro, URDFDOM)
         message = f"URDF {declared} is not read by {reader}, which rejects the file"
         yield Problem(root, message, "version", f"it reads {reads}", _lowered(subject))
 
@@ -256,7 +255,7 @@ def capsule_in_gazebo(subject: Subject) -> Iterator[Problem]:
 )
 def capsule_in_rviz(subject: Subject) -> Iterator[Problem]:
     """One finding for a link."""
-    reader = reader_of(_release(subject), RVIZ)
+    reader = reader_of(subject.settings.distro, RVIZ)
     for link, shapes in _links_with_capsules(subject, "visual"):
         if reader.reads != CAPSULE:
             message = f"{reader} draws no <capsule> of link {link.get('name')!r}"
@@ -302,11 +301,7 @@ def _links_with_capsules(
 
 def _reads(subject: Subject) -> Version:
     """The highest version that the release's urdfdom reads."""
-    return highest_version(_release(subject))
-
-
-def _release(subject: Subject) -> str:
-    return subject.settings.distro or NEWEST_LTS
+    return highest_version(subject.settings.distro)
 
 
 @memoized
