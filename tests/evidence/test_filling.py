@@ -90,6 +90,8 @@ def test_a_costmap_has_the_layers_of_its_list() -> None:
     assert "/map" not in names(node, "subscribes")
     assert {"obstacles", "obstacles_raw", "voxel_grid"} <= names(node, "publishes")
     assert "keepout/toggle_filter" in names(node, "serves")
+    # Each of these names can be remapped, now that it is known.
+    assert not [it.name for it in node.endpoints if it.fixed and "mask" not in it.name]
 
 
 def test_costmaps_resolve_topics_below_the_robot_from_kilted_on() -> None:
