@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.filling import filled
+from multibot_rewrite.evidence.filling import filled, lookup
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.graph.transforms import Edge
-from multibot_rewrite.remap.conditions import parse_condition
+from multibot_rewrite.remap.conditions import AND, holds, parse_condition
 from multibot_rewrite.remap.records import NodeFacts
 
 FRAME, TREE = "frame", "tree"
@@ -74,15 +74,16 @@ def frame_gaps(
         frames = {frame.parameter: frame.default for frame in runs.frames}
         left = [send for send in node.sends if send.child not in {one.child for one in runs.sends}]
         for send in left:
-            child, switch = frames[send.child], _switch(send.condition, it)
+            child, switch = frames[send.child], _switch(send.condition, runs, it)
             if switch and not runs.sends and child not in there:
                 there.add(child)
                 yield Gap(FRAME, child, it.name, (FRAME, it.known, send.child), switch)
 
 
-def _switch(condition: str, given: GivenNode) -> Place | None:
-    """Where the parameter is that switches it off."""
-    for it in parse_condition(condition):
-        if it.parameter in given.values:
-            return given.values[it.parameter].place
-    return None
+def _switch(condition: str, runs: NodeFacts, given: GivenNode) -> Place | None:
+    """Where the parameter is that alone switches it off."""
+    value_of = lookup(runs, given.values)
+    off = [it for it in condition.split(AND) if not holds(it, value_of)]
+    parts = parse_condition(off[0]) if len(off) == 1 else ()
+    found = (given.values[it.parameter] for it in parts if it.parameter in given.values)
+    return next((it.place for it in found), None)
