@@ -24,7 +24,9 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
     form=NAME          where in the value the names are
     default=TEXT       the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
                        with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
-                       these texts
+                       these texts; in it ``{model}`` is the name that the spawner gives, ``{link}``
+                       the canonical link, ``{sensor}`` the sensor around, ``{topic}`` the text there
+    fill=TEXT          what is written in place of a default below ``{model}/``, if not what is behind
     when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
     empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
                        if it was not there (usual for a namespace: the root); ``model``, the model's
