@@ -83,7 +83,8 @@ def _controllers(sections: Sequence[_Section]) -> Iterator[tuple[str, _Controlle
     """Controller -> its type, below the name of the manager's namespace."""
     for section in sections:
         above, _, last = section.name.rpartition("/")
-        if last != MANAGER:
+        # A renamed one is called controller_manager_robot1, for example.
+        if MANAGER not in last:
             continue
         for name, given in section.values.items():
             if name.endswith(TYPE):

@@ -71,6 +71,7 @@ def _node(node: NodeFacts, release: str) -> NodeFacts:
         when=_condition(node.when, node.releases, node.package, release),
         frames=frames,
         sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
+        claims=tuple(it for it in node.claims if has_release(it.releases, release)),
     )
 
 

@@ -162,3 +162,12 @@ def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
     (amcl,) = (it for it in found.nodes if it.name.endswith("amcl"))
     assert amcl.name == "amcl"
     assert "front" in names(amcl, "subscribes")
+
+
+def test_a_layer_whose_sources_are_in_another_file_may_read_any() -> None:
+    text = COSTMAP.replace("        observation_sources: front back\n", "").replace(
+        'observation_sources: "", ', ""
+    )
+    old = "      # No layer of this costmap.\n"
+    node = run("local_costmap/local_costmap", text.partition(old)[0])
+    assert {it.name for it in node.endpoints if it.when} >= {"<source>"}
