@@ -15,7 +15,7 @@ from multibot_rewrite.steps.apply import fill
 from multibot_rewrite.steps.document import Document
 
 SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
-CONTROLLERS = "MB433"
+CONTROLLERS = "MB435"
 # Stands for the name of a robot in a hint.
 ROBOT = "ROBOT"
 SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP, CONTROLLERS})
@@ -27,7 +27,8 @@ def shared_by_all(
     """The names that every robot of a description would have, each at its element in the source.
 
     ``pieces`` are the text between the robot's names: a name in the running system that does not
-    hold the robot's is the same for all. Raises ProofError for a text that is no XML.
+    hold the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame
+    that was left below the name of the model.
     """
     robot = _unused(document)
     return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
@@ -67,6 +68,10 @@ def shared_with(
         reading = read(text, document.file, vocabulary)
     except InputError as error:
         raise ProofError(str(error)) from None
+    for it in reading.missed:
+        raise ProofError(
+            f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
+        )
     for it in same_for_all(reading, robot, naming):
         element = next(islice(document.root.iter(it.tag), it.number, None), document.root)
         hint = _hint(it, naming)

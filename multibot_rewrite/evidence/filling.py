@@ -135,10 +135,11 @@ def _put(text: str, binding: Ids) -> str:
 
 
 def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
-    if not binding:
-        return endpoint
+    name = _put(endpoint.name, binding)
+    # A name that is made at run time is known now, so a rule reaches it.
     return endpoint._replace(
-        name=_put(endpoint.name, binding),
+        name=name,
+        fixed=endpoint.fixed if name == endpoint.name else "",
         parameter=_put(endpoint.parameter, binding),
         condition=_put(endpoint.condition, binding),
     )

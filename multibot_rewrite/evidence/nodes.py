@@ -174,10 +174,14 @@ def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
 
 def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
     for it in given:
-        if it.manager and not it.known:
+        if it.manager and it.unknown_type:
             message = f"controller {it.name} is of type {it.type}, which is not known"
-            alone = "the plan has its name alone"
-            hint = f"describe it in a file of nodes (docs/stacks.md); {alone}{_guess(it)}"
+            described = "describe it in a file of nodes (docs/stacks.md)"
+            taken = (
+                f"the plan takes it for a {it.known}" if it.known else "the plan has its name alone"
+            )
+            hint = f"{described}; {taken}{_guess(it)}"
+            hint = f"did you mean {it.like}?" if it.like else hint
             yield UNKNOWN_TYPE.finding(
                 message, hint, file=it.place.file, line=it.place.line, column=1
             )

@@ -59,7 +59,7 @@ def not_taken(table: Table) -> Iterator[Finding]:
     """Names of the code or of another robot that a node has because its rule does not reach it.
 
     One finding a node. What a plugin's controllers are known to publish is for the judge of the
-    description, who says it where no stack names them (MB433).
+    description, who says it where no stack names them (MB435).
     """
     of_manager = controller_way(table.release).of_manager
     names: dict[tuple[str, str], list[EndpointName]] = {}

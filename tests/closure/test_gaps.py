@@ -8,7 +8,9 @@ from lxml import etree
 from multibot_rewrite.closure.frames import frame_gaps
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.closure.interfaces import interface_gaps
+from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.closure.topics import End, closed, topic_gaps
+from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.hardware import Exported, exported
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.releases import NEWEST_LTS
@@ -204,3 +206,38 @@ def test_a_filter_of_the_map_would_send_another_one() -> None:
 def test_a_filter_that_sends_has_no_gap() -> None:
     on = OFF._replace(values={**OFF.values, "publish_tf": Given(True, FILE)})
     assert list(frame_gaps([on], load_nodes(NEWEST_LTS), [])) == []
+
+
+MOVEIT = """\
+move_group:
+  ros__parameters:
+    moveit_simple_controller_manager:
+      controller_names: [arm, hand, absent]
+      arm:
+        joints: [wheel, elbo]
+      hand: {type: GripperCommand}
+      unnamed: {joints: [x]}
+"""
+
+
+def test_what_moveit_sends_to_and_nobody_declares() -> None:
+    values = {"joints": Given(["wheel", "elbow"], Place("c.yaml", 9))}
+    given = [controller(name="ns/arm")._replace(values=values), controller(name="hands")]
+    joint, missing = moveit_gaps([read_yaml(MOVEIT.encode(), "moveit.yaml")], given)
+    assert (joint.kind, joint.name, joint.node) == ("joint", "joint elbo of arm", "MoveIt")
+    assert (joint.place, joint.near, joint.near_place) == (
+        Place("moveit.yaml", 6),
+        "elbow",
+        Place("c.yaml", 9),
+    )
+    assert (missing.kind, missing.name) == ("controller", "controller hand")
+    assert (missing.place, missing.near, missing.near_place) == (
+        Place("moveit.yaml", 7),
+        "hands",
+        FILE,
+    )
+
+
+def test_without_declared_controllers_nothing_is_said_of_moveit() -> None:
+    document = read_yaml(MOVEIT.encode(), "moveit.yaml")
+    assert list(moveit_gaps([document], [controller(name="arm", manager="")])) == []

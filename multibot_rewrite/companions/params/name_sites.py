@@ -10,6 +10,7 @@ import yaml
 from multibot_rewrite.companions.params.known_nodes import (
     PREFIX_KINDS,
     Branch,
+    KnownNode,
     KnownNodes,
     Param,
     guess,
@@ -73,6 +74,11 @@ def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> 
     tree = section.node.tree if section.node else known.anywhere
     _walk(document, section.body, [(tree, ())], known, names)
     return names
+
+
+def params_at(node: KnownNode, name: str, key: yaml.ScalarNode) -> list[Param]:
+    """What is known of a parameter by its dotted name, in this release or another."""
+    return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
 
 
 def _walk(
