@@ -23,6 +23,7 @@ class Explanation(NamedTuple):
     """One value: its place, the site that claims or keeps it if any, and in words what follows.
 
     ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
+    ``source`` is where the vocabulary has it from, empty where it does not say.
     """
 
     line: int
@@ -33,6 +34,7 @@ class Explanation(NamedTuple):
     reason: str
     new: str
     inserted: tuple[str, ...] = ()
+    source: str = ""
 
 
 def explain_line(
@@ -42,7 +44,15 @@ def explain_line(
     plan = make_plan(inventory, naming)
     found = [*_claimed(inventory, plan, naming, robot, line), *_others(inventory, tree, line)]
     found += _inserted(inventory, plan, robot, line)
+    found = [it._replace(source=_source(tree, it.site)) if it.site else it for it in found]
     return sorted(found, key=lambda item: (item.column, item.path))
+
+
+def _source(tree: Tree, site: Site) -> str:
+    """The source of the section that has the site."""
+    type_, name, *_ = site.section.split(" ")
+    sections = tree.vocabulary.find(type_, name)
+    return next((it.source for it in sections if it.source and site in it.sites), "")
 
 
 def _claimed(

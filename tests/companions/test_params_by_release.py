@@ -6,6 +6,8 @@ doc/migration.rst), controller_interface/tf_prefix.hpp and nav2_amcl/src/amcl_no
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from made_params import codes, made, section
 
@@ -207,3 +209,10 @@ def test_a_node_that_only_another_release_has_is_told_once() -> None:
     assert [it.message for it in found if it.code == "MF131"] == [
         "node amcl is not in humble, only in rolling"
     ]
+
+
+def test_what_is_told_of_a_release_says_where_that_is_written() -> None:
+    line = "saved_pose_filepath: /tmp/x"
+    (found,) = (it for it in made(section("amcl", line), distro="jazzy")[1] if it.code == "MF131")
+    place = "ros-navigation/navigation2@1.5.1 nav2_amcl/src/amcl_node.cpp"
+    assert re.search(rf"; source: {place}:\d+$", found.hint)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import yaml
 
+from multibot_rewrite.companions.params.known_nodes import KnownNode, Param
 from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened
 from multibot_rewrite.companions.params.values import ParamsJob
@@ -113,7 +114,8 @@ def _deprecated_parameters(job: ParamsJob, section: ParamSection) -> Iterator[Fi
             there = has_release(param.releases, job.context.distro)
             state = "is deprecated" if there else "is gone and has no effect"
             message = f"{name} {state} in {job.context.distro}"
-            yield found_at(job.document, key, DEPRECATED, message, param.note)
+            hint = f"{param.note}{_source(param.source)}"
+            yield found_at(job.document, key, DEPRECATED, message, hint)
 
 
 def _of_another_release(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
@@ -122,21 +124,29 @@ def _of_another_release(job: ParamsJob, section: ParamSection) -> Iterator[Findi
     if node is None or section.wild:
         return
     if not has_release(node.releases, release):
-        yield _elsewhere(job, section.keys[-1], f"node {node.name}", node.releases)
+        yield _elsewhere(job, section.keys[-1], f"node {node.name}", node)
         return
     for name, key in flattened(section.body):
         found = params_at(node, name, key)
         told = any(it.deprecated and has_release(it.deprecated, release) for it in found)
         if found and not told and not any(has_release(it.releases, release) for it in found):
-            yield _elsewhere(job, key, name, found[0].releases)
+            yield _elsewhere(job, key, name, found[0])
 
 
-def _elsewhere(job: ParamsJob, key: yaml.ScalarNode, what: str, words: str) -> Finding:
-    message = f"{what} is not in {job.context.distro}, only in {', '.join(releases_with(words))}"
+def _source(places: Sequence[str]) -> str:
+    """Where it can be read, as the end of a hint."""
+    return f"; source: {places[0]}" if places else ""
+
+
+def _elsewhere(
+    job: ParamsJob, key: yaml.ScalarNode, what: str, known: KnownNode | Param
+) -> Finding:
+    others = ", ".join(releases_with(known.releases))
+    message = f"{what} is not in {job.context.distro}, only in {others}"
     hint = (
         "delete it, or name the release that the file is for: distro: in the fleet file, --distro"
     )
-    return found_at(job.document, key, ELSEWHERE, message, hint)
+    return found_at(job.document, key, ELSEWHERE, message, f"{hint}{_source(known.source)}")
 
 
 def _deprecated_types(job: ParamsJob, body: yaml.Node) -> Iterator[Finding]:
