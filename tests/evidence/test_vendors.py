@@ -38,6 +38,8 @@ UR = "Universal_Robots_ROS2_Driver/ur_robot_driver"
 FRANKA = "franka_ros2/franka_bringup/config/controllers.yaml"
 KORTEX = "ros2_kortex/kortex_description"
 ROBOTIQ = "ros2_robotiq_gripper/robotiq_description"
+HUSARION = "husarion_ugv_ros/husarion_ugv"
+WHEELS = f"{HUSARION}_controller/config"
 XARM = "xarm_ros2/xarm_controller/config"
 ROBOTS = {
     # The description has no effort commands; the controllers' file is for newer ones.
@@ -77,6 +79,13 @@ ROBOTS = {
         {"use_fake_hardware": "false"},
         f"{ROBOTIQ}/config/robotiq_controllers.yaml",
         frozenset({"robotiq_gripper_controller"}),
+    ),
+    # Beside husarion_components_description.
+    "panther": Robot(
+        f"{HUSARION}_description/urdf/panther.urdf.xacro", {}, f"{WHEELS}/WH01_controller.yaml"
+    ),
+    "panther mecanum": Robot(
+        f"{HUSARION}_description/urdf/panther.urdf.xacro", {}, f"{WHEELS}/WH02_controller.yaml"
     ),
 }
 
