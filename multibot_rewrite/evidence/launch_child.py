@@ -29,6 +29,9 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
         raise InputError(f"{order.file}: the launch file does not exist; correct the path")
     if is_system_model(order.file):
         return read_system_model(order.file)
+    if not order.trusted:
+        hint = "a launch file is a program; --trust lets it run (SECURITY.md)"
+        raise InputError(f"{order.file}: a fleet file names it; {hint}")
     if os.environ.get(_INSIDE):
         return LaunchGraph()
     return _asked(order)

@@ -14,12 +14,14 @@ from multibot_rewrite.model import UsageError
 class LaunchOrder(NamedTuple):
     """A launch file or system_model.yaml to read, with launch arguments.
 
-    ``roots`` are folders with the sources of packages that are not installed.
+    ``roots`` are folders with the sources of packages that are not installed; ``trusted`` says that
+    whoever runs this named the file: a launch file is a program.
     """
 
     file: str
     arguments: tuple[tuple[str, str], ...] = ()
     roots: tuple[str, ...] = ()
+    trusted: bool = False
 
 
 class ParameterText(NamedTuple):
@@ -87,8 +89,9 @@ def to_json(record: LaunchOrder | LaunchGraph) -> str:
 
 def order_of(text: str) -> LaunchOrder:
     """The order that ``to_json`` wrote."""
-    file, arguments, roots = json.loads(text)
-    return LaunchOrder(file, tuple((name, value) for name, value in arguments), tuple(roots))
+    file, arguments, roots, trusted = json.loads(text)
+    pairs = tuple((name, value) for name, value in arguments)
+    return LaunchOrder(file, pairs, tuple(roots), trusted)
 
 
 def graph_of(text: str) -> LaunchGraph:

@@ -63,7 +63,7 @@ _DESCRIPTION = OptionGroup(
             " it is read, nothing is started (docs/launch.md)",
         ),
         several(
-            "--roots",
+            "--launch-roots",
             "A,B",
             "folders with packages that a launch file needs, if not installed",
             [],
