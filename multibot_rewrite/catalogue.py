@@ -102,7 +102,11 @@ HOMES: tuple[Home, ...] = (
         "start poses and spawning",
         ("fleets.start_poses", "fleets.spawn", "fleets.controller_files"),
     ),
-    Home("MF8", "what a robot's files say of its nodes", ("evidence.nodes", "fleets.closing")),
+    Home(
+        "MF8",
+        "what a robot's files say of its nodes",
+        ("evidence.nodes", "fleets.closing", "fleets.closing_topics"),
+    ),
     Home(
         "MG1",
         "nodes, topics and services",

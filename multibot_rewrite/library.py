@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite import pipeline
 from multibot_rewrite.arguments import checked
+from multibot_rewrite.checks.arguments import unread_arguments
+from multibot_rewrite.checks.problem import to_findings
 from multibot_rewrite.checks.verdict import not_proved
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.model import Change, UsageError
 from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, SHARED_TOPICS, make_naming
 from multibot_rewrite.releases import release_here
@@ -35,7 +37,7 @@ class Prepared:
     @cached_property
     def template(self) -> Template:
         """The description ready for any number of robots; raises as ``pipeline.prepare``."""
-        data, file, naming, _, urdf, _, own = self.job
+        data, file, naming, _, urdf, _, own, _ = self.job
         tree = self.job.tree
         beside = pipeline.prepare(*urdf, naming, tree).inventory.declared if urdf else NOTHING
         return pipeline.prepare(data, file, naming, tree, beside, own)
@@ -178,10 +180,17 @@ def rewrite_job(job: Job, robots: Sequence[str], again: bool = False) -> Iterato
     """Rewrite what was read, raises as ``rewrite_all``."""
     _check_robots(robots)
     prepared = Prepared(job)
-    findings = tuple(prepared.template.findings)
+    findings = (*_unread(prepared), *prepared.template.findings)
     texts = pipeline.render(prepared.template, robots, again)
     # Nothing here holds a text while the next one is made: it may take the same memory.
     return (Rewrite(robot, next(texts), findings, prepared) for robot in robots)
+
+
+def _unread(prepared: Prepared) -> Iterator[Finding]:
+    """Warnings about arguments that no file of the xacro knows."""
+    document, read = prepared.template.inventory.document, prepared.job.read
+    found = unread_arguments(document.root, read.unread, read.arguments)
+    return to_findings(document, found, WARNING, of_file=True)
 
 
 def rewrite_jobs(jobs: Mapping[str, Job], again: bool = False) -> Iterator[Rewrite]:

@@ -1,18 +1,24 @@
-"""Frames and links of which a xacro's own arguments reach only one: they no longer have one name."""
+"""A xacro's arguments: those that no file knows, those that reach one of a frame and its link."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import XACRO, declare
 from multibot_rewrite.model import Claim
 from multibot_rewrite.naming import FRAME_KINDS
+from multibot_rewrite.nearest import did_you_mean_one_of
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.renames import RenameMap
 
 SEPARATORS = "/_-."
+UNREAD = "MB144"
+# More names are not listed where none is like the one that is given.
+_LISTED = 10
 
 _HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
 _BODY = """\
@@ -70,3 +76,18 @@ def _missed(claim: Claim, frame: str, link: str) -> Problem:
     message = f"frame {frame!r} is the link {link!r}: the xacro's argument reaches only one of them"
     hint = "write the argument at both, or do not give it"
     return about(claim, ARGUMENT_MISSES_REFERENCE.code, message, hint)
+
+
+def unread_arguments(
+    root: _Element, unread: Iterable[str], known: Sequence[str]
+) -> Iterator[Problem]:
+    """Arguments that are given and that no file of a xacro knows; ``known`` are those that it knows."""
+    for name in unread:
+        message = f"argument {name!r} is given, and no file of this xacro declares or reads it"
+        yield Problem(root, message, None, _meant(name, known), (), UNREAD)
+
+
+def _meant(name: str, known: Sequence[str]) -> str:
+    more = ", ..." if len(known) > _LISTED else ""
+    listed = f"its arguments are {', '.join(known[:_LISTED])}{more}" if known else "it has none"
+    return did_you_mean_one_of(name, known) or listed

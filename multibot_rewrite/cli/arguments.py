@@ -38,6 +38,8 @@ def run(options: argparse.Namespace) -> int:
     found = find_arguments(
         path, filled(xacro_args(options)), tree, reach=Reach(trust=options.trust)
     )
+    if options.output:
+        check_target(options.output, found.read)
     if options.form == JSON:
         deliver(options, json_bytes(as_json(found)))
     else:

@@ -9,7 +9,7 @@ from math import inf
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.fleet import note_interfaces
+from multibot_rewrite.cli.fleet import check_unread, note_interfaces
 from multibot_rewrite.cli.output import note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
@@ -71,6 +71,7 @@ def _plan(options: argparse.Namespace) -> Expectation:
         check_target(options.output, input_files(file))
     made = with_start_pose_nodes(plan_fleet(file, trust=options.trust))
     note_interfaces(options, made.facts)
+    check_unread(options, made)
     return expected(made)
 
 

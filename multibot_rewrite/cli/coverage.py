@@ -34,7 +34,7 @@ from multibot_rewrite.reports.survey import (
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.sources.own_names import filled
-from multibot_rewrite.sources.read import read_file, read_source
+from multibot_rewrite.sources.read import read_file, read_whole
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
@@ -73,7 +73,11 @@ def run(options: argparse.Namespace) -> int:
     arguments = filled(xacro_args(options))
 
     def read(path: str) -> tuple[bytes, str]:
-        return read_source(path, arguments if path.endswith(".xacro") else {}, options.trust)
+        own = arguments if path.endswith(".xacro") else {}
+        found = read_whole(path, own, options.trust)
+        if options.output:
+            check_target(options.output, found.read)
+        return found.data, found.file
 
     found = _surveys(watched(paths, len(paths), "reading"), tree, read, unreadable)
     total = add(found)

@@ -18,6 +18,8 @@ from multibot_rewrite.model import UsageError
 from multibot_rewrite.releases import release_here
 from multibot_rewrite.remap.records import NodeFacts
 
+# Options that name files to write.
+WRITTEN = ("output", "save_snapshot", "report", "dot", "mermaid")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 OF_FLEET_FILE = {
@@ -51,7 +53,15 @@ def build(options: argparse.Namespace) -> Fleet:
     """Make the fleet that the options describe."""
     made = (_from_file if options.input.endswith(FLEET_FILES) else _from_words)(options)
     note_interfaces(options, made.facts)
+    check_unread(options, made)
     return made
+
+
+def check_unread(options: argparse.Namespace, made: Fleet) -> None:
+    """Raise UsageError where a result would be written over a file that a description was made from."""
+    for name in WRITTEN:
+        if getattr(options, name, None):
+            check_target(getattr(options, name), made.read, f"--{name.replace('_', '-')}")
 
 
 def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> None:

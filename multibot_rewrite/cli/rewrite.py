@@ -25,7 +25,7 @@ from multibot_rewrite.cli.report import (
     chosen,
     report_beside,
 )
-from multibot_rewrite.cli.rewrite_use import check_use, input_name, target_path
+from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name, target_path
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.config import configured_vocabulary
@@ -33,8 +33,8 @@ from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
-from multibot_rewrite.sources.own_names import name_robot
-from multibot_rewrite.sources.read import Source, read_source
+from multibot_rewrite.sources.own_names import filled, name_robot
+from multibot_rewrite.sources.read import Source, read_whole
 
 # What the summary calls a kind whose own word says little; the others are their own word.
 WORDS = {"stem": "topic word"}
@@ -61,8 +61,12 @@ def run(options: argparse.Namespace) -> int:
 def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     (robot,) = names
     # Read once: it may be a pipe, and --diff shows it again.
-    before, _ = read_source(source, {} if options.xacro else xacro_args(options), options.trust)
-    _deliver(options, [(robot, before, _strip(options, before, robot))], [], 1)
+    given = filled(xacro_args(options), robot)
+    read = read_whole(source, {} if options.xacro else given, options.trust)
+    beside = read_whole(options.xacro, given, options.trust).read if options.xacro else ()
+    stripped = _strip(options, read.data, robot)
+    check_unread(options, [robot], (*read.read, *beside))
+    _deliver(options, [(robot, read.data, stripped)], [], 1)
     note(options, f"{robot} taken out, proved by rewriting again")
     return DONE
 
@@ -83,6 +87,8 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     first = next(rewrites)
     # Robots with descriptions of their own are all made before the first is here.
     others = list(rewrites) if first.prepared.job.naming.own else []
+    jobs = dict.fromkeys(it.prepared for it in (first, *others))
+    check_unread(options, names, (path for it in jobs for path in it.job.read.files))
     about = About([input_name(options)], by_themselves(names), first.distro)
     found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
     if report_beside(options, chosen(options, found), about):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import argparse
 import os
 import re
+from collections.abc import Iterable
 
 from multibot_rewrite.cli.report import check_report
 from multibot_rewrite.cli.usage import xacro_args
+from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.model import UsageError
 
 PLACEHOLDER = "{robot}"
@@ -71,6 +73,15 @@ def _check_targets(options: argparse.Namespace, targets: list[str]) -> None:
                     raise UsageError(f"{path} is the file of --{option}; choose another name")
     if changes and os.path.realpath(changes[0]) in {os.path.realpath(path) for path in targets}:
         raise UsageError(f"{changes[0]}: the result and --changes need a file each")
+
+
+def check_unread(options: argparse.Namespace, names: Iterable[str], read: Iterable[str]) -> None:
+    """Raise UsageError where a result would be written over a file that was ``read`` for it."""
+    files = list(read)
+    for robot in names if options.output else ():
+        check_target(target_path(options.output, robot), files)
+    if options.changes:
+        check_target(options.changes, files, "--changes")
 
 
 def _same_file(path: str, other: str) -> bool:

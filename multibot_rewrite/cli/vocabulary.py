@@ -24,7 +24,7 @@ from multibot_rewrite.rewriters.vocabulary import (
 )
 from multibot_rewrite.rewriters.vocabulary.describe import facts
 from multibot_rewrite.sources.own_names import filled
-from multibot_rewrite.sources.read import read_source
+from multibot_rewrite.sources.read import read_whole
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
 
@@ -144,10 +144,12 @@ def _suggest(options: argparse.Namespace) -> int:
     check_xacro(options, [options.suggest])
     if options.output:
         check_target(options.output, [options.suggest, *options.vocabulary])
-    data, name = read_source(options.suggest, filled(xacro_args(options)), options.trust)
+    read = read_whole(options.suggest, filled(xacro_args(options)), options.trust)
+    if options.output:
+        check_target(options.output, read.read)
     files = (*configured_vocabulary(options.suggest), *options.vocabulary)
     tree = builtin_tree(files, release_here(options.distro))
-    sections = suggest(collect(read_document(data, name), tree))
+    sections = suggest(collect(read_document(read.data, read.file), tree))
     text = vocabulary_text(sections, options.suggest)
     deliver(options, text.encode("utf-8", "backslashreplace"))
     if not sections:

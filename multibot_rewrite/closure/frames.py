@@ -1,16 +1,64 @@
-"""Who sends the transform from the odometry to the robot, when all that could are switched off."""
+"""The frames of a robot: who sends its odometry, and do they make one tree?"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.remap.conditions import parse_condition
 from multibot_rewrite.remap.records import NodeFacts
 
-FRAME = "frame"
+FRAME, TREE = "frame", "tree"
+
+
+class Sender(NamedTuple):
+    """A node and the transforms that it sends; ``place`` is where a file says so."""
+
+    node: str
+    edges: tuple[Edge, ...]
+    place: Place | None
+
+
+def tree_gaps(description: Iterable[Edge], senders: Sequence[Sender]) -> Iterator[Gap]:
+    """Nodes whose transforms are in another tree than those of the first node.
+
+    If no node sends the root of the description, a driver that is not known may: that joins the two.
+    """
+    whole, joints = _Trees(), list(description)
+    sent = [edge for it in senders for edge in it.edges]
+    for edge in (*joints, *sent):
+        whole.join(edge.parent, edge.child)
+    children = {edge.child for edge in (*joints, *sent)}
+    for root in {edge.parent for edge in joints} - children if sent else ():
+        whole.join(sent[0].parent, root)
+    moving = [it for it in senders if it.edges]
+    for it in moving[1:]:
+        first, own = moving[0].edges[0], it.edges[0]
+        if whole.root(own.child) != whole.root(first.child):
+            name = f"{own.parent} -> {own.child}"
+            other = f"{first.parent} -> {first.child}"
+            yield Gap(TREE, name, it.node, (TREE, it.node), it.place, other, moving[0].place)
+
+
+class _Trees:
+    """Frames that are joined: each leads to one frame that stands for its tree."""
+
+    def __init__(self) -> None:
+        self._above: dict[str, str] = {}
+
+    def root(self, frame: str) -> str:
+        while frame in self._above:
+            frame = self._above[frame]
+        return frame
+
+    def join(self, one: str, other: str) -> None:
+        first, second = self.root(one), self.root(other)
+        if first != second:
+            self._above[second] = first
 
 
 def frame_gaps(

@@ -46,9 +46,9 @@ class End(NamedTuple):
 
 def topic_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:
     """What the nodes of a robot need and nothing sends. ``more`` are ends of nodes for all robots."""
-    idle = list(_idle(ends))
+    given = [it for it in ends if it.role in GIVES]
     for it in _needed(ends, more, sent=False):
-        near = _near(it, idle)
+        near = _near(it, given)
         where = near.place if near else None
         yield Gap(it.kind, it.name, it.node, it.key, it.place, near.name if near else "", where)
 
@@ -70,17 +70,9 @@ def _is_from_outside(end: End) -> bool:
     return any(name.rpartition("/")[2] in OUTSIDE for name in (end.name, end.code_name))
 
 
-def _idle(ends: Sequence[End]) -> Iterator[End]:
-    """What is sent and read by no node of the robot: one of these may be meant."""
-    read = {(it.kind, it.name) for it in ends if it.role not in GIVES}
-    yield from (it for it in ends if it.role in GIVES and (it.kind, it.name) not in read)
-
-
-def _near(end: End, idle: Iterable[End]) -> End | None:
-    """What may be meant: of the same type, and the only one or with a like name."""
-    others = (it for it in idle if it.kind == end.kind and it.node != end.node)
+def _near(end: End, given: Iterable[End]) -> End | None:
+    """What may be meant: another one of the same type, with the same last word or the likest name."""
+    others = (it for it in given if it.kind == end.kind and it.node != end.node)
     alike = {it.name: it for it in others if end.type and it.type == end.type}
-    if len(alike) == 1:
-        return next(iter(alike.values()))
     last = [name for name in alike if name.endswith("/" + end.name.rpartition("/")[2])]
-    return alike.get(last[0] if len(last) == 1 else nearest(end.name, alike))
+    return alike.get(nearest(end.name, last or alike, alike=0.0))

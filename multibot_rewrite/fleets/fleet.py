@@ -36,7 +36,7 @@ class Fleet(NamedTuple):
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
-    differs from their namespace, with it."""
+    differs from their namespace, with it. ``read`` are the files that were read for descriptions."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -46,6 +46,7 @@ class Fleet(NamedTuple):
     sources: dict[str, str]
     origins: dict[str, str]
     tags: dict[str, str]
+    read: tuple[str, ...]
 
 
 def make_fleet(
@@ -145,6 +146,8 @@ def assemble(
         own = [node for node, _ in plugins[it.robot]]
         edges |= edges_of(it.robot, it.inventory, facts, own, naming, it.tag)
     table = build_table([it.robot for it in members], facts, naming, plugins, release=release)
+    unread = dict.fromkeys(found for it in members for found in it.unread)
+    table = table._replace(problems=(*table.problems, *unread))
     return Fleet(
         table,
         inventories,
@@ -154,7 +157,12 @@ def assemble(
         _sources(members),
         _origins(table, facts),
         {it.robot: it.tag for it in members if it.tag != it.robot},
+        _read(members),
     )
+
+
+def _read(members: Sequence[Member]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(path for it in members for path in it.read))
 
 
 def _sources(members: Sequence[Member]) -> dict[str, str]:
@@ -190,6 +198,7 @@ def merge(fleets: Sequence[Fleet]) -> Fleet:
             {**first.sources, **other.sources},
             {**first.origins, **other.origins},
             {**first.tags, **other.tags},
+            tuple(dict.fromkeys((*first.read, *other.read))),
         )
     return first
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import islice
 from typing import NamedTuple
 
+from multibot_rewrite.checks.arguments import UNREAD
 from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.library import Rewrite
@@ -19,8 +20,8 @@ from multibot_rewrite.steps.document import Document, read_document
 class Member(NamedTuple):
     """A robot of a fleet: its namespace, the tag in its frames, and what its rewritten description
     holds and starts; ``source`` is the description before, ``vocabulary`` what is known of plugins,
-    ``shared`` are findings about names that
-    any two robots of it would have.
+    ``shared`` are findings about names that any two robots of it would have, ``unread`` about arguments
+    that its xacro does not know; ``read`` are the files that were read for it.
     """
 
     robot: str
@@ -30,6 +31,8 @@ class Member(NamedTuple):
     source: Document
     vocabulary: Vocabulary
     shared: tuple[Finding, ...]
+    unread: tuple[Finding, ...]
+    read: tuple[str, ...]
 
 
 def member(source: Rewrite, data: bytes, tag: str) -> Member:
@@ -42,7 +45,10 @@ def member(source: Rewrite, data: bytes, tag: str) -> Member:
     reading = read(data, document.file, tree.vocabulary)
     _check_names(reading, document)
     shared = tuple(it for it in source.findings if it.code in SHARED_CODES)
-    return Member(source.robot, tag, written, reading, document, tree.vocabulary, shared)
+    unread = tuple(it for it in source.findings if it.code == UNREAD)
+    read_for = source.prepared.job.read.files
+    words = (shared, unread, read_for)
+    return Member(source.robot, tag, written, reading, document, tree.vocabulary, *words)
 
 
 def line_of(document: Document, tag: str, number: int) -> int:

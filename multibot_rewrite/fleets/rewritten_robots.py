@@ -7,6 +7,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from multibot_rewrite import pipeline
+from multibot_rewrite.checks.arguments import UNREAD
 from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.checks.twice import CARRYING
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
@@ -80,6 +81,8 @@ def read_jobs(
             given = it.arguments, it.words
             description = job_for(read(it.description, None), *given)
             srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
+            # An argument may be for the SRDF alone, which is read beside the description.
+            description = description._replace(read=(srdf or description).read)
             found[it.sources] = Jobs(description, srdf)
     _check_arguments(robots, found)
     return found
@@ -130,8 +133,8 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             names._replace(robot=robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
             member(text, data, robot.tag),
-            # What robots share the fleet says, of the robots that it has.
-            tuple(it for it in found if it.code not in SHARED_CODES),
+            # These the fleet says, of the robots that it has.
+            tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
         )
 
 

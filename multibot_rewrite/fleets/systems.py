@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.closure.frames import Sender
 from multibot_rewrite.closure.topics import End
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import PARAMETERS
@@ -19,7 +20,7 @@ from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import RobotEvidence
-from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER, description_edges, sent_by
 from multibot_rewrite.readback.nodes import ReadNode
 from multibot_rewrite.readback.reading import FRAME, read
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC, EndpointName, NodeFacts
@@ -33,8 +34,8 @@ ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,), "BIDIRECTIONAL":
 
 class System(NamedTuple):
     """What runs on a robot: what its files set for nodes, the interfaces of its hardware, the ends of
-    its topics and services, those of nodes for all robots, the frames that anything sends, and its
-    MoveIt files."""
+    its topics and services, those of nodes for all robots, the frames that anything sends, its
+    MoveIt files, and the nodes that send transforms."""
 
     given: tuple[GivenNode, ...]
     exports: tuple[Exported, ...]
@@ -42,6 +43,7 @@ class System(NamedTuple):
     shared: tuple[End, ...]
     sent: frozenset[str]
     moveit: tuple[YamlText, ...]
+    senders: tuple[Sender, ...] = ()
 
 
 def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
@@ -66,6 +68,7 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
         tuple(shared),
         frozenset(sent),
         tuple(_documents(robot, "moveit")),
+        tuple(_sender(it, given, _root(robot)) for it in nodes if it.sends),
     )
 
 
@@ -104,6 +107,19 @@ def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
     plain = {text: name for (_, name), text in robot.names.own.items()}
     owner, slash, rest = export.name.partition("/")
     return export._replace(name=f"{plain.get(owner, owner)}{slash}{rest}")
+
+
+def _sender(node: NodeFacts, given: Iterable[GivenNode], root: str) -> Sender:
+    place = next((it.place for it in given if it.name == node.name), None)
+    return Sender(f"/{node.name}", tuple(sent_by(node, root)), place)
+
+
+def _root(robot: RewrittenRobot) -> str:
+    """The first link that no joint has as its child."""
+    joints = robot.member.source.root.iter("joint")
+    children = {end.get("link") for it in joints for end in it.iterfind("child")}
+    links = (it.get("name", "") for it in robot.member.source.root.iterfind("link"))
+    return next((it for it in links if it not in children), "")
 
 
 def _documents(robot: RewrittenRobot, kind: str) -> list[YamlText]:

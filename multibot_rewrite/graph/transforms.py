@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from lxml.etree import _Element
+
 from multibot_rewrite.naming import Naming, spelled
 from multibot_rewrite.remap.conditions import holds
 from multibot_rewrite.remap.records import NodeFacts
@@ -39,43 +41,32 @@ def edges_of(
     tree = list(description_edges(inventory))
     children = {edge.child for edge in tree}
     root = next((link for link in inventory.declared["link"] if link not in children), "")
-    result = {(robot, node.name): [*_sent(node, "")] for node in plugins}
+    result = {(robot, node.name): [*sent_by(node, "")] for node in plugins}
     for node in facts:
         frames = [
             frame._replace(default=spelled(naming, word or robot, "frame", frame.default))
             for frame in node.frames
         ]
-        own = [*_sent(node._replace(frames=tuple(frames)), root)]
+        own = [*sent_by(node._replace(frames=tuple(frames)), root)]
         result[robot, node.name] = tree if node.package == STATE_PUBLISHER else own
     return result
 
 
 def description_edges(inventory: Inventory) -> Iterator[Edge]:
-    """The transforms that robot_state_publisher sends for the joints of a description.
+    """The transforms that robot_state_publisher sends for the joints of a description."""
+    yield from edges_in(inventory.document.root)
 
-    It knows links alone: a frame of an SDF is the link that it is attached to (sdformat,
-    ``Joint::ResolveParentLink``).
-    """
-    frames = inventory.document.root.iter("frame")
-    attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
-    for joint in inventory.document.root.iter("joint"):
+
+def edges_in(root: _Element) -> Iterator[Edge]:
+    """The same, from the root element of a description."""
+    for joint in root.iter("joint"):
         ends = [joint.find(tag) for tag in ("parent", "child")]
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
-            parent, child = (_attached_to(name, attached) for name in names)
-            yield Edge(parent, child, joint.get("type") == "fixed")
+            yield Edge(names[0], names[1], joint.get("type") == "fixed")
 
 
-def _attached_to(name: str, attached: Mapping[str, str]) -> str:
-    """What a chain of frames ends at; a frame that is attached to nothing known stays itself."""
-    for _ in attached:
-        if not attached.get(name):
-            return name
-        name = attached[name]
-    return name
-
-
-def _sent(node: NodeFacts, root: str) -> Iterator[Edge]:
+def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     """The transforms that a node's parameters name.
 
     With ``root`` that frame is the child, except for odometry frames and those that a file sets.

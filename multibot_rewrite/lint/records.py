@@ -23,7 +23,8 @@ class Subject(NamedTuple):
     ``format`` is ``urdf``, ``srdf`` or ``xacro`` (the source as it is written). ``beside`` is the
     robot of an SRDF's URDF, if it was found. Where the document was expanded, ``origins``
     says where its elements were written, in document order, and ``sources`` has those files;
-    ``arguments`` are the ones it was expanded with. ``faults`` are those of a URDF's structure.
+    ``arguments`` are the ones it was expanded with, ``given`` their names. ``faults`` are
+    those of a URDF's structure.
     ``memo`` is each subject's own, and filled while rules look at it (``facts.memo``).
     """
 
@@ -39,4 +40,5 @@ class Subject(NamedTuple):
     origins: Origins | None = None
     sources: Mapping[str, bytes] = {}
     arguments: str = ""
+    given: tuple[str, ...] = ()
     faults: tuple[Fault, ...] = ()

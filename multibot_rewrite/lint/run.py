@@ -10,7 +10,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import by_place, lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.lint.failures import lost, too_long
-from multibot_rewrite.lint.files.included import included
+from multibot_rewrite.lint.files.included import included, known_elsewhere
 from multibot_rewrite.lint.files.pairing import named_urdfs
 from multibot_rewrite.rewriters.builtin import builtin_tree
 
@@ -38,9 +38,11 @@ def lint_files(
 
 
 def among(paths: Sequence[str], settings: Settings) -> Settings:
-    """The settings for one of several files: what the others include, and the URDFs of SRDFs."""
+    """The settings for one of several files: what the others include, the URDFs of SRDFs, and
+    the arguments that xacro files know."""
     settings = settings._replace(included=included(paths))
-    return settings._replace(urdfs=named_urdfs(paths, settings.included))
+    known = known_elsewhere(paths) if settings.arguments else None
+    return settings._replace(urdfs=named_urdfs(paths, settings.included), elsewhere=known)
 
 
 def _linted(

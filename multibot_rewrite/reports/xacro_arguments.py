@@ -68,11 +68,13 @@ class Argument(NamedTuple):
 
 
 class XacroArguments(NamedTuple):
-    """The arguments of a file, in the order in which they are declared; ``untried`` were too many."""
+    """The arguments of a file, in the order in which they are declared; ``untried`` were too many,
+    ``read`` are the files that were read."""
 
     file: str
     arguments: tuple[Argument, ...]
     untried: tuple[str, ...]
+    read: tuple[str, ...] = ()
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -90,14 +92,14 @@ def find_arguments(
     """The arguments of a xacro file; ``given`` are values for some. Raises InputError where the file
     does not expand with these."""
     end = clock() + SECONDS
-    read = expand_traced(path, read_file(path), given, None, reach).sources
-    declared = {**_declared(read), **given}
+    read = expand_traced(path, read_file(path), given, None, reach)
+    declared = {**_declared(read.sources), **given}
     found = []
     for name, default in list(declared.items())[:MOST]:
         if clock() > end:
             break
         found.append(_argument(path, given, name, default, tree, reach))
-    return XacroArguments(path, tuple(found), tuple(declared)[len(found) :])
+    return XacroArguments(path, tuple(found), tuple(declared)[len(found) :], read.read)
 
 
 def _declared(sources: Mapping[str, bytes]) -> dict[str, str]:

@@ -16,7 +16,7 @@ from multibot_rewrite.sources.conversation import Failure, Result, Sources, conv
 from multibot_rewrite.sources.trace import Origins, Trace, alike
 from multibot_rewrite.steps.document import start_offsets, tag_end
 
-__all__ = ["Expansion", "Find", "Reach", "expand", "expand_traced"]
+__all__ = ["Expanded", "Expansion", "Find", "Reach", "expand", "expand_traced", "expand_whole"]
 # Of a longer message no repetition is looked for.
 LONG = 1000
 # What xacro says -> what to do about it; {} stands for the argument that is missing.
@@ -52,12 +52,21 @@ _HINTS = (
 )
 
 
+class Expanded(NamedTuple):
+    """A text, and the files that were read for it, as they were asked for."""
+
+    data: bytes
+    texts: Mapping[str, bytes]
+
+
 class Expansion(NamedTuple):
-    """A text, the origin of each of its elements, and the files that were read, by their names."""
+    """A text, the origin of each of its elements, the XML files that were read, by their names; and
+    all files that were ``read``, as they were asked for."""
 
     data: bytes
     origins: Origins
     sources: Mapping[str, bytes]
+    read: tuple[str, ...]
 
 
 def expand(
@@ -67,10 +76,17 @@ def expand(
 
     ``find`` is asked for packages before a sourced ROS is; ``reach`` says what the file may use.
     """
+    return expand_whole(path, arguments, find, reach).data
+
+
+def expand_whole(
+    path: str, arguments: Mapping[str, str], find: Find | None = None, reach: Reach = BOUNDED
+) -> Expanded:
+    """The same with the files that were read."""
     _check_file(path)
     sources = Sources(Access(path, reach, find), {})
     result = converse(arguments, sources, traced=False)
-    return _text(path, result, Trace(result, sources, path))
+    return Expanded(_text(path, result, Trace(result, sources, path)), sources.texts)
 
 
 def expand_traced(
@@ -87,7 +103,7 @@ def expand_traced(
     text = _text(path, result, trace)
     if len(result.origins) != 3 * len(start_offsets(text)):
         raise InputError(f"{path}: xacro failed: the places that its process told are wrong")
-    return Expansion(text, Origins(trace), trace.sources)
+    return Expansion(text, Origins(trace), trace.sources, tuple(sources.texts))
 
 
 def _text(path: str, result: Result, trace: Trace) -> bytes:

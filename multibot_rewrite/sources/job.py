@@ -12,6 +12,7 @@ from multibot_rewrite.naming import Naming, OwnNames
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.tree import Tree
+from multibot_rewrite.sources.known_arguments import joined
 from multibot_rewrite.sources.own_names import (
     OF_ALL,
     Arguments,
@@ -28,11 +29,23 @@ from multibot_rewrite.sources.own_names import (
     own_texts,
     templates,
 )
-from multibot_rewrite.sources.read import Source, args_for, read_source
+from multibot_rewrite.sources.read import Source, SourceText, args_for, read_whole
 from multibot_rewrite.steps.apply import cut, fill
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect, declarations
 from multibot_rewrite.steps.document import read_document
 from multibot_rewrite.steps.plan import make_plan
+
+
+class FilesRead(NamedTuple):
+    """The ``files`` that were read for a job, the ``arguments`` that their xacro knows, and those that
+    were given and that no file knows."""
+
+    files: tuple[str, ...] = ()
+    arguments: tuple[str, ...] = ()
+    unread: tuple[str, ...] = ()
+
+
+NO_FILES = FilesRead()
 
 
 class Job(NamedTuple):
@@ -47,6 +60,7 @@ class Job(NamedTuple):
     urdf: tuple[bytes, str] | None
     release: str
     own: OwnSource = OF_ALL
+    read: FilesRead = NO_FILES
 
     @property
     def tree(self) -> Tree:
@@ -137,11 +151,21 @@ def reader(
     @cache
     def read(pairs: frozenset[tuple[str, str]]) -> Job:
         args = dict(pairs)
-        data, name = read_source(source, args_for(source, urdf, args), trust)
-        beside = None if urdf is None else read_source(urdf, args_for(urdf, source, args), trust)
-        return Job(data, file or name, naming, vocabulary, beside, release)
+        own = read_whole(source, args_for(source, urdf, args), trust)
+        beside = None if urdf is None else read_whole(urdf, args_for(urdf, source, args), trust)
+        found = _files_read(args, [own, beside] if beside else [own])
+        pair = (beside.data, beside.file) if beside else None
+        name = file or own.file
+        return Job(own.data, name, naming, vocabulary, pair, release, read=found)
 
     return lambda args: read(frozenset(args.items()))
+
+
+def _files_read(args: Arguments, texts: Sequence[SourceText]) -> FilesRead:
+    """An argument is for a URDF, its SRDF, or both."""
+    each = [it.known for it in texts if it.known is not None]
+    known, files = joined(each), tuple(path for it in texts for path in it.read)
+    return FilesRead(files, known.names, known.lacks(sorted(args)) if each else ())
 
 
 def job_for(read: Reader, given: Arguments, words: Sequence[str]) -> Job:

@@ -4,11 +4,27 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from typing import NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES, read_bytes
 from multibot_rewrite.model import InputError, UsageError
+from multibot_rewrite.sources.known_arguments import KnownArguments, known_arguments
 
 Source = str | bytes | os.PathLike[str]
+NO_ARGUMENTS = KnownArguments()
+
+
+class SourceText(NamedTuple):
+    """A source as it was read.
+
+    ``file`` is its name for messages. Of a xacro file ``read`` are all paths that were read for it and
+    ``known`` are the arguments that these files know; None for what is no xacro.
+    """
+
+    data: bytes
+    file: str
+    read: tuple[str, ...] = ()
+    known: KnownArguments | None = None
 
 
 def args_for(source: Source, other: Source | None, args: Mapping[str, str]) -> Mapping[str, str]:
@@ -24,20 +40,27 @@ def read_source(
     source: Source, xacro_args: Mapping[str, str], trust: bool = False
 ) -> tuple[bytes, str]:
     """The bytes of a source and the name for messages; ``trust`` lets a xacro file do anything."""
+    found = read_whole(source, xacro_args, trust)
+    return found.data, found.file
+
+
+def read_whole(source: Source, xacro_args: Mapping[str, str], trust: bool = False) -> SourceText:
+    """The same with what is known of the files that were read."""
     if isinstance(source, bytes):
-        return source, "<bytes>"
+        return SourceText(source, "<bytes>")
     if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
-        return _encoded(source), "<text>"
+        return SourceText(_encoded(source), "<text>")
     path = os.fspath(source)
     if path.endswith(".xacro"):
         from multibot_rewrite.sources.access import BOUNDED, TRUSTED
-        from multibot_rewrite.sources.expand import expand
+        from multibot_rewrite.sources.expand import expand_whole
 
-        reach = TRUSTED if trust else BOUNDED
-        return expand(path, xacro_args, reach=reach), f"{path} (expanded)"
+        data, texts = expand_whole(path, xacro_args, reach=TRUSTED if trust else BOUNDED)
+        known = known_arguments(texts.values()) if xacro_args else NO_ARGUMENTS
+        return SourceText(data, f"{path} (expanded)", tuple(texts), known)
     if xacro_args:
         raise UsageError(f"{path}: xacro arguments given, but the file is not named ….xacro")
-    return read_file(path), path
+    return SourceText(read_file(path), path, (path,))
 
 
 def _encoded(text: str) -> bytes:

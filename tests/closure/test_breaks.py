@@ -162,6 +162,8 @@ BREAKS = [
         0,
         "",
     ),
+    # The filter's odometry is not that of the controller's parameters: nothing joins the two.
+    ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MF813", 15, ""),
     # Nobody sends odom -> base_link.
     ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 8, ""),
     # Both send it.

@@ -18,7 +18,7 @@ from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.rewritten_robots import read_jobs
 from multibot_rewrite.naming import make_naming
 from multibot_rewrite.sources import job
-from multibot_rewrite.sources.read import read_source
+from multibot_rewrite.sources.read import SourceText, read_whole
 
 XACROS = FIXTURES / "xacros"
 SRDF = """\
@@ -155,11 +155,11 @@ def test_a_further_robot_is_one_more_expansion(
 ) -> None:
     read: list[str] = []
 
-    def counted(source: str, args: Any, trust: bool) -> tuple[bytes, str]:
+    def counted(source: str, args: Any, trust: bool) -> SourceText:
         read.append(str(source))
-        return read_source(source, args, trust)
+        return read_whole(source, args, trust)
 
-    monkeypatch.setattr(job, "read_source", counted)
+    monkeypatch.setattr(job, "read_whole", counted)
     text = FLEET.replace("srdf: arm.srdf\n", "") + "arguments: {tf_prefix: '{robot}_'}\nrobots:\n"
     robots = [f"  - {{name: r{at}, pose: {{y: {at}}}}}\n" for at in range(5)]
     file = read_fleet(str(fleet(tmp_path, text + "".join(robots))), "", {})

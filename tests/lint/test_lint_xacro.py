@@ -14,6 +14,7 @@ from multibot_rewrite.lint.config.settings import ArgumentSet, Settings
 from multibot_rewrite.lint.run import lint_files
 
 SPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+TAKES_SIM = '<xacro:arg name="sim" default=""/>'
 LOST = '<joint name="j" type="fixed"><parent link="gone"/><child link="a"/></joint>'
 MACRO = '<xacro:macro name="arm" params="side">\n  <link name="${side}_arm"/>\n</xacro:macro>'
 MANIFEST = "<package><name>%s</name></package>"
@@ -164,7 +165,7 @@ def test_each_set_of_arguments_is_linted_beside_the_default_one(tmp_path: Path) 
 
 def test_what_all_of_them_have_is_told_once_and_without_arguments(tmp_path: Path) -> None:
     given = sets(("*", {"sim": "gz"}))
-    found = one(tmp_path, {"r.xacro": xacro(f'<link name="a"/>{LOST}')}, arguments=given)
+    found = one(tmp_path, {"r.xacro": xacro(f'{TAKES_SIM}<link name="a"/>{LOST}')}, arguments=given)
     assert found.arguments == ""
 
 

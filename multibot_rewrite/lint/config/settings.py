@@ -10,6 +10,7 @@ from typing import NamedTuple
 from multibot_rewrite.findings.selection import NO_LEVELS, matched
 from multibot_rewrite.naming import Naming, make_naming
 from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.sources.known_arguments import KnownArguments
 
 ALL = ("MB",)
 TARGETS = ("usd", "mjcf")
@@ -40,8 +41,9 @@ class Settings(NamedTuple):
     linted together with them. ``included`` are xacro files that are linted through those which
     include them. ``seconds`` is the time limit for one file. ``trust`` lets xacro
     files do anything; ``readable`` are those of the roots that they may read in and ``$(find NAME)``
-    looks in: a configuration gives them no folder outside of its own. ``distro`` is the ROS 2 release
-    whose facts count.
+    looks in: a configuration gives them no folder outside of its own. ``elsewhere`` are the xacro
+    arguments that any of several files knows that are linted together, None for one file alone.
+    ``distro`` is the ROS 2 release whose facts count.
     """
 
     select: tuple[str, ...] = ALL
@@ -60,6 +62,7 @@ class Settings(NamedTuple):
     seconds: float = TIME_LIMIT
     trust: bool = False
     readable: tuple[str, ...] = ()
+    elsewhere: KnownArguments | None = None
     distro: str = NEWEST_LTS
 
 

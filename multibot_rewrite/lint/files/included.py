@@ -1,4 +1,4 @@
-"""Which files xacro files include: their content is linted where it is used."""
+"""Which files xacro files include: their content is linted where it is used; what they know."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import InputError
+from multibot_rewrite.sources.known_arguments import KnownArguments, known_arguments
 from multibot_rewrite.sources.read import read_file
 
 # No tag goes on behind a "<": every letter is looked at once.
@@ -27,6 +28,12 @@ def included(paths: Sequence[str]) -> frozenset[str]:
     )
 
 
+def known_elsewhere(paths: Sequence[str]) -> KnownArguments | None:
+    """The arguments that any of several xacro files knows; None where there are not several."""
+    files = list(filter(_is_read, paths))
+    return known_arguments(map(_text, files)) if len(files) > 1 else None
+
+
 def _is_read(path: str) -> bool:
     # A pipe would never end.
     return path.endswith(".xacro") and os.path.isfile(path)
@@ -44,8 +51,11 @@ def _asked_for(path: str) -> Iterator[str]:
 
 
 def _names(path: str) -> Iterable[str]:
+    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(_text(path)))
+
+
+def _text(path: str) -> bytes:
     try:
-        data = read_file(path)
+        return read_file(path)
     except InputError:  # reported when it is linted
-        return ()
-    return (name.decode("utf-8", "replace") for name in _INCLUDE.findall(data))
+        return b""

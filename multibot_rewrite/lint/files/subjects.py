@@ -78,7 +78,10 @@ def _expanded(path: str, data: bytes, given: ArgumentSet, settings: Settings) ->
     with redirect_stderr(StringIO()):
         found = expand_traced(path, data, dict(given.arguments), find, reach_of(settings))
     subject = _shaped(_subject(read_document(found.data, path + EXPANDED), settings))
-    return subject._replace(origins=found.origins, sources=found.sources, arguments=str(given))
+    names = tuple(name for name, _ in given.arguments)
+    return subject._replace(
+        origins=found.origins, sources=found.sources, arguments=str(given), given=names
+    )
 
 
 def _shaped(subject: Subject) -> Subject:

@@ -1,5 +1,13 @@
 """MB1: what a file is, how it is encoded, and the shape of its XML."""
 
-from multibot_rewrite.lint.rules.files import materials, reading, shape, text, values, versions
+from multibot_rewrite.lint.rules.files import (
+    given_arguments,
+    materials,
+    reading,
+    shape,
+    text,
+    values,
+    versions,
+)
 
-THEMES = (reading, shape, values, versions, materials, text)
+THEMES = (reading, shape, values, versions, materials, text, given_arguments)

@@ -1,0 +1,34 @@
+"""Trees of transforms: two that nodes of a robot send are apart; a driver may join the description."""
+
+from __future__ import annotations
+
+import pytest
+
+from multibot_rewrite.closure.frames import Sender, tree_gaps
+from multibot_rewrite.graph.transforms import Edge
+
+
+def edge(text: str) -> Edge:
+    parent, child = text.split(">")
+    return Edge(parent, child, False)
+
+
+@pytest.mark.parametrize(
+    ("description", "senders", "apart"),
+    [
+        ("base>lidar", {"slam": "map>odom", "ekf": "odom>base"}, []),
+        ("base>lidar", {"slam": "map>odom", "ekf": "odom2>base"}, ["ekf"]),
+        ("base>lidar", {"slam": "map>odom"}, []),
+        ("base>lidar base>mast mast>head", {"slam": "map>odom", "head": "head>eye"}, []),
+        ("base>mast", {"slam": "map>odom", "ekf": "odom2>base", "eye": "mast>eye"}, ["ekf", "eye"]),
+        ("odom>base", {"slam": "map>odom", "arm": "base>hand"}, []),
+        ("", {"a": "x>y", "b": "y>z", "c": "p>q"}, ["c"]),
+        ("", {"a": "x>y", "b": "p>q", "c": "q>y"}, []),
+    ],
+)
+def test_nodes_whose_transforms_are_apart(
+    description: str, senders: dict[str, str], apart: list[str]
+) -> None:
+    made = [Sender(node, (edge(text),), None) for node, text in senders.items()]
+    gaps = tree_gaps([edge(it) for it in description.split()], made)
+    assert [it.node for it in gaps] == apart
