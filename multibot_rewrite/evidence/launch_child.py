@@ -53,7 +53,7 @@ def _asked(order: LaunchOrder) -> LaunchGraph:
         )
     except subprocess.TimeoutExpired:
         raise InputError(f"{order.file}: reading it took more than {SECONDS} s; stopped") from None
-    if done.returncode == 0:
+    if done.returncode == 0 and done.stdout:
         return graph_of(done.stdout)
     lines = [it.strip() for it in done.stderr.splitlines() if it.strip()]
     last = lines[-1] if lines else f"exit code {done.returncode}"

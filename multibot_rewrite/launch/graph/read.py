@@ -31,7 +31,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     _without_programs()
     try:
         description = _included(order)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise UnreadableError(failure(error)) from error
     context = of_launch().LaunchContext(noninteractive=True)
     seen = Visit(context, [], [], Place(os.path.abspath(order.file), 1))

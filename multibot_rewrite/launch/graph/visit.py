@@ -51,7 +51,7 @@ def visit(entity: Any, seen: Visit) -> None:
     try:
         for below in _handler(entity)(entity, here) or ():
             visit(below, here)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         # A launch file is a program: it may raise anything.
         here.note(failure(error))
     finally:
