@@ -24,7 +24,8 @@ def shared_by_all(
     """The names that every robot of a description would have, each at its element in the source.
 
     ``pieces`` are the text between the robot's names: a name in the running system that does not
-    hold the robot's is the same for all. Raises ProofError for a text that is no XML.
+    hold the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame
+    that was left below the name of the model.
     """
     robot = _unused(document)
     return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
@@ -64,6 +65,10 @@ def shared_with(
         reading = read(text, document.file, vocabulary)
     except InputError as error:
         raise ProofError(str(error)) from None
+    for it in reading.missed:
+        raise ProofError(
+            f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
+        )
     for it in same_for_all(reading, robot, naming):
         element = next(islice(document.root.iter(it.tag), it.number, None), document.root)
         yield Problem(element, _message(it), None, _hint(it), (), code_of(it))

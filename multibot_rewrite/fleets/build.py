@@ -161,5 +161,5 @@ def _remappings(table: Table) -> str:
                 f"      remappings: [{rules}]\n"
             )
     rows = [f"  {scalar(robot)}:\n{''.join(nodes)}" for robot, nodes in robots.items()]
-    head = f"layout: {scalar(table.layout)}\nrelease: {table.release}\n"
+    head = f"layout: {scalar(table.layout)}\ndistro: {table.release}\n"
     return "".join([head, "robots:" if rows else "robots: {}", "\n", *rows])

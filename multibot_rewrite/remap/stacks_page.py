@@ -12,7 +12,7 @@ HEAD = """\
 # Nodes and stacks
 
 The topics, services and actions of known nodes, and the stacks of nodes that are started together.
-Generated from `multibot_rewrite/remap/nodes.yaml` and `stacks.yaml` by
+Generated from `nodes.yaml`, `controllers.yaml` and `stacks.yaml` of `multibot_rewrite/remap/` by
 `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
 
 Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;

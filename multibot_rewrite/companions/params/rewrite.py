@@ -25,6 +25,7 @@ from multibot_rewrite.companions.params.section_checks import key_findings, sect
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
+    controller_types,
     identify_node,
     identify_sections,
     key_splices,
@@ -156,11 +157,13 @@ def nodes_without_section(
     known = known or built_in_nodes(context.distro)
     if not documents:
         return ()
-    sections = [identify_sections(raw_sections(it), context, known) for it in documents]
+    raw = [raw_sections(it) for it in documents]
+    types = controller_types(section for found in raw for section in found)
+    sections = [identify_sections(it, context, known) for it in raw]
     full = [it.full for found in sections for it in found if it.path != "**"]
     nodes = {
         name: node
         for name in context.nodes
-        if (node := identify_node(name.rpartition("/")[2], None, known, {}))
+        if (node := identify_node(name.rpartition("/")[2], None, known, types))
     }
     return _once(without_section(documents[0], full, context, nodes))
