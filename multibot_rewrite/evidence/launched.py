@@ -52,6 +52,7 @@ NOT_KNOWN = declare(
     fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
     bad=f"launch: system_model.yaml\n{_ROBOTS}",
     good=f"{_ROBOTS}launch: known.yaml\n",
+    line=3,
     formats=("fleet",),
     beside={
         "system_model.yaml": "structure:\n  nodes:\n    /d: {pkg: my_driver, exec: d, node_name: d}\n",
@@ -68,6 +69,7 @@ NOT_WHOLE = declare(
     "stack for what only a run decides.",
     bad=f"launch: system_model.yaml\n{_ROBOTS}",
     good=f"launch: known.yaml\n{_ROBOTS}",
+    line=3,
     formats=("fleet",),
     beside={
         "system_model.yaml": "structure:\n  nodes:\n    /d: {exec: ./start.sh}\n",
