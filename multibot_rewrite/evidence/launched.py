@@ -224,7 +224,7 @@ def _hosted(
     """The nodes that run inside of launched ones, such as costmaps."""
     origins = {it.facts.known: it.facts.origin for it in pairs}
     for node in known.values():
-        if node.host in origins and node.host != MANAGER and node.name not in there:
+        if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
             yield node._replace(origin=origins[node.host])
 
 
