@@ -27,13 +27,14 @@ WITH_TOPICS = (
 class RuntimeName(NamedTuple):
     """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
     in the whole world), its text, and where it comes from: the ``number``-th element with this
-    ``tag``, and ``path``, the parameter."""
+    ``tag``, and ``path``, the parameter; ``of_controllers`` as in ``ReadEndpoint``."""
 
     kind: str
     name: str
     tag: str
     number: int
     path: str
+    of_controllers: bool = False
 
 
 class Reading(NamedTuple):
@@ -71,7 +72,8 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
             hosts.append(_Host(plugin, number, section))
     links = [*_links(root)]
     known_links = frozenset(it.name for it in links)
-    nodes = tuple(node for it in hosts if (node := node_of(*it, known_links)) is not None)
+    made = (node_of(*it, known_links, vocabulary.release) for it in hosts)
+    nodes = tuple(node for node in made if node is not None)
     with_node = {it.number for it in nodes}
     names = [*links, *_of_nodes(nodes), *_of_plugins(root, hosts, with_node, vocabulary)]
     names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
@@ -117,7 +119,8 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
             yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
         for it in node.endpoints:
             if not it.off:
-                yield RuntimeName(it.kind, it.full, "plugin", node.number, it.parameter or it.name)
+                path, of = it.parameter or it.name, it.of_controllers
+                yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of)
         for path, full in node.stems:
             yield RuntimeName(TOPIC, full, "plugin", node.number, path)
 

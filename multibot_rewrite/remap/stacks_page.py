@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.readback.controllers import CONTROLLER_WAYS, ControllerWay
 from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
-from multibot_rewrite.remap.ways import CONTROLLER_WAYS, ControllerWay
 
 HEAD = """\
 # Nodes and stacks
