@@ -131,7 +131,9 @@ def with_launched(
     left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
-    gone |= {it.known for it in nodes.values()} - {it.name for it in stack if _is_named(it)}
+    gone |= {it.known for it in nodes.values() if it.known} - {
+        it.name for it in stack if _is_named(it)
+    }
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
