@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.closure.bridges import bridge_gaps
 from multibot_rewrite.closure.gap import Gap
@@ -116,12 +116,23 @@ def topic_findings(robot: RewrittenRobot, before: System, after: System) -> Iter
         for it in topic_gaps(before.ends, before.shared)
         if it.key in now
     ]
-    for it in (it for it in gaps if it.near):
-        message = f"{it.node} of {robot.spec.name} reads {it.name}, which nothing sends"
+    for alike in _by_place_and_name(it for it in gaps if it.near):
+        it = alike[0]
+        nodes = ", ".join(dict.fromkeys(it.node for it in alike))
+        verb = "reads" if nodes == it.node else "read"
+        message = f"{nodes} of {robot.spec.name} {verb} {it.name}, which nothing sends"
         yield at_gap(NOT_SENT, robot, it, message, meant(it), WARNING)
     rest = [it for it in gaps if not it.near]
     if rest:
         yield _all_open(robot, rest)
+
+
+def _by_place_and_name(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
+    """Nodes that read the same topic where no file says so make one finding."""
+    found: dict[object, list[Gap]] = {}
+    for it in gaps:
+        found.setdefault((it.place, it.name), []).append(it)
+    return found.values()
 
 
 def bridge_findings(
