@@ -72,7 +72,7 @@ def _defaults(
     hidden: str,
 ) -> Iterator[Insertion]:
     for site in section.sites:
-        default = _default(host, site.default, naming)
+        default = _default(host, site.default, naming) if site.default else ""
         if not default:
             continue
         path = site.path.removeprefix(hidden)
