@@ -1,4 +1,4 @@
-"""C++ -> what its classes call. The only import of tree-sitter.
+"""C++ -> what its classes call.
 
 What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
 """
@@ -7,9 +7,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from multibot_rewrite.interfaces.expressions import (
+    MAKERS,
+    MESSAGE,
+    NAMES_PARAMETER,
+    arguments_of,
+    braced,
+    callee,
+    evaluated,
+    is_node,
+    last,
+    template_arguments,
+    text_of,
+)
 from multibot_rewrite.interfaces.records import (
     Alias,
     Call,
@@ -20,54 +32,21 @@ from multibot_rewrite.interfaces.records import (
     Source,
     Value,
 )
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.interfaces.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from tree_sitter import Node, Parser, QueryCursor
+    from multibot_rewrite.interfaces.syntax import Node
 
-MAKERS = ("make_shared", "make_unique", "allocate_shared")
-# Their first argument is the text that they give back.
-SAME_TEXT = (
-    *("string", "c_str", "str", "to_string", "move", "getString", "topicResolve", "ParameterValue"),
-    *("static_pointer_cast", "dynamic_pointer_cast"),
-)
-LAST_TEXT = ("joinWithParentNamespace", "resolve_topic_name", "append")
-NAMES_PARAMETER = re.compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
-EXPORTS = ("PLUGINLIB_EXPORT_CLASS", "CLASS_LOADER_REGISTER_CLASS")
 LONGEST_CONDITION = 60
-LONGEST_NAME = 80
 _EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
 _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
-_MESSAGE = re.compile(r"::(msg|srv|action)::")
-_SCOPE = re.compile(r"(?:\w+(?:<[^<>]*>)?::)+(?=\w)")
-
-
-@cache
-def _tools() -> tuple[Parser, QueryCursor]:
-    """The parser, and the query for all kinds of syntax that have a handler."""
-    try:
-        import tree_sitter
-        import tree_sitter_cpp
-    except ImportError:
-        raise UsageError(
-            "reading C++ needs tree-sitter; pip install 'multibot_rewrite[interfaces]'"
-        ) from None
-    language = tree_sitter.Language(tree_sitter_cpp.language())
-    query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in HANDLERS))
-    return tree_sitter.Parser(language), tree_sitter.QueryCursor(query)
-
-
-def _interesting(text: str) -> list[Node]:
-    parser, query = _tools()
-    tree = parser.parse(text.encode())
-    return sorted(query.captures(tree.root_node).get("found", ()), key=lambda it: it.start_byte)
 
 
 def read_cpp(text: str, place: Place) -> Source:
     """What a C++ file declares and calls."""
     clean = _MACRO.sub(lambda found: " " * len(found[0]), text)
     found: dict[type, list[Any]] = {kind: [] for kind in _COLUMNS}
-    for node in _interesting(clean):
+    for node in nodes_of(clean, tuple(HANDLERS)):
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
@@ -75,28 +54,6 @@ def read_cpp(text: str, place: Place) -> Source:
 
 
 _COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
-
-
-def text_of(node: Node | None) -> str:
-    """The source text, on one line."""
-    return " ".join((node.text or b"").decode("utf-8", "replace").split()) if node else ""
-
-
-def last(name: str) -> str:
-    """``a::B<c::D>`` -> ``B``."""
-    return name.partition("<")[0].rpartition("::")[2].strip(" &*")
-
-
-def template_arguments(type_: str) -> tuple[str, ...]:
-    """``a::B<c::D, E<F, G>>`` -> ``c::D``, ``E<F, G>``."""
-    inside = type_.partition("<")[2].rpartition(">")[0]
-    found, depth, start = [], 0, 0
-    for at, sign in enumerate(inside):
-        depth += (sign in "<(") - (sign in ">)")
-        if sign == "," and not depth:
-            found.append(inside[start:at].strip())
-            start = at + 1
-    return tuple(part for part in (*found, inside[start:].strip()) if part)
 
 
 def _up(node: Node, *types: str) -> Node | None:
@@ -171,84 +128,53 @@ def _at(node: Node, place: Place) -> Place:
     return place._replace(line=node.start_point[0] + 1)
 
 
-def _arguments(node: Node | None) -> tuple[str, ...]:
-    if node is None:
-        return ()
-    return tuple(evaluated(it) for it in node.named_children if it.type != "comment")
-
-
 def _call(node: Node, place: Place) -> Iterator[Call | Value]:
     function = node.child_by_field_name("function")
     arguments = node.child_by_field_name("arguments")
     if function is None:
         return
-    name, types, on = _callee(function)
-    given = _arguments(arguments)
+    name, types, on = callee(function)
+    given = arguments_of(arguments)
     if name in MAKERS and types:
         yield _made(node, types[0], given, place)
         return
     owner, inside = _around(node)
-    yield Call(owner, inside, name, types, given, on, _condition(node), _at(node, place))
+    call = Call(owner, inside, name, types, given, on, _condition(node), _at(node, place))
+    yield call
     if NAMES_PARAMETER.fullmatch(name):
-        yield from _parameter(owner, inside, name, given)
-
-
-def _callee(function: Node) -> tuple[str, tuple[str, ...], str]:
-    """Its last name, its template arguments, and the object that is asked."""
-    full, on = text_of(function), ""
-    if function.type == "field_expression":
-        on = evaluated(function.child_by_field_name("argument"))
-        full = text_of(function.child_by_field_name("field"))
-    full = full.removeprefix("template ")
-    if _MESSAGE.search(full.partition("<")[0]):
-        return "", (), ""
-    return last(full), template_arguments(full), "" if on == "<this>" else on
+        yield from _parameter(call)
 
 
 def _made(node: Node, type_: str, given: tuple[str, ...], place: Place) -> Call:
     owner, inside = _around(node)
-    name = "" if _MESSAGE.search(type_.partition("<")[0]) else last(type_)
+    name = "" if MESSAGE.search(type_.partition("<")[0]) else last(type_)
     own = (name, template_arguments(type_), given, "", _condition(node), _at(node, place))
     return Call(owner, inside, *own)
 
 
-def _parameter(owner: str, inside: str, name: str, given: tuple[str, ...]) -> Iterator[Value]:
+def _parameter(call: Call) -> Iterator[Value]:
     """``get_parameter("p", variable)``, ``declare_parameter(node, "p", default)``."""
-    texts = [it for it in given if not is_node(it)]
-    parameter = _braced(texts[0]) if texts else ""
+    texts = [it for it in call.given if not is_node(it)]
+    parameter = braced(texts[0]) if texts else ""
     for other in texts[1:]:
-        if other.startswith("<") and name.startswith("get") and "(" not in other:
-            yield Value(owner, inside, other.strip("<>"), f"<@{parameter}>")
+        if other.startswith("<") and call.name.startswith("get") and "(" not in other:
+            yield Value(call.owner, call.function, other.strip("<>"), f"<@{parameter}>", call.place)
         elif not other.startswith("<"):
-            yield Value("", inside, f"@{parameter}", other)
-
-
-def _braced(text: str) -> str:
-    return text.replace("<", "{").replace(">", "}")
-
-
-_NODE = re.compile(
-    r"<(this|\w*[nN]ode\w*|nh_?|n_?|parent\w*|shared_from_this|\w*interface\w*|Node:.*)>"
-)
-
-
-def is_node(text: str) -> bool:
-    """Is this argument a node, or a part of one?"""
-    return _NODE.fullmatch(text) is not None
+            yield Value("", call.function, f"@{parameter}", other, call.place)
 
 
 def _made_new(node: Node, place: Place) -> Iterator[Call]:
     type_ = text_of(node.child_by_field_name("type"))
-    yield _made(node, type_, _arguments(node.child_by_field_name("arguments")), place)
+    yield _made(node, type_, arguments_of(node.child_by_field_name("arguments")), place)
 
 
 def _initialised(node: Node, place: Place) -> Iterator[Call | Value]:
     """``: member_(value)`` or ``: Base<T>(value)`` of a constructor."""
     name = text_of(node.named_children[0]) if node.named_children else ""
-    given = _arguments(node.named_children[-1])
+    given = arguments_of(node.named_children[-1])
     owner, inside = _around(node)
     if given:
-        yield Value(owner, inside, last(name), given[0])
+        yield Value(owner, inside, last(name), given[0], place)
     yield Call(owner, "", last(name), template_arguments(name), given, "", "", _at(node, place))
 
 
@@ -260,17 +186,17 @@ def _declared(node: Node, place: Place) -> Iterator[Call | Value]:
     owner, inside = _around(node)
     if value.type == "argument_list":
         type_ = text_of(node.parent.child_by_field_name("type"))
-        given = _arguments(value)
+        given = arguments_of(value)
         yield _made(node, type_, given, place)
         text = given[0] if given else ""
     else:
         text = evaluated(value)
-    yield Value(owner, inside, last(text_of(declarator).partition("[")[0]), text)
+    yield Value(owner, inside, last(text_of(declarator).partition("[")[0]), text, place)
 
 
 def _assigned(node: Node, place: Place) -> Iterator[Value]:
     left, right = (node.child_by_field_name(it) for it in ("left", "right"))
-    yield Value(*_around(node), evaluated(left).strip("<>"), evaluated(right))
+    yield Value(*_around(node), evaluated(left).strip("<>"), evaluated(right), place)
 
 
 def _default(node: Node, place: Place) -> Iterator[Value]:
@@ -279,7 +205,7 @@ def _default(node: Node, place: Place) -> Iterator[Value]:
     if value is None:
         return
     owner, inside = _around(node)
-    yield Value(owner, inside, last(text_of(name)), evaluated(value))
+    yield Value(owner, inside, last(text_of(name)), evaluated(value), place)
 
 
 def _alias(node: Node, place: Place) -> Iterator[Alias]:
@@ -316,68 +242,4 @@ HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
     "alias_declaration": _alias,
     "type_definition": _alias,
     "function_declarator": _taking,
-}
-
-
-def evaluated(node: Node | None) -> str:
-    """An expression as a text; what is not known is in <>."""
-    if node is None:
-        return "<?>"
-    if node.type in TEXTS:
-        return TEXTS[node.type](node)
-    text = text_of(node)
-    return f"<{_SCOPE.sub('', text)}>" if len(text) <= LONGEST_NAME else "<?>"
-
-
-def _field(field: str) -> Callable[[Any], str]:
-    return lambda node: evaluated(node.child_by_field_name(field))
-
-
-def _all(node: Node) -> str:
-    return "".join(evaluated(it) for it in node.named_children)
-
-
-def _sum(node: Node) -> str:
-    return _all(node) if any(it.type == "+" for it in node.children) else "<?>"
-
-
-def _last_field(node: Node) -> str:
-    return f"<{text_of(node.child_by_field_name('field'))}>"
-
-
-def _called(node: Node) -> str:
-    function, arguments = (node.child_by_field_name(it) for it in ("function", "arguments"))
-    if function is None:
-        return "<?>"
-    name, types, on = _callee(function)
-    given = _arguments(arguments)
-    made = last(types[0]) if types else last(text_of(function).rpartition("::")[0])
-    if name in MAKERS and made.endswith("Node"):
-        return f"<Node:{_braced(given[0]) if given else ''}>"
-    if NAMES_PARAMETER.fullmatch(name):
-        texts = [it for it in given if not is_node(it)]
-        return f"<@{_braced(texts[0])}>" if texts else "<?>"
-    return _passed_on(name, given, on) or f"<{name}>"
-
-
-def _passed_on(name: str, given: tuple[str, ...], on: str) -> str:
-    """The text that a function gives back; empty where it is another one."""
-    if name.startswith(("as_", "get_value", "value")) and "@" in on:
-        return on
-    if name in LAST_TEXT and given:
-        return given[-1]
-    return (given[0] if given else on) if name in SAME_TEXT else ""
-
-
-TEXTS: dict[str, Callable[[Any], str]] = {
-    "string_literal": lambda node: text_of(node)[1:-1],
-    "concatenated_string": _all,
-    "initializer_list": _all,
-    "compound_literal_expression": _field("value"),
-    "binary_expression": _sum,
-    "parenthesized_expression": _all,
-    "pointer_expression": _field("argument"),
-    "conditional_expression": lambda node: "<either>",
-    "field_expression": _last_field,
-    "call_expression": _called,
 }

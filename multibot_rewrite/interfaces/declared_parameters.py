@@ -13,7 +13,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.interfaces.cpp import is_node
+from multibot_rewrite.interfaces.expressions import is_node
 from multibot_rewrite.interfaces.parameter_facts import (
     DECLARED,
     NO_DEFAULT,

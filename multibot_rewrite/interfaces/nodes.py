@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.interfaces.apis import ARGUMENT, HELPER, OWN, Api, apis
-from multibot_rewrite.interfaces.cpp import is_node, last, template_arguments
+from multibot_rewrite.interfaces.expressions import is_node, last, template_arguments
 from multibot_rewrite.interfaces.records import Call, Class, Fact
 from multibot_rewrite.interfaces.scope import (
     Index,
@@ -74,7 +74,7 @@ def _key(found: Class) -> tuple[str, str]:
 
 def _scope(index: Index, visit: Visit) -> Scope:
     owners = (visit.found.name, *_bases(index, visit.found))
-    return Scope(visit.found.place.package, owners, visit.given, visit.types)
+    return Scope(visit.found.place, owners, visit.given, visit.types)
 
 
 def _bases(index: Index, found: Class, depth: int = 0) -> Iterator[str]:

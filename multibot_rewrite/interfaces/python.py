@@ -56,10 +56,10 @@ def _read(node: ast.stmt, types: dict[str, str], place: Place) -> Source:
     for function, found, condition in _walk(node, "", ""):
         if isinstance(found, ast.Call):
             calls.append(_call(found, owner, function, condition, types, place))
-            values += _parameter(found, owner, function)
+            values += _parameter(found, owner, function, place)
         elif isinstance(found, ast.Assign):
             values += [
-                Value(owner, function, _text(it).strip("<>"), _text(found.value))
+                Value(owner, function, _text(it).strip("<>"), _text(found.value), place)
                 for it in found.targets
             ]
     return Source(classes, tuple(calls), tuple(values), (), tuple(takers))
@@ -102,10 +102,10 @@ def _call(
     )
 
 
-def _parameter(node: ast.Call, owner: str, function: str) -> Iterator[Value]:
+def _parameter(node: ast.Call, owner: str, function: str, place: Place) -> Iterator[Value]:
     """``declare_parameter('p', default)``."""
     if _name(node) == "declare_parameter" and len(node.args) > 1:
-        yield Value(owner, function, f"@{_text(node.args[0])}", _text(node.args[1]))
+        yield Value(owner, function, f"@{_text(node.args[0])}", _text(node.args[1]), place)
 
 
 def _name(node: ast.Call) -> str:

@@ -56,6 +56,7 @@ class Value(NamedTuple):
     function: str
     variable: str
     text: str
+    place: Place
 
 
 class Alias(NamedTuple):

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeVar
 
-from multibot_rewrite.interfaces.cpp import last, template_arguments
+from multibot_rewrite.interfaces.expressions import last, template_arguments
 from multibot_rewrite.interfaces.records import (
     Alias,
     Call,
@@ -23,7 +23,7 @@ ABOVE = {"ros2_controllers": ("ros2_control",), "gz_ros2_control": ("ros2_contro
 _PART = re.compile(r"<([^<>]*)>")
 _BRACED = re.compile(r"\{([^{}]*)\}")
 _ROS_TYPE = re.compile(r"(\w+)(?:::|/|\.)(msg|srv|action)(?:::|/|\.)(\w+)")
-Located = TypeVar("Located", Class, Call)
+Located = TypeVar("Located", Class, Call, Value)
 Item = TypeVar("Item")
 Key = TypeVar("Key", bound=Hashable)
 
@@ -44,7 +44,7 @@ class Index(NamedTuple):
 class Scope(NamedTuple):
     """Where a text is read: a class with its bases, and what is known of its names and types."""
 
-    package: str
+    place: Place
     owners: tuple[str, ...]
     given: Mapping[str, str]
     types: Mapping[str, str]
@@ -144,16 +144,21 @@ def _candidates(index: Index, scope: Scope, function: str, name: str) -> Iterato
     """Texts that a name may stand for, the best first."""
     if name in scope.given:
         yield scope.given[name]
-    own = [it for owner in scope.owners for it in index.values.get((owner, name), ())]
+    rows = [it for owner in scope.owners for it in index.values.get((owner, name), ())]
+    own = [it for it in nearest(rows, scope.place) if it.owner or it.function in ("", function)]
     own.sort(key=lambda it: (it.function != function, "@" not in it.text))
     yield from (it.text for it in own)
     if name.isupper():
-        yield from (it.text for it in index.variables.get(name, ()) if "<" not in it.text)
+        yield from (
+            it.text
+            for it in nearest(index.variables.get(name, ()), scope.place)
+            if "<" not in it.text
+        )
 
 
 def _parameter(index: Index, scope: Scope, function: str, name: str, depth: int) -> Resolved:
     """The default of a parameter, and its name."""
-    rows = index.variables.get(name, ())
+    rows = nearest(index.variables.get(name, ()), scope.place)
     texts = [it.text for it in rows if it.text and "<" not in it.text]
     parameter = _BRACED.sub(
         lambda it: text_in(index, scope, function, f"<{it[1]}>", depth + 1).text, name[1:]
