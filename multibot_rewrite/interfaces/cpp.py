@@ -24,7 +24,6 @@ from multibot_rewrite.interfaces.expressions import (
     text_of,
 )
 from multibot_rewrite.interfaces.records import (
-    COMPONENT,
     Alias,
     Call,
     Class,
@@ -74,8 +73,13 @@ def read_cpp(text: str, place: Place) -> Source:
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
-    found[Plugin] += [Plugin(last(it), COMPONENT) for it in _COMPONENT.findall(text)]
+    found[Call] += [_component(it, place) for it in _COMPONENT.findall(text)]
     return Source(*(tuple(found[kind]) for kind in _COLUMNS))
+
+
+def _component(name: str, place: Place) -> Call:
+    """A registered component is made as a main would."""
+    return Call("", "main", last(name), (), (), "", "", place)
 
 
 _COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)

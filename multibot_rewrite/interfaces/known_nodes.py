@@ -9,7 +9,7 @@ from importlib.resources import files
 from typing import NamedTuple
 
 from multibot_rewrite.interfaces.nodes import facts_of
-from multibot_rewrite.interfaces.records import COMPONENT, Class, Fact, Place
+from multibot_rewrite.interfaces.records import Class, Fact, Place
 from multibot_rewrite.interfaces.scope import Index
 
 # What a name that is made at run time depends on.
@@ -84,11 +84,10 @@ def unlisted(index: Index) -> Iterator[Class]:
     listed = {part for it in known_nodes() for mode in it.modes for part in mode}
     packages = {package for package, _ in listed}
     made = {(it.place.package, it.name) for it in index.functions.get("main", ())}
-    names = {name for _, name in made} | {*index.plugins.get(COMPONENT, ())}
-    for found in (it for name in sorted(names) for it in index.classes.get(name, ())):
+    names = sorted({name for _, name in made})
+    for found in (it for name in names for it in index.classes.get(name, ())):
         key = (found.place.package, found.name)
-        ways = key in made or found.name in index.plugins.get(COMPONENT, ())
-        if key[0] in packages and key not in listed and ways and _declares(index, found):
+        if key in made and key not in listed and key[0] in packages and _declares(index, found):
             yield found
 
 

@@ -10,9 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import NamedTuple
 
-# What a component of rclcpp_components is loaded as.
-COMPONENT = "NodeFactory"
-
 
 class Place(NamedTuple):
     """Where something was read: a repository, its tag or commit, a path in it, a line, a package."""

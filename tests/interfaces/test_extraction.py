@@ -154,6 +154,17 @@ def test_a_value_is_of_its_package(tmp_path: Path) -> None:
     assert facts(tmp_path, body) == {("publishes", "scan", "a/msg/B", "", "t", "")}
 
 
+def test_a_constant_is_of_its_package(tmp_path: Path) -> None:
+    other = tmp_path / "repo@1.2.3" / "another"
+    other.mkdir(parents=True)
+    (other / "package.xml").write_text("<package/>")
+    (other / "a.cpp").write_text('const std::string TOPIC = "theirs";')
+    (fact,) = facts(
+        tmp_path, "create_publisher<a::msg::B>(TOPIC, 1);", 'const std::string TOPIC = "ours";'
+    )
+    assert fact[1] == "ours"
+
+
 def test_a_local_name_stays_in_its_function(tmp_path: Path) -> None:
     more = """void main() { auto name = "mine"; }
       void create_it(int i) { create_publisher<a::msg::B>(name, 1); }"""
