@@ -4,6 +4,7 @@ python benchmarks/planted_bugs.py                     6 bugs in each room, and t
 python benchmarks/planted_bugs.py --write             and put it into docs/planted-bugs.md
 python benchmarks/planted_bugs.py steps remap -n 20   more of them in some rooms
 python benchmarks/planted_bugs.py --seed 2            other ones
+python benchmarks/planted_bugs.py evidence --tests tests/evidence    do these tests alone notice?
 
 A bug survives if no test fails. ``fixtures/harmless_bugs.tsv`` lists those that change nothing anybody
 could see, with the reason. Bugs are made by ``bugs.py`` beside this file.
@@ -34,7 +35,8 @@ COPIED = (PACKAGE, "tests", "fixtures", "docs", "examples", "share", "benchmarks
 # "." are the modules that are in no room.
 ROOMS = (
     "rewriters", "steps", "checks", "readback", "findings", "reports", "remap", "graph", "lint",
-    "companions", "fleets", "launch", "sources", "cli", "rosnames", "naming.py", ".",
+    "companions", "evidence", "closure", "fleets", "launch", "sources", "cli", "rosnames", "interfaces",
+    "naming.py", ".",
 )  # fmt: skip
 # A bug in one of these could reach beyond the copy: they kill processes or delete folders.
 UNSAFE = (
@@ -70,7 +72,7 @@ def main(arguments: Sequence[str]) -> int:
     options = _options(arguments)
     with tempfile.TemporaryDirectory(prefix="planted_bugs_") as folder:
         copy = _copy(Path(folder) / "copy")
-        bench = Bench(copy, options.seconds, _called(copy, options.notes))
+        bench = Bench(copy, options.seconds, _called(copy, options.notes, options.tests))
         outcomes = [it for room in options.rooms for it in _room(room, bench, options)]
     lines = list(_page(outcomes, options))
     print("\n".join(lines))
@@ -87,6 +89,7 @@ def _options(arguments: Sequence[str]) -> argparse.Namespace:
     parser.add_argument("--seed", type=int, default=1, help="which ones")
     parser.add_argument("--seconds", type=int, default=120, help="for the tests of one bug")
     parser.add_argument("--notes", type=Path, help="file that keeps which test calls what")
+    parser.add_argument("--tests", nargs="+", default=["tests"], help="those that are asked")
     parser.add_argument("--write", action="store_true", help="make the page anew")
     options = parser.parse_args(arguments)
     options.rooms = options.rooms or list(ROOMS)
@@ -102,20 +105,20 @@ def _copy(target: Path) -> Path:
     return target
 
 
-def _called(copy: Path, notes: Path | None) -> dict[str, list[str]]:
+def _called(copy: Path, notes: Path | None, tests: Sequence[str]) -> dict[str, list[str]]:
     """The tests by the functions that they call, those that fail without a bug left out."""
     notes = (notes or copy / "called.json").resolve()
     if not notes.exists():
-        _note_calls(copy, notes)
+        _note_calls(copy, notes, tests)
     calls: dict[str, list[str]] = json.loads(notes.read_text())
     failing = set(calls.pop("", ()))
     print(f"{len(failing)} tests fail without a bug", file=sys.stderr, flush=True)
     return {name: [it for it in tests if it not in failing] for name, tests in calls.items()}
 
 
-def _note_calls(copy: Path, notes: Path) -> None:
+def _note_calls(copy: Path, notes: Path, tests: Sequence[str]) -> None:
     environment = {**_environment(copy), "CALLED": str(notes)}
-    command = [*_pytest(), *(word for word in FAST if word != "-x"), "-p", "called", "tests"]
+    command = [*_pytest(), *(word for word in FAST if word != "-x"), "-p", "called", *tests]
     subprocess.run(command, cwd=copy, env=environment, stdout=subprocess.DEVNULL, check=False)
 
 

@@ -23,7 +23,8 @@ class Site(NamedTuple):
     kind where the whole value is the name of a link or joint and of nothing else. ``when`` is
     ``sibling=text`` where only that sibling's text makes the value a name. ``below_model`` are the
     releases in which a relative topic here stands below the namespace of the model. ``releases`` are
-    the words for the only releases that read it, empty for all.
+    the words for the only releases that read it, empty for all. ``fill`` is what is written where the
+    default cannot be, which is below the name of the model.
     """
 
     path: str
@@ -41,6 +42,7 @@ class Site(NamedTuple):
     empty: str = "itself"
     below_model: str = ""
     releases: str = ""
+    fill: str = ""
 
 
 class Claim(NamedTuple):

@@ -51,6 +51,11 @@ def has_release(words: str, release: str) -> bool:
     return not words or any(_holds(it, release) for it in _terms(words))
 
 
+def releases_with(words: str) -> tuple[str, ...]:
+    """The releases in which a fact with these release words holds."""
+    return tuple(it for it in RELEASES if has_release(words, it))
+
+
 def share_release(words: str, others: str) -> bool:
     """Is there a release in which both facts hold?"""
     return any(has_release(words, it) and has_release(others, it) for it in RELEASES)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterable, Iterator
 from itertools import chain, islice
 
 from lxml.etree import _Element
@@ -20,14 +21,28 @@ from multibot_rewrite.checks.references import (
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.nearest import Guesses
+from multibot_rewrite.releases import releases_with
 from multibot_rewrite.rewriters.text import text_at
 from multibot_rewrite.rewriters.tree import ANY_WITH_ROS, Tree, library_key
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
+from multibot_rewrite.rewriters.vocabulary.grammar import split_path
 from multibot_rewrite.steps.collect import Inventory
 from multibot_rewrite.steps.document import Document, without_comments
 from multibot_rewrite.steps.renames import RenameMap
 
-__all__ = ["audit", "is_unknown", "other_ros", "unknown_hardware", "unknown_plugins"]
+__all__ = [
+    "audit",
+    "is_unknown",
+    "other_releases",
+    "other_ros",
+    "unknown_hardware",
+    "unknown_plugins",
+]
+ANOTHER_RELEASE = (
+    "name the release that the description is for with --distro, or distro: in a fleet file"
+)
+# A step of a path that asks for an attribute.
+_STEP = re.compile(r"\[@(\w+)=(.*)\]")
 
 
 def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]:
@@ -47,6 +62,7 @@ def audit(inventory: Inventory, renames: RenameMap, tree: Tree) -> list[Finding]
         *to_findings(document, errors, ERROR),
         *to_findings(document, warnings, WARNING),
         *to_findings(document, other_ros(inventory, tree), NOTE),
+        *to_findings(document, other_releases(inventory, tree), NOTE),
     ]
     return sorted(found, key=lambda item: (item.line, item.column, item.code))
 
@@ -120,9 +136,39 @@ def unknown_plugins(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         if section is None or not is_unknown(section):
             continue
         name = host.element.get("filename") or host.element.get("name") or ""
-        message = f"plugin {name!r} is not in the vocabulary: its own parameters are not renamed"
-        hint = guesses.hint(library_key(name), plugins)
+        others = tree.vocabulary.releases_elsewhere("plugin", library_key(name))
+        where = _not_here(tree, others) if others else "is not in the vocabulary"
+        message = f"plugin {name!r} {where}: its own parameters are not renamed"
+        hint = ANOTHER_RELEASE if others else guesses.hint(library_key(name), plugins)
         yield Problem(host.element, message, None, hint, (), "MB902")
+
+
+def _not_here(tree: Tree, releases: Iterable[str]) -> str:
+    return f"is not in {tree.vocabulary.release}, only in {', '.join(releases)}"
+
+
+def other_releases(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
+    """Values that hold names in other releases only: nothing in them is renamed."""
+    for host in inventory.hosts:
+        section = host.node.section
+        if section is None:
+            continue
+        for site in tree.vocabulary.rows_elsewhere(section.type, section.names[0]):
+            if site.path in {it.path for it in section.sites} or site.role == "keep":
+                continue
+            where = _not_here(tree, releases_with(site.releases))
+            for element in _elements_at(host.element, site.path):
+                message = f"{site.path} of {section.name} {where}: nothing in it is renamed"
+                yield Problem(element, message, None, ANOTHER_RELEASE, (), "MB905")
+
+
+def _elements_at(element: _Element, path: str) -> Iterator[_Element]:
+    """The elements of a path of the vocabulary that hold its value."""
+    steps, attribute = split_path(path)
+    below = "/".join(_STEP.sub(r"[@\1='\2']", it) for it in steps)
+    for found in element.iterfind(below) if below else [element]:
+        if not attribute or found.get(attribute) is not None:
+            yield found
 
 
 def other_ros(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
@@ -153,8 +199,8 @@ def unknown_hardware(inventory: Inventory, tree: Tree) -> Iterator[Problem]:
         name = text_at(host.element, "hardware/plugin")
         if not name or host.element.find("hardware/param") is None:
             continue
-        message = (
-            f"hardware class {name!r} is not in the vocabulary: its own parameters are not renamed"
-        )
-        hint = guesses.hint(name, classes)
+        others = tree.vocabulary.releases_elsewhere("hardware", name)
+        where = _not_here(tree, others) if others else "is not in the vocabulary"
+        message = f"hardware class {name!r} {where}: its own parameters are not renamed"
+        hint = ANOTHER_RELEASE if others else guesses.hint(name, classes)
         yield Problem(host.element, message, None, hint, (), "MB903")

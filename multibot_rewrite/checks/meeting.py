@@ -7,7 +7,7 @@ from itertools import islice
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.model import InputError, ProofError
-from multibot_rewrite.naming import TOPIC_KINDS, TWIN, Naming
+from multibot_rewrite.naming import NAMESPACE, TOPIC_KINDS, TWIN, Naming, spelled
 from multibot_rewrite.readback.meeting import meetings, same_for_all
 from multibot_rewrite.readback.reading import FRAME, NODE, RuntimeName, read
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
@@ -15,7 +15,10 @@ from multibot_rewrite.steps.apply import fill
 from multibot_rewrite.steps.document import Document
 
 SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP = "MB430", "MB431", "MB432", "MB425"
-SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP})
+CONTROLLERS = "MB435"
+# Stands for the name of a robot in a hint.
+ROBOT = "ROBOT"
+SHARED_CODES = frozenset({SHARED_TOPIC, SHARED_NODE, SHARED_FRAME, SHARED_LOOKUP, CONTROLLERS})
 
 
 def shared_by_all(
@@ -24,7 +27,8 @@ def shared_by_all(
     """The names that every robot of a description would have, each at its element in the source.
 
     ``pieces`` are the text between the robot's names: a name in the running system that does not
-    hold the robot's is the same for all. Raises ProofError for a text that is no XML.
+    hold the robot's is the same for all. Raises ProofError for a text that is no XML, and for a frame
+    that was left below the name of the model.
     """
     robot = _unused(document)
     return shared_with(document, fill(pieces, robot), robot, naming, vocabulary)
@@ -64,19 +68,31 @@ def shared_with(
         reading = read(text, document.file, vocabulary)
     except InputError as error:
         raise ProofError(str(error)) from None
+    for it in reading.missed:
+        raise ProofError(
+            f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
+        )
     for it in same_for_all(reading, robot, naming):
         element = next(islice(document.root.iter(it.tag), it.number, None), document.root)
-        yield Problem(element, _message(it), None, _hint(it), (), code_of(it))
+        hint = _hint(it, naming)
+        yield Problem(element, _message(it, vocabulary.release), None, hint, (), code_of(it))
 
 
 def code_of(name: RuntimeName) -> str:
     """The rule that a shared name of this kind is about."""
+    if name.of_controllers:
+        return CONTROLLERS
     if name.kind in TOPIC_KINDS:
         return SHARED_TOPIC
     return {NODE: SHARED_NODE, FRAME: SHARED_FRAME}.get(name.kind, SHARED_LOOKUP)
 
 
-def _message(name: RuntimeName) -> str:
+def _message(name: RuntimeName, release: str) -> str:
+    if name.of_controllers:
+        return (
+            f"all robots would have the {name.kind} {name.name!r} of their controllers, which take no"
+            f" rules of this plugin on {release}"
+        )
     if code_of(name) == SHARED_LOOKUP:
         return (
             f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
@@ -85,7 +101,12 @@ def _message(name: RuntimeName) -> str:
     return f"all robots would have the {name.kind} {name.name!r} ({name.path})"
 
 
-def _hint(name: RuntimeName) -> str:
+def _hint(name: RuntimeName, naming: Naming) -> str:
+    if name.of_controllers:
+        return (
+            f'start each controller with its spawner and --controller-ros-args "-r'
+            f' {_rule(name.name, naming)}"; multibot remap and build print the lines'
+        )
     if name.kind in TOPIC_KINDS:
         return "set a topic that is renamed for each robot, or allow it with --shared-topics"
     if name.kind == NODE:
@@ -93,3 +114,10 @@ def _hint(name: RuntimeName) -> str:
     if code_of(name) == SHARED_LOOKUP:
         return f"use --layout both, which renames {name.kind}s for each robot"
     return "set the frame for each robot, or allow it with --shared-frames"
+
+
+def _rule(name: str, naming: Naming) -> str:
+    """The rule that gives each robot a name of its own; ROBOT stands for its name."""
+    if naming.topics == NAMESPACE:
+        return f"{name}:={name.strip('/')}"
+    return f"{name}:={spelled(naming, ROBOT, 'topic', name)}"

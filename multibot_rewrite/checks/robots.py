@@ -8,7 +8,7 @@ from multibot_rewrite.checks.problem import Problem, about
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import Claim
-from multibot_rewrite.naming import FRAME_KINDS, TOPIC_KINDS, Naming, removal
+from multibot_rewrite.naming import FRAME_KINDS, NO_OWN_NAMES, TOPIC_KINDS, Naming, removal
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.rewriters.spelling import is_reached, must_be_declared
 from multibot_rewrite.steps.collect import Inventory
@@ -64,9 +64,13 @@ def taken_names(
     """Names that stay as they are, or are shared, and are what another name becomes for some robot."""
     yield from _shared_names(inventory, renames, robots)
     kept = list(_kept(inventory, renames))
+    # Names that an argument of the xacro made are kept, and another name may become one of them.
+    naming = renames.naming._replace(own=NO_OWN_NAMES)
     for robot in robots if kept else ():
         for kind, name, claim in kept:
-            if _stem(renames.naming, robot, kind, name) in inventory.declared.get(kind, ()):
+            stem = _stem(naming, robot, kind, name)
+            is_own = (kind, stem) in renames.naming.own
+            if stem in inventory.declared.get(kind, ()) and not is_own:
                 message = (
                     f"another {kind} would become {name!r} for {robot}, which the file already uses"
                 )

@@ -11,6 +11,7 @@ from multibot_rewrite.cli.report import About, check_report, chosen, report_besi
 from multibot_rewrite.cli.usage import check_xacro, given_options, policy, robots, xacro_args
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.evidence.launch_records import launch_order
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, make_fleet
 from multibot_rewrite.model import UsageError
@@ -35,6 +36,8 @@ OF_FLEET_FILE = {
     "shared_topics": "--shared-topics",
     "groups": "--groups",
     "vocabulary": "--vocabulary",
+    "launch": "--launch",
+    "launch_roots": "--launch-roots",
 }
 
 
@@ -99,6 +102,9 @@ def _from_words(options: argparse.Namespace) -> Fleet:
         vocabulary=[*configured_vocabulary(options.input), *options.vocabulary],
         xacro_args=xacro_args(options),
         trust=options.trust,
+        launch=[
+            launch_order(it, options.launch_roots)._replace(trusted=True) for it in options.launch
+        ],
         release=release_here(options.distro),
     )
 

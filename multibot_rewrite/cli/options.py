@@ -91,6 +91,13 @@ def several(
     )
 
 
+def repeated(name: str, metavar: str, about: str) -> Option:
+    """An option that is written once for each of its values."""
+    return Option(
+        (name,), about, {"metavar": metavar, "action": "append", "type": values.path, "default": []}
+    )
+
+
 def output(about: str, **more: Any) -> Option:
     """``-o``; every command has it."""
     text = f"{about}; missing folders are made"

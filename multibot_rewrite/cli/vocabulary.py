@@ -59,6 +59,10 @@ def _found(vocabulary: Vocabulary, name: str, types: Sequence[str]) -> list[Voca
     found = look_up(vocabulary, name, types)
     if found:
         return found
+    others = [it for type_ in types for it in vocabulary.releases_elsewhere(type_, name)]
+    if others:
+        where = f"is not in {vocabulary.release}, only in {', '.join(dict.fromkeys(others))}"
+        raise UsageError(f"{name!r} {where}; name one of them with --distro")
     near = near_names(vocabulary, name, types)
     hint = f"the nearest known: {', '.join(near)}" if near else "multibot vocabulary lists all"
     what = types[0] if len(types) == 1 else "plugin, class, element, sensor type or block"

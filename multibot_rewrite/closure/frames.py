@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.filling import filled
+from multibot_rewrite.evidence.filling import filled, lookup
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.graph.transforms import Edge
-from multibot_rewrite.remap.conditions import parse_condition
+from multibot_rewrite.remap.conditions import AND, holds, parse_condition
 from multibot_rewrite.remap.records import NodeFacts
 
 FRAME, TREE = "frame", "tree"
@@ -64,25 +64,35 @@ class _Trees:
 def frame_gaps(
     given: Sequence[GivenNode], known: Mapping[str, NodeFacts], sent: Iterable[str]
 ) -> Iterator[Gap]:
-    """Frames that nodes of a robot could send, and none does. ``sent`` are those that are sent."""
-    there = set(sent)
+    """Frames that nodes of a robot could send, and none does. ``sent`` are those that are sent;
+    ``near`` is a second node that could."""
+    off: dict[str, list[tuple[GivenNode, str, Place]]] = {}
     for it in given:
-        node = known.get(it.known)
-        if node is None or not node.sends:
-            continue
-        runs = filled(node, it)
-        frames = {frame.parameter: frame.default for frame in runs.frames}
-        left = [send for send in node.sends if send.child not in {one.child for one in runs.sends}]
-        for send in left:
-            child, switch = frames[send.child], _switch(send.condition, it)
-            if switch and not runs.sends and child not in there:
-                there.add(child)
-                yield Gap(FRAME, child, it.name, (FRAME, it.known, send.child), switch)
+        for child, parameter, switch in _switched_off(it, known.get(it.known)):
+            off.setdefault(child, []).append((it, parameter, switch))
+    for child in sorted(off.keys() - set(sent)):
+        (first, parameter, place), *others = off[child]
+        key = (FRAME, first.known, parameter)
+        near, where = (others[0][0].name, others[0][2]) if others else ("", None)
+        yield Gap(FRAME, child, first.name, key, place, near, where)
 
 
-def _switch(condition: str, given: GivenNode) -> Place | None:
-    """Where the parameter is that switches it off."""
-    for it in parse_condition(condition):
-        if it.parameter in given.values:
-            return given.values[it.parameter].place
-    return None
+def _switched_off(given: GivenNode, node: NodeFacts | None) -> Iterator[tuple[str, str, Place]]:
+    """Frames that a node would send, with the parameter of each and where it is switched off."""
+    if node is None or not node.sends:
+        return
+    runs = filled(node, given)
+    frames = {frame.parameter: frame.default for frame in runs.frames}
+    for send in node.sends if not runs.sends else ():
+        switch = _switch(send.condition, runs, given)
+        if switch:
+            yield frames[send.child], send.child, switch
+
+
+def _switch(condition: str, runs: NodeFacts, given: GivenNode) -> Place | None:
+    """Where the parameter is that alone switches it off."""
+    value_of = lookup(runs, given.values)
+    off = [it for it in condition.split(AND) if not holds(it, value_of)]
+    parts = parse_condition(off[0]) if len(off) == 1 else ()
+    found = (given.values[it.parameter] for it in parts if it.parameter in given.values)
+    return next((it.place for it in found), None)

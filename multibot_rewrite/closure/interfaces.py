@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.claims import Claimed, claimed
+from multibot_rewrite.evidence.claims import Claimed, claims_of
 from multibot_rewrite.evidence.hardware import Exported
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.nearest import Guesses
@@ -46,7 +46,7 @@ def interface_gaps(
 
 def _claims(controller: GivenNode, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:
     node = known.get(controller.known)
-    yield from claimed(node.claims, controller.values) if node else ()
+    yield from claims_of(node.claims, controller) if node else ()
 
 
 def _names(exports: Iterable[Exported], kind: str) -> list[str]:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.nearest import nearest
+from multibot_rewrite.nearest import CHOICE, nearest
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 # What people, planners of missions and tools send, by the last word of the name.
@@ -75,4 +75,6 @@ def _near(end: End, given: Iterable[End]) -> End | None:
     others = (it for it in given if it.kind == end.kind and it.node != end.node)
     alike = {it.name: it for it in others if end.type and it.type == end.type}
     last = [name for name in alike if name.endswith("/" + end.name.rpartition("/")[2])]
-    return alike.get(nearest(end.name, last or alike, alike=0.0))
+    # Many topics that have nothing to do with each other are of these types.
+    least = CHOICE if end.type.startswith("std_") else 0.0
+    return alike.get(nearest(end.name, last or alike, alike=least))

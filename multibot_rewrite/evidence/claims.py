@@ -1,22 +1,27 @@
-"""The interfaces that a controller claims, from templates of nodes.yaml and its parameters.
+"""The interfaces that a controller claims, from templates of its node's table and its parameters.
 
 A template is a name with parameters in <>: ``<joints>/<command_interfaces>`` stands for every joint
 with every interface. ``<a|b>`` is the first of them that is set, ``<a=x>`` is ``x`` where it is not,
-``[0..17]`` counts. A parameter that is not set and has no default makes no name.
+``<a+_>`` is its value and ``_``. ``[0..17]`` counts, ``[x,y]`` is each word. ``{a}`` in the name of a
+parameter, or in the condition, is what stands for ``<a>``. A parameter that is not set and has no
+default makes no name. ``<type>`` is the type of the controller.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
-from itertools import product
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.evidence.records import Given, Place
-from multibot_rewrite.remap.conditions import holds
+from multibot_rewrite.evidence.records import Given, GivenNode, Place
+from multibot_rewrite.remap.conditions import Values, holds
 from multibot_rewrite.remap.records import Claim
 
-_PART = re.compile(r"<(?P<names>[^<>=]+)(?P<default>=[^<>]*)?>|\[(?P<first>\d+)\.\.(?P<last>\d+)\]")
+TYPE = "type"
+_PART = re.compile(
+    r"<(?P<names>[^<>=+]+)(?:\+(?P<after>[^<>=]*))?(?P<default>=[^<>]*)?>"
+    r"|\[(?P<first>\d+)\.\.(?P<last>\d+)\]|\[(?P<words>[^\[\]]+)\]"
+)
 
 
 class Claimed(NamedTuple):
@@ -28,31 +33,52 @@ class Claimed(NamedTuple):
     place: Place | None
 
 
-def claimed(claims: tuple[Claim, ...], values: Mapping[str, Given]) -> Iterator[Claimed]:
-    """The interfaces that a controller with these parameters claims, each once."""
+class _Made(NamedTuple):
+    """The beginning of a name, the condition with what was chosen, and where that is written."""
+
+    text: str
+    condition: str
+    place: Place | None
+
+
+def claims_of(claims: Iterable[Claim], node: GivenNode) -> Iterator[Claimed]:
+    """The interfaces that a controller claims with its parameters, each once."""
+    yield from claimed(claims, {**node.values, TYPE: Given(node.type, node.place)})
+
+
+def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Claimed]:
+    """The interfaces that these claims make with these parameters, each once."""
     found: dict[tuple[str, str], Claimed] = {}
     for claim in claims:
-        if holds(claim.condition, lambda name: values[name].value if name in values else None):
-            for name, place in _names(claim.template, values):
-                found.setdefault((claim.kind, name), Claimed(claim.kind, name, place))
+        for made in _names(claim.template, _Made("", claim.condition, None), values):
+            if holds(made.condition, _lookup(values)):
+                found.setdefault(
+                    (claim.kind, made.text), Claimed(claim.kind, made.text, made.place)
+                )
     yield from found.values()
 
 
-def _names(template: str, values: Mapping[str, Given]) -> Iterator[tuple[str, Place | None]]:
-    parts = list(_PART.finditer(template))
-    fixed = _PART.split(template)[:: _PART.groups + 1]
-    choices = [list(_choices(part, values)) for part in parts]
-    for chosen in product(*choices):
-        words = (text + word for text, (word, _) in zip(fixed, chosen, strict=False))
-        places = [place for _, place in chosen if place]
-        yield "".join(words) + fixed[-1], places[0] if places else None
+def _lookup(values: Mapping[str, Given]) -> Values:
+    return lambda name: values[name].value if name in values else None
+
+
+def _names(template: str, made: _Made, values: Mapping[str, Given]) -> Iterator[_Made]:
+    part = _PART.search(template)
+    if part is None:
+        yield made._replace(text=made.text + template)
+        return
+    slot, before, rest = f"{{{part['names']}}}", template[: part.start()], template[part.end() :]
+    for word, place in _choices(part, values):
+        text = f"{made.text}{before}{word}{(part['after'] or '') if word else ''}"
+        found = _Made(text, made.condition.replace(slot, word), made.place or place)
+        yield from _names(rest.replace(slot, word), found, values)
 
 
 def _choices(
     part: re.Match[str], values: Mapping[str, Given]
 ) -> Iterator[tuple[str, Place | None]]:
-    if part["first"]:
-        yield from ((str(it), None) for it in range(int(part["first"]), int(part["last"]) + 1))
+    if not part["names"]:
+        yield from ((it, None) for it in _counted(part))
         return
     given = next((values[it] for it in part["names"].split("|") if _is_set(values.get(it))), None)
     if given is not None:
@@ -60,6 +86,12 @@ def _choices(
         yield from ((str(it), given.place) for it in many)
     elif part["default"] is not None:
         yield from ((it, None) for it in part["default"][1:].split(","))
+
+
+def _counted(part: re.Match[str]) -> list[str]:
+    if part["words"]:
+        return part["words"].split(",")
+    return [str(it) for it in range(int(part["first"]), int(part["last"]) + 1)]
 
 
 def _is_set(given: Given | None) -> bool:

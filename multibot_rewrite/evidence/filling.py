@@ -46,11 +46,12 @@ def _of_stack_alone(endpoint: Endpoint, known: NodeFacts) -> bool:
 
 def _sent(node: NodeFacts, values: Mapping[str, Given]) -> Iterator[SentTransform]:
     """The transforms that it sends with these parameters."""
-    value_of = _lookup(node, values)
+    value_of = lookup(node, values)
     yield from (it._replace(condition="") for it in node.sends if holds(it.condition, value_of))
 
 
-def _lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
+def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
+    """What conditions ask: the value of a parameter, or its default where it names a frame."""
     defaults = {it.parameter: it.default for it in node.frames}
     return lambda name: values[name].value if name in values else defaults.get(name)
 
@@ -74,7 +75,7 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
         return
     for binding in _bindings(ids, wanted, values):
         bound = _bound(raw._replace(remapped=remapped), binding)
-        if holds(bound.condition, _lookup(node, values)):
+        if holds(bound.condition, lookup(node, values)):
             decided = bool(binding or bound.condition)
             yield from _named(bound._replace(when="" if decided else bound.when), values)
 
@@ -134,10 +135,11 @@ def _put(text: str, binding: Ids) -> str:
 
 
 def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
-    if not binding:
-        return endpoint
+    name = _put(endpoint.name, binding)
+    # A name that is made at run time is known now, so a rule reaches it.
     return endpoint._replace(
-        name=_put(endpoint.name, binding),
+        name=name,
+        fixed=endpoint.fixed if name == endpoint.name else "",
         parameter=_put(endpoint.parameter, binding),
         condition=_put(endpoint.condition, binding),
     )

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.evidence.alternatives import GUESSED, alternatives
+from multibot_rewrite.evidence.claims import claims_of
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
@@ -15,6 +17,8 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.remap.records import NodeFacts
 
 MANAGER = "controller_manager"
+# So many names in one line.
+_SHOWN = 3
 NOT_DECLARED = declare(
     "MF801",
     "controller-not-declared",
@@ -85,17 +89,13 @@ def nodes_of(
     """
     sections = {it.name: _section_of(it, given) for it in stack}
     left, kept = _left_out(stack, given, sections)
-    nodes = [
-        filled(it, section, known.get(it.known))._replace(name=it.name)
-        if (section := sections[it.name])
-        else it
-        for it in kept
-    ]
+    either = alternatives(given, known)
+    nodes = [_of_stack(it, sections[it.name], known, either) for it in kept]
     names = {it.name for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.name in names}
     sent = {child for node in kept for child in children_of(node)}
     for it in (it for it in given if it.name not in names and _may_run(it, known)):
-        node = _added(it, known)
+        node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
     findings = sorted((*left, *_unknown(given)), key=lambda it: (it.file, it.line))
@@ -139,14 +139,29 @@ def _may_run(given: GivenNode, known: Mapping[str, NodeFacts]) -> bool:
     return bool(given.manager) or (node is not None and not node.host)
 
 
-def _added(given: GivenNode, known: Mapping[str, NodeFacts]) -> NodeFacts:
-    """A controller that a file declares runs, another node that has parameters may run."""
+def _of_stack(
+    node: NodeFacts,
+    section: GivenNode | None,
+    known: Mapping[str, NodeFacts],
+    either: Mapping[str, str],
+) -> NodeFacts:
+    """A node of a stack as the files have it."""
+    if section is None:
+        return node
+    made = filled(node, section, known.get(node.known))
+    return made._replace(name=node.name, when=node.when or either.get(section.name, ""))
+
+
+def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
+    """A controller that a file declares runs, unless ``either`` says which other runs in its place;
+    another node that has parameters may run."""
     node = known.get(given.known)
     if node is None:
         package = given.type.partition("/")[0]
-        return NodeFacts(given.name, package, (), host=MANAGER, origin=str(given.place))
+        found = NodeFacts(given.name, package, (), host=MANAGER, when=either)
+        return found._replace(origin=str(given.place))
     runs = given.manager or node.name == MANAGER
-    when = "" if runs else f"its parameters are in {given.place.file}"
+    when = either or node.when if runs else f"its parameters are in {given.place.file}"
     return filled(node, given)._replace(when=when)
 
 
@@ -159,9 +174,23 @@ def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
 
 def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
     for it in given:
-        if it.manager and not it.known:
+        if it.manager and it.unknown_type:
             message = f"controller {it.name} is of type {it.type}, which is not known"
-            hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
+            described = "describe it in a file of nodes (docs/stacks.md)"
+            taken = (
+                f"the plan takes it for a {it.known}" if it.known else "the plan has its name alone"
+            )
+            hint = f"{described}; {taken}{_guess(it)}"
+            hint = f"did you mean {it.like}?" if it.like else hint
             yield UNKNOWN_TYPE.finding(
                 message, hint, file=it.place.file, line=it.place.line, column=1
             )
+
+
+def _guess(controller: GivenNode) -> str:
+    """What a controller of an unknown type claims, if its parameters have their usual names."""
+    names = [it.name for it in claims_of(GUESSED, controller)]
+    if not names:
+        return ""
+    more = f" and {len(names) - _SHOWN} more" if len(names) > _SHOWN else ""
+    return f"; by its parameters it seems to claim {', '.join(names[:_SHOWN])}{more}"

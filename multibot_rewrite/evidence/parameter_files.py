@@ -26,6 +26,7 @@ from multibot_rewrite.companions.params.sections import (
 from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.model import InputError
+from multibot_rewrite.nearest import nearest
 
 TYPE = ".type"
 
@@ -83,7 +84,8 @@ def _controllers(sections: Sequence[_Section]) -> Iterator[tuple[str, _Controlle
     """Controller -> its type, below the name of the manager's namespace."""
     for section in sections:
         above, _, last = section.name.rpartition("/")
-        if last != MANAGER:
+        # A renamed one is called controller_manager_robot1, for example.
+        if MANAGER not in last:
             continue
         for name, given in section.values.items():
             if name.endswith(TYPE):
@@ -104,4 +106,7 @@ def _node(
     found = identify_node(last, body, known, {last: type_} if type_ else {})
     place = controller.type.place if controller else named[0].place
     manager = controller.manager if controller else ""
-    return GivenNode(name, found.name if found else "", type_, values, place, manager)
+    unknown = bool(type_) and type_ not in known.types
+    like = nearest(type_, known.types) if unknown else ""
+    node = found.name if found else ""
+    return GivenNode(name, node, type_, values, place, manager, unknown, like)

@@ -31,6 +31,8 @@ class GivenNode(NamedTuple):
     ``name`` is its name without the robot, ``known`` the known node that it is (empty for none),
     ``type`` the plugin type of a controller. ``values`` are its parameters by dotted name, those of
     wildcard sections with them. ``manager`` is the controller manager that has it as a controller.
+    ``known`` may be a guess by its parameters: ``unknown_type`` is true if its type is not known,
+    ``like`` the known type that may be meant.
     """
 
     name: str
@@ -39,3 +41,5 @@ class GivenNode(NamedTuple):
     values: Mapping[str, Given]
     place: Place
     manager: str = ""
+    unknown_type: bool = False
+    like: str = ""

@@ -19,6 +19,7 @@ from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.controller_files import with_own_controllers
 from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
@@ -61,7 +62,8 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         files = sorted(it for it in made if isinstance(it, OutputFile))
         _check_paths_differ(files)
         findings = [it for it in made if isinstance(it, Finding)]
-        findings += [it for robot in plan.robots for it in robot.findings]
+        for robot in plan.robots:
+            findings += without_started(robot.findings, fleet.table, [robot.member.robot])
         texts = [
             OutputText(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files
         ]
@@ -161,5 +163,5 @@ def _remappings(table: Table) -> str:
                 f"      remappings: [{rules}]\n"
             )
     rows = [f"  {scalar(robot)}:\n{''.join(nodes)}" for robot, nodes in robots.items()]
-    head = f"layout: {scalar(table.layout)}\nrelease: {table.release}\n"
+    head = f"layout: {scalar(table.layout)}\ndistro: {table.release}\n"
     return "".join([head, "robots:" if rows else "robots: {}", "\n", *rows])

@@ -74,8 +74,9 @@ arm:
 NOBODY_SENDS = declare(
     "MF813",
     "odometry-not-sent",
-    ERROR,
-    what="Every node of a robot that could send the transform to its base is told not to.",
+    WARNING,
+    what="Every node of a robot that could send the transform to its base is told not to: an error if "
+    "there are two, a warning if another node, which no file names, may send it.",
     why="The robot's frames are not connected to the odometry: navigation and RViz do not see it move.",
     fix="Let one of them send it: enable_odom_tf of the controller, or publish_tf of the filter.",
     bad="""\
@@ -182,17 +183,30 @@ def _interfaces(
     robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
 ) -> Iterator[Finding]:
     known = {it.key for it in before}
-    for it in (*before, *(it for it in after if it.key not in known)):
-        level = WARNING if it.key in known else ERROR
-        message = f"{it.node} of {robot.spec.name} claims {it.name}, which no ros2_control exports"
-        yield at_gap(NO_INTERFACE, robot, it, message, meant(it), level)
+    rest = [it for it in after if it.key not in known]
+    for level, gaps in ((WARNING, before), (ERROR, rest)):
+        for first, *more in _by_place(gaps):
+            names = f"{first.name} and {len(more)} more" if more else first.name
+            claims = f"{first.node} of {robot.spec.name} claims {names}"
+            message = f"{claims}, which no ros2_control exports"
+            yield at_gap(NO_INTERFACE, robot, first, message, meant(first), level)
+
+
+def _by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
+    """The gaps of each controller that are written at one place."""
+    found: dict[object, list[Gap]] = {}
+    for it in gaps:
+        found.setdefault((it.node, it.place), []).append(it)
+    return found.values()
 
 
 def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
     for it in gaps:
-        message = f"nothing sends frame {it.name} of {robot.spec.name}: {it.node} is told not to"
+        both = f"{it.node} and {it.near} ({it.near_place}) are" if it.near else f"{it.node} is"
+        message = f"nothing sends frame {it.name} of {robot.spec.name}: {both} told not to"
         hint = "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
-        yield at_gap(NOBODY_SENDS, robot, it, message, hint)
+        # Another node, which no file names, may send what one alone does not.
+        yield at_gap(NOBODY_SENDS, robot, it, message, hint, ERROR if it.near else WARNING)
 
 
 def _trees(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:

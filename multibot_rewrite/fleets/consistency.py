@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.companions.names.rename_map import spell
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
@@ -19,9 +21,11 @@ from multibot_rewrite.fleets.output_values import (
     line_in_source,
     values_in,
 )
+from multibot_rewrite.fleets.prefix_parameters import prefix_lines
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
 from multibot_rewrite.fleets.value_checks import (
+    PREFIXES,
     TOKEN,
     RobotNames,
     ValueInFile,
@@ -35,6 +39,8 @@ from multibot_rewrite.naming import Naming
 _DOUBLED = re.compile(
     r"(?<![A-Za-z0-9])([A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*?)[/_]\1(?![A-Za-z0-9])"
 )
+
+NO_LINES: frozenset[Place] = frozenset()
 
 
 def consistency(
@@ -168,6 +174,7 @@ def _in_files(
 ) -> Iterator[Finding]:
     """Every robot's own files; of files that differ only in names the first."""
     by_name = {it.robot.spec.name: it for it in robots}
+    known = load_known_nodes(plan.file.parameters, plan.file.distro)
     words: dict[str, str] = {}
     for it in robots:
         words.update(dict.fromkeys(it.words, it.robot.spec.name))
@@ -182,7 +189,9 @@ def _in_files(
             continue
         like.add(masked)
         others = {word: robot for word, robot in words.items() if word not in own.words}
-        yield from _in_file(file, own, others, plan.fleet.naming)
+        mine = [it for it in files if it.path.startswith(f"{own.robot.spec.name}/")]
+        lines = prefix_lines(mine, known) if any(it in file.text for it in PREFIXES) else NO_LINES
+        yield from _in_file(file, own, others, plan.fleet.naming, lines)
 
 
 def _masked(text: str, words: Iterable[str]) -> str:
@@ -199,10 +208,16 @@ def _pattern(own: RobotNames) -> tuple[object, ...]:
 
 
 def _in_file(
-    file: OutputText, own: RobotNames, others: Mapping[str, str], naming: Naming
+    file: OutputText,
+    own: RobotNames,
+    others: Mapping[str, str],
+    naming: Naming,
+    prefixes: frozenset[Place],
 ) -> Iterator[Finding]:
+    """What is wrong with its values; ``prefixes`` are the lines of prefixes that have to be there."""
     for value in values_in(file):
-        for found in check_value(ValueInFile(own, others, naming, value)):
+        before = Place(file.path, value.line) in prefixes
+        for found in check_value(ValueInFile(own, others, naming, value, before)):
             yield _placed(file, own, value.line, found)
 
 

@@ -6,6 +6,9 @@ import os
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.launch_records import LaunchOrder
+from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.expectation import Expectation, expect, named_frames, vacuous
@@ -57,15 +60,20 @@ def make_fleet(
     vocabulary: Sequence[str] = (),
     xacro_args: Mapping[str, str] = NOTHING,
     trust: bool = False,
+    launch: Sequence[LaunchOrder] = (),
     release: str,
 ) -> Fleet:
     """Rewrite a description for every robot and make the fleet's table, with the facts of a release.
 
     ``nodes`` is a file with more nodes and stacks, ``nodl`` are NoDL files, see ``find_interfaces``;
-    ``trust`` lets a xacro file do anything. Raises as ``rewrite_all``, and UsageError for an unknown
-    stack.
+    ``trust`` lets a xacro file do anything; ``launch`` are the launch files that start each robot's
+    nodes. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
     facts = facts_of(stacks, nodes, release, nodl)
+    known = known_nodes(nodes, release, nodl).library.nodes
+    parameters = load_known_nodes("", release)
+    launched = launched_robot(facts, launch, known, robots[:1], parameters)
+    runs = nodes_with(launched, facts, given_with(launched, ()), known)
     found = rewrite_all(
         source,
         robots,
@@ -76,8 +84,9 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, facts, make_naming(**policy), release)
-    return fleet._replace(table=with_meetings(fleet.table, members, fleet.naming))
+    fleet = assemble(members, runs.nodes, make_naming(**policy), release)
+    table = with_meetings(fleet.table, members, fleet.naming)
+    return fleet._replace(table=table._replace(problems=(*table.problems, *runs.findings)))
 
 
 def facts_of(

@@ -12,6 +12,7 @@ from importlib.resources import files
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
+from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
 from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, nodl_files, with_paths
@@ -63,6 +64,7 @@ class RobotSpec(NamedTuple):
     companions: Mapping[str, tuple[str, ...]]
     file: str
     line: int
+    launch: tuple[LaunchOrder, ...] = ()
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -142,6 +144,7 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
     for robot in fleet.robots:
         yield from filter(None, (robot.description, robot.srdf))
         yield from (path for paths in robot.companions.values() for path in paths)
+        yield from (it.file for it in robot.launch)
 
 
 def is_fleet(data: bytes) -> bool:
@@ -232,7 +235,20 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         {kind: tuple(listed(it)) for kind, it in companions.items()},
         file,
         line,
+        tuple(_launch(data, own, place)),
     )
+
+
+def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iterator[LaunchOrder]:
+    """The launch files of a robot; InputError for words that are no arguments."""
+    roots = listed(data.get("launch_roots", []))
+    try:
+        for text in listed(own.get("launch", data.get("launch", []))):
+            order = launch_order(text, roots)
+            filled(dict(order.arguments), own["name"])
+            yield order
+    except UsageError as error:
+        raise InputError(f"{place}: {own['name']!r}: {error}") from None
 
 
 def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:

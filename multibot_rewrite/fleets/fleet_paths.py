@@ -16,12 +16,14 @@ Places = Mapping[Path, tuple[str, int]]
 
 def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
     """Check that every named file exists; its content is checked later."""
-    for key in (*PATHS, "companions", "robots"):
+    for key in (*PATHS, "launch", "companions", "robots"):
         value = data.get(key, ())
         if key == "robots":
             for number, robot in enumerate(value):
                 check_files(robot, ("robots", number), places)
             continue
+        if key == "launch":
+            value = [it.partition(" ")[0] for it in listed(value)]
         kinds = value.items() if key == "companions" and value else [("", value)]
         for kind, paths in kinds:
             here = (*at, key, kind) if kind else (*at, key)
@@ -45,11 +47,21 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
             result[key] = resolve(result[key])
     if result.get("nodl", NO_DOCUMENTS) != NO_DOCUMENTS:
         result["nodl"] = resolve(result["nodl"])
+    if "launch_roots" in result:
+        result["launch_roots"] = resolve(result["launch_roots"])
+    if "launch" in result:
+        result["launch"] = [_launch_path(folder, it) for it in listed(result["launch"])]
     if "companions" in result:
         result["companions"] = {kind: resolve(it) for kind, it in result["companions"].items()}
     if "robots" in result:
         result["robots"] = [with_paths(folder, robot) for robot in result["robots"]]
     return result
+
+
+def _launch_path(folder: str, text: str) -> str:
+    """What follows ``ros2 launch``, with the path of its file relative to the working directory."""
+    file, blank, arguments = text.partition(" ")
+    return f"{os.path.join(folder, file)}{blank}{arguments}"
 
 
 def listed(value: Any) -> Sequence[Any]:

@@ -36,13 +36,22 @@ def plan_fleet(
     """Rewrite every robot's description and make the table of the whole fleet.
 
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
-    anything. Raises as ``rewrite_all``, and UsageError for an unknown stack.
+    anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
+    file = _trusted(file) if trust else file
     with gc_paused():
         naming = make_naming(**file.policy)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
         return FleetPlan(file, tuple(robots), _fleet(file, robots, naming), read)
+
+
+def _trusted(file: FleetFile) -> FleetFile:
+    robots = (
+        it._replace(launch=tuple(order._replace(trusted=True) for order in it.launch))
+        for it in file.robots
+    )
+    return file._replace(robots=tuple(robots))
 
 
 def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) -> Fleet:

@@ -2,25 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.checks.meeting import SHARED_LOOKUP, code_of
+from multibot_rewrite.checks.meeting import CONTROLLERS, SHARED_LOOKUP, code_of
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.fleets.member import Member, line_of
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.readback.meeting import Meeting, meetings
 from multibot_rewrite.remap.records import Table
+from multibot_rewrite.remap.ways import MANAGER
 
 
 def with_meetings(table: Table, members: Sequence[Member], naming: Naming) -> Table:
     """The table with an error for each name that two robots have and that is not shared.
 
     The table's own checks name the topics of ROS nodes; these are the topics of the simulator, nodes
-    and frames besides.
+    and frames besides. Controllers that a stack names are in the table, with their spawners' rules.
     """
     named = {name for it in table.problems for name in it.names}
     found = [it for it in _meetings(members, naming) if named.isdisjoint(it.names)]
-    return table._replace(problems=(*table.problems, *found))
+    kept = dict.fromkeys(without_started(found, table, [it.robot for it in members]))
+    return table._replace(problems=(*table.problems, *kept))
+
+
+def without_started(
+    findings: Iterable[Finding], table: Table, robots: Iterable[str]
+) -> Iterator[Finding]:
+    """The findings about these robots without those of controllers, if their spawners have rules."""
+    spawned = {it.robot for it in table.nodes if it.home.host == MANAGER}
+    started = spawned.issuperset(robots)
+    return (it for it in findings if not (started and it.code == CONTROLLERS))
 
 
 def _meetings(members: Sequence[Member], naming: Naming) -> Iterator[Finding]:
@@ -30,7 +41,10 @@ def _meetings(members: Sequence[Member], naming: Naming) -> Iterator[Finding]:
         return
     by_robot = {it.robot: it for it in members}
     for it in meetings({it.robot: it.reading for it in members}, naming):
-        yield _finding(it, by_robot[it.robot])
+        if not it.name.of_controllers:
+            yield _finding(it, by_robot[it.robot])
+    # The rewrite says what to do about these.
+    yield from (it for member in members for it in member.shared if it.code == CONTROLLERS)
 
 
 def _finding(met: Meeting, member: Member) -> Finding:
@@ -44,4 +58,4 @@ def _finding(met: Meeting, member: Member) -> Finding:
 
 def _level(code: str) -> str:
     """Whether one robot finds another's sensor depends on the order in which they are spawned."""
-    return WARNING if code == SHARED_LOOKUP else ERROR
+    return WARNING if code in (SHARED_LOOKUP, CONTROLLERS) else ERROR

@@ -6,23 +6,24 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.evidence.nodes import nodes_of
+from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
 
 # What decides the nodes of a robot.
-NodeSources = tuple[tuple[str, ...], tuple[str, ...]]
+NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...]]
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Robots for which this is equal run the same nodes."""
-    return spec.stacks, spec.companions.get("params", ())
+    return spec.stacks, spec.companions.get("params", ()), spec.launch
 
 
 class RobotEvidence(NamedTuple):
@@ -39,9 +40,11 @@ def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotEvidence:
     """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
     parameters = load_known_nodes(file.parameters, file.distro)
     documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    given = tuple(given_nodes(documents, parameters))
-    known = _known(given, file)
-    return RobotEvidence(given, known, *nodes_of(stack_nodes(spec, file), given, known))
+    own = tuple(given_nodes(documents, parameters))
+    known, stack = _known(own, file), stack_nodes(spec, file)
+    launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
+    given = given_with(launched, own)
+    return RobotEvidence(given, known, *nodes_with(launched, stack, given, known))
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.companions.rviz.rewrite import world_frame
-from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import Rule, declare
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -60,8 +60,39 @@ NO_SINGLE_ROOT = declare(
     WARNING,
     what="A robot has a pose, but no root frame or several. The pose is not published.",
     why="A pose is the transform from the world to the root frame of a robot.",
-    fix="Connect the frames to one tree. A description that has the world as its root says itself "
-    "where the robot is: change it there, and remove the pose.",
+    fix="Connect the frames to one tree, by a joint or by the base frame of a node.",
+    bad="""\
+# in two_trees.urdf no joint connects the base with the mast
+robots:
+  - {name: robot1, description: two_trees.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+robots:
+  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "two_trees.urdf": """\
+<robot name="rover">
+  <link name="base"/><link name="wheel"/><link name="mast"/><link name="lamp"/>
+  <joint name="a" type="fixed"><parent link="base"/><child link="wheel"/></joint>
+  <joint name="b" type="fixed"><parent link="mast"/><child link="lamp"/></joint>
+</robot>
+""",
+    },
+)
+POSE_ON_WORLD = declare(
+    "MF709",
+    "pose-of-robot-on-world",
+    ERROR,
+    what="A robot has a pose, and a joint of its description holds it on the world already.",
+    why="The joint's origin is where tf has the robot, so the pose moves it in the simulator alone: "
+    "two arms of one description are at the same place in tf, and plan through each other.",
+    fix="Make the joint's origin an argument of the xacro, give it with `arguments`, and remove the "
+    "pose. Or take the link world and its joint out of the description: the pose is published then.",
     bad="""\
 # arm.urdf has a joint from the link "world" to "base_link"
 robots:
@@ -175,12 +206,15 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         hint = "a second parent would make the frame jump"
         yield _finding(LOCALISED_ALREADY, robot, what, hint)
         return
+    if held := [it for it in sent[""] if _holds(it, naming)]:
+        if pose != ORIGIN:
+            yield _on_world(robot, held[0])
+        return
     roots = _roots(sent, naming)
     if len(roots) != 1:
         frames = f"{len(roots)} root frames ({', '.join(roots)})" if roots else "no root frame"
-        hint = "connect them" if roots else "its description has the world as parent already"
         what = f"its pose is not published, because it has {frames} instead of one"
-        yield _finding(NO_SINGLE_ROOT, robot, what, hint)
+        yield _finding(NO_SINGLE_ROOT, robot, what, "connect them")
         return
     local = AMCL in sent
     if local:
@@ -248,6 +282,24 @@ def _locates(edge: Edge, naming: Naming) -> bool:
     """Does it place a robot's frame in a shared frame?"""
     shared = naming.shared_frames
     return not edge.static and edge.parent in shared and edge.child not in shared
+
+
+def _holds(edge: Edge, naming: Naming) -> bool:
+    """Does a joint of the description fix a robot's frame to a shared one?"""
+    shared = naming.shared_frames
+    return edge.static and edge.parent in shared and edge.child not in shared
+
+
+def _on_world(robot: RewrittenRobot, held: Edge) -> Finding:
+    what = (
+        f"its pose is not used in tf: its description fixes {held.child!r} to {held.parent!r}, at the "
+        "origin of that joint"
+    )
+    hint = (
+        "set the joint's origin by an argument of the xacro and remove the pose, "
+        f"or take {held.parent!r} out of the description"
+    )
+    return _finding(POSE_ON_WORLD, robot, what, hint)
 
 
 def _roots(sent: Mapping[str, list[Edge]], naming: Naming) -> list[str]:

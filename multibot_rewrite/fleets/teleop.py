@@ -6,17 +6,23 @@ Source: teleop_twist_keyboard jazzy (``stamped`` and ``frame_id``; it publishes 
 from __future__ import annotations
 
 import shlex
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.companions.names.robot_topics import robot_topic
+from multibot_rewrite.companions.rviz.read_config import text_of
+from multibot_rewrite.companions.yaml_text import items
+from multibot_rewrite.fleets.bridge_entry import BOTH, GZ, ROS
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.transforms import description_edges
+from multibot_rewrite.remap.bridged_topics import DIRECTIONS, bridged_topics
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 PLAIN, STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 COMMAND = "cmd_vel"
+TO_GZ = DIRECTIONS["out"]
 
 
 class Teleop(NamedTuple):
@@ -29,14 +35,27 @@ class Teleop(NamedTuple):
 
 
 def teleops(plan: FleetPlan, stamped: Collection[str] = ()) -> tuple[Teleop, ...]:
-    """How each robot is driven; ``stamped`` are topics that are bridged with a stamp."""
-    return tuple(teleop(plan, robot, stamped) for robot in plan.robots)
+    """How each robot is driven that reads velocity commands; ``stamped`` are topics that are bridged
+    with a stamp. Raises InputError for a bridge file that cannot be read."""
+    driven = (it for it in plan.robots if _is_driven(plan, it) or _usual(it) in stamped)
+    return tuple(teleop(plan, robot, stamped) for robot in driven)
+
+
+def _is_driven(plan: FleetPlan, robot: RewrittenRobot) -> bool:
+    """Does something read velocity commands, or send them to a base that is not in the plan?"""
+    own = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
+    sends = any(it.endpoint.role == PUBLISHES and it.name == _usual(robot) for it in own)
+    return sends or bool(_listeners(plan, robot))
+
+
+def _usual(robot: RewrittenRobot) -> str:
+    return robot_topic(robot.topics, f"/{COMMAND}")
 
 
 def teleop(plan: FleetPlan, robot: RewrittenRobot, stamped: Collection[str] = ()) -> Teleop:
     """The robot's ``cmd_vel`` if a node subscribes to it, else the first one with a subscriber."""
-    name, usual = robot.spec.namespace, robot_topic(robot.topics, f"/{COMMAND}")
-    heard = _listeners(plan, name)
+    name, usual = robot.spec.namespace, _usual(robot)
+    heard = _listeners(plan, robot)
     fed = usual in heard or usual in stamped or not heard
     topic = usual if fed else next(iter(heard))
     types = heard.get(topic, set())
@@ -56,16 +75,35 @@ def command(it: Teleop) -> str:
     return shlex.join([*run, *arguments(it)])
 
 
-def _listeners(plan: FleetPlan, robot: str) -> dict[str, set[str]]:
-    """Subscribed ``cmd_vel`` topics without a publisher in the plan, with their types."""
-    own = [it for it in plan.fleet.table.names if it.robot == robot and it.endpoint.kind == TOPIC]
+def _listeners(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, set[str]]:
+    """Subscribed ``cmd_vel`` topics without a publisher in the plan, with their types, then those of
+    any name that bridges bring to the simulator."""
+    names = (it for it in plan.fleet.table.names if it.robot == robot.spec.namespace)
+    own = [it for it in names if it.endpoint.kind == TOPIC]
     sent = {it.name for it in own if it.endpoint.role == PUBLISHES}
     heard: dict[str, set[str]] = {}
     for name in own:
         asked = name.endpoint.name.rpartition("/")[2]
         if asked == COMMAND and name.endpoint.role != PUBLISHES and name.name not in sent:
             heard.setdefault(name.name, set()).add(name.endpoint.type)
+    for topic, type_ in _bridged(plan, robot):
+        if type_ in (PLAIN, STAMPED) and topic not in sent:
+            heard.setdefault(topic, set()).add(type_)
     return heard
+
+
+def _bridged(plan: FleetPlan, robot: RewrittenRobot) -> Iterator[tuple[str, str]]:
+    """The topics that go to the simulator, with their types: those of the robot's bridge files, then
+    those of the bridge that is made."""
+    for path in robot.spec.companions.get("bridge", ()):
+        root = yaml_of(path).root
+        for entry in items(root) if root is not None else ():
+            ros = text_of(entry, BOTH) or text_of(entry, ROS) or text_of(entry, GZ)
+            if text_of(entry, "direction") == TO_GZ and ros:
+                yield robot_topic(robot.topics, ros), text_of(entry, "ros_type_name")
+    own = {robot.spec.namespace: plan.fleet.inventories[robot.spec.namespace]}
+    made, _ = bridged_topics(own, plan.fleet.naming)
+    yield from ((it.ros, it.ros_type) for it in made if it.direction == TO_GZ)
 
 
 def _base(robot: RewrittenRobot) -> str:

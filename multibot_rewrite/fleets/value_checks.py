@@ -42,12 +42,15 @@ class RobotNames(NamedTuple):
 
 
 class ValueInFile(NamedTuple):
-    """A value of a robot's file, the robot's names, and the words of the other robots."""
+    """A value of a robot's file, the robot's names, and the words of the other robots.
+
+    ``before_names`` is true for what the node puts before names of the description as they are."""
 
     own: RobotNames
     others: Mapping[str, str]
     naming: Naming
     value: OutputValue
+    before_names: bool = False
 
 
 Check = Callable[[ValueInFile], Iterator[Finding]]
@@ -164,7 +167,7 @@ def holds_twice(token: str, word: str) -> Finding:
 def _prefix_at_run_time(place: ValueInFile) -> Iterator[Finding]:
     """A parameter that makes a node add the prefix a second time."""
     key, text = place.value.key, place.value.text.strip()
-    if not place.naming.layout.frames or place.value.is_key:
+    if not place.naming.layout.frames or place.value.is_key or place.before_names:
         return
     prefix = key in PREFIXES and text not in ("", "~", "null", "/")
     if prefix or (key == ENABLES and text.lower() == "true"):

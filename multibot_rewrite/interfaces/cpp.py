@@ -1,4 +1,4 @@
-"""C++ -> what its classes call. The only import of tree-sitter.
+"""C++ -> what its classes call.
 
 What is looked for is data: ``HANDLERS`` has a function for each kind of syntax.
 """
@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from multibot_rewrite.interfaces.expressions import (
@@ -33,10 +32,10 @@ from multibot_rewrite.interfaces.records import (
     Source,
     Value,
 )
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.interfaces.syntax import nodes_of
 
 if TYPE_CHECKING:
-    from tree_sitter import Node, Parser, QueryCursor
+    from multibot_rewrite.interfaces.syntax import Node
 
 LONGEST_CONDITION = 60
 _EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
@@ -44,32 +43,11 @@ _COMPONENT = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)"
 _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
 
 
-@cache
-def _tools() -> tuple[Parser, QueryCursor]:
-    """The parser, and the query for all kinds of syntax that have a handler."""
-    try:
-        import tree_sitter
-        import tree_sitter_cpp
-    except ImportError:
-        raise UsageError(
-            "reading C++ needs tree-sitter; pip install 'multibot_rewrite[interfaces]'"
-        ) from None
-    language = tree_sitter.Language(tree_sitter_cpp.language())
-    query = tree_sitter.Query(language, "\n".join(f"({kind}) @found" for kind in HANDLERS))
-    return tree_sitter.Parser(language), tree_sitter.QueryCursor(query)
-
-
-def _interesting(text: str) -> list[Node]:
-    parser, query = _tools()
-    tree = parser.parse(text.encode())
-    return sorted(query.captures(tree.root_node).get("found", ()), key=lambda it: it.start_byte)
-
-
 def read_cpp(text: str, place: Place) -> Source:
     """What a C++ file declares and calls."""
     clean = _MACRO.sub(lambda found: " " * len(found[0]), text)
     found: dict[type, list[Any]] = {kind: [] for kind in _COLUMNS}
-    for node in _interesting(clean):
+    for node in nodes_of(clean, tuple(HANDLERS)):
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]

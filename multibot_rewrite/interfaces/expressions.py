@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from tree_sitter import Node
+    from multibot_rewrite.interfaces.syntax import Node
 
 MAKERS = ("make_shared", "make_unique", "allocate_shared")
 # Their first argument is the text that they give back.

@@ -2,7 +2,7 @@
 
 ``load_fleet`` is enough for plain launch scripts and does not need launch. This room is for values that
 are known only while a launch file runs, such as a LaunchConfiguration; ``launch.frontend`` offers it to
-XML and YAML. The only module that imports launch and launch_ros, when needed. A robot or fleet that is
+XML and YAML. launch and launch_ros come through ``launch.door``, when needed. A robot or fleet that is
 not given is that of the enclosing group (``each_robot``). Files for nodes are in a folder that is
 removed at the end of the launch. Source: launch, launch_ros jazzy.
 """
@@ -20,6 +20,8 @@ from multibot_rewrite.companions.params.rcl_parameters import parameters_text
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets import spawn as spawning
 from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
+from multibot_rewrite.launch.door import missing as missing
+from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.node_options import node_options
 from multibot_rewrite.launch.robot_words import WORDS
 from multibot_rewrite.model import UsageError
@@ -50,15 +52,6 @@ class RobotRef(NamedTuple):
 
 
 HERE = RobotRef()
-
-
-def missing() -> str:
-    """Why launch cannot be imported; empty if it can."""
-    try:
-        from launch.frontend import expose_action  # noqa: F401
-    except ImportError as error:
-        return f"{type(error).__name__}: {error}"
-    return ""
 
 
 def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
@@ -96,9 +89,9 @@ def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
 
 def perform(context: Context, text: Text) -> str:
     """The value of a text with substitutions in this context."""
-    from launch.utilities import normalize_to_list_of_substitutions, perform_substitutions
-
-    return str(perform_substitutions(context, normalize_to_list_of_substitutions(text)))
+    utilities = of_launch("utilities")
+    parts = utilities.normalize_to_list_of_substitutions(text)
+    return str(utilities.perform_substitutions(context, parts))
 
 
 def description(robot: Text = None, fleet: Text = None) -> Substitution:
@@ -197,9 +190,8 @@ def place(robot: Text = None, fleet: Text = None, **action: Any) -> Action:
 @cache
 def substitution() -> Any:
     """The class of the substitutions of this room."""
-    from launch import Substitution as Base
 
-    class Multibot(Base):  # type: ignore[misc]
+    class Multibot(of_launch().Substitution):  # type: ignore[misc]
         """A value about a robot, known when the launch file runs."""
 
         def __init__(self, words: Sequence[Text], of: RobotRef) -> None:
@@ -214,27 +206,22 @@ def substitution() -> Any:
 
 def node_class() -> Any:
     """launch_ros's Node."""
-    from launch_ros.actions import Node
-
-    return Node
+    return of_launch_ros("actions").Node
 
 
 def action_options(entity: Any, parser: Any) -> dict[str, Any]:
     """The options of every action in an XML or YAML launch file, such as its condition."""
-    from launch import Action as Base
-
-    options: dict[str, Any] = Base.parse(entity, parser)[1]
+    options: dict[str, Any] = of_launch().Action.parse(entity, parser)[1]
     return options
 
 
 def expose(substitutions: Mapping[str, Any], actions: Mapping[str, Any]) -> None:
     """Register parsing functions for XML and YAML launch files."""
-    from launch.frontend import expose_action, expose_substitution
-
+    frontend = of_launch("frontend")
     for name, parse in substitutions.items():
-        expose_substitution(name)(parse)
+        frontend.expose_substitution(name)(parse)
     for name, parse in actions.items():
-        expose_action(name)(parse)
+        frontend.expose_action(name)(parse)
 
 
 def _node(robot: LoadedRobot, name: str, files: list[str], options: Mapping[str, Any]) -> Action:
@@ -245,11 +232,9 @@ def _node(robot: LoadedRobot, name: str, files: list[str], options: Mapping[str,
 
 def _loaded(container: str, options: Mapping[str, Any]) -> Action:
     """A component, loaded into the container that the robot runs."""
-    from launch_ros.actions import LoadComposableNodes
-    from launch_ros.descriptions import ComposableNode
-
-    loaded = {"composable_node_descriptions": [ComposableNode(**options)]}
-    return LoadComposableNodes(target_container=container, **loaded)
+    component = of_launch_ros("descriptions").ComposableNode(**options)
+    loaded = {"composable_node_descriptions": [component]}
+    return of_launch_ros("actions").LoadComposableNodes(target_container=container, **loaded)
 
 
 def _program(found: tuple[str, str], arguments: list[str]) -> Action:
@@ -268,17 +253,13 @@ def _own_file(context: Context, robot: LoadedRobot, node: str, describe: bool) -
 
 
 def _group(fleet: LoadedFleet, robot: LoadedRobot, actions: Iterable[Action]) -> Action:
-    from launch.actions import GroupAction, SetLaunchConfiguration
-
-    here = {FLEET: fleet.file, ROBOT: robot.name}
-    sets = [SetLaunchConfiguration(key, text) for key, text in here.items()]
-    return GroupAction([*sets, *actions])
+    known, here = of_launch("actions"), {FLEET: fleet.file, ROBOT: robot.name}
+    sets = [known.SetLaunchConfiguration(key, text) for key, text in here.items()]
+    return known.GroupAction([*sets, *actions])
 
 
 def _later(function: Callable[[Context], list[Action]], action: Mapping[str, Any]) -> Action:
-    from launch.actions import OpaqueFunction
-
-    return OpaqueFunction(function=function, **action)
+    return of_launch("actions").OpaqueFunction(function=function, **action)
 
 
 def _value_of(context: Context, words: Sequence[str], of: RobotRef) -> str:
@@ -330,19 +311,17 @@ def _written(context: Context, robot: LoadedRobot | None, file: str, text: str) 
 
 def _folder(context: Context) -> TemporaryDirectory[str]:
     """A folder that is removed when the launch shuts down, or at the latest with its context."""
-    from launch.event_handlers import OnShutdown
-
     folder = TemporaryDirectory(prefix="multibot_launch_")
-    gone = OnShutdown(on_shutdown=lambda event, context: folder.cleanup())
+    gone = of_launch("event_handlers").OnShutdown(
+        on_shutdown=lambda event, context: folder.cleanup()
+    )
     context.register_event_handler(gone)
     return folder
 
 
 def _warn(context: Context, findings: Iterable[Finding]) -> None:
-    from launch.logging import get_logger
-
     logged: set[Finding] = _of_launch(context, _LOGGED, set)
     for finding in findings:
         if finding not in logged:
             logged.add(finding)
-            get_logger("multibot").warning(str(finding))
+            of_launch("logging").get_logger("multibot").warning(str(finding))

@@ -13,6 +13,7 @@ from lxml.etree import _Element
 
 from multibot_rewrite.model import Site, UsageError
 from multibot_rewrite.naming import TOPIC_KINDS
+from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.readback.xml import child_text, text_of
@@ -21,13 +22,15 @@ from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, expand, parse_
 
 TOPIC, SERVICE = "topic", "service"
 REMAP_FLAGS = ("-r", "--remap")
-ROLES = ("publishes", "subscribes", "serves")
+PUBLISHES = "publishes"
+ROLES = (PUBLISHES, "subscribes", "serves")
 
 
 class ReadEndpoint(NamedTuple):
     """A topic or service of a node: its name in the code or in a parameter, and in the graph.
 
-    ``off`` are parameters that would turn it on.
+    ``off`` are parameters that would turn it on. ``of_controllers`` is true for what the controllers
+    have that it loads, where they take no rules of it.
     """
 
     kind: str
@@ -36,6 +39,7 @@ class ReadEndpoint(NamedTuple):
     full: str
     parameter: str = ""
     off: str = ""
+    of_controllers: bool = False
 
 
 class ReadRule(NamedTuple):
@@ -70,7 +74,11 @@ class ReadNode(NamedTuple):
 
 
 def node_of(
-    plugin: _Element, number: int, section: VocabularySection, links: Container[str]
+    plugin: _Element,
+    number: int,
+    section: VocabularySection,
+    links: Container[str],
+    release: str,
 ) -> ReadNode | None:
     """The ROS 2 node that a plugin starts; None where it starts none.
 
@@ -87,13 +95,14 @@ def node_of(
     rules = tuple(() if home is None else _rules(home))
     bound = _bound(name, namespace, [it.rule for it in rules])
     frames = tuple(frames_of(plugin, section))
+    endpoints = _endpoints(plugin, section, bound, rules)
     return ReadNode(
         section,
         number,
         name,
         namespace,
         rules,
-        tuple(_endpoints(plugin, section, bound, rules)),
+        tuple(_by_themselves(endpoints, section, _bound(name, namespace, ()), release)),
         tuple(_stems(plugin, section, bound)),
         frames,
         tuple(_sends(plugin, section, frames, links)),
@@ -166,6 +175,19 @@ def _endpoints(
     for source in (it.rule.source for it in rules):
         if source.startswith("~"):
             yield ReadEndpoint(TOPIC, "", source, _full(source, TOPIC, bound))
+
+
+def _by_themselves(
+    endpoints: Iterable[ReadEndpoint], section: VocabularySection, bare: BoundNode, release: str
+) -> Iterator[ReadEndpoint]:
+    """The endpoints with what controllers publish under the names they have without any rule, in a
+    release in which they take none of the plugin that loads them."""
+    apart = section.process_wide and not controller_way(release).of_manager
+    for it in endpoints:
+        if apart and it.role == PUBLISHES:
+            yield it._replace(full=_full(it.name, it.kind, bare), of_controllers=True)
+        else:
+            yield it
 
 
 def _holds_topic(site: Site) -> bool:

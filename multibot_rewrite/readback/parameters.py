@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from lxml.etree import _Element
 
 from multibot_rewrite.model import Site
+from multibot_rewrite.readback.own_defaults import completed
 from multibot_rewrite.readback.xml import child_text, is_on, values_at
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 
@@ -17,7 +18,7 @@ def values_of(host: _Element, site: Site) -> list[str]:
         return []
     given = list(values_at(host, site.path))
     if not any(given) and (not given or site.empty == "default"):
-        given = [_default(host, site.default)]
+        given = [default_of(host, site.default)]
     return [value for value in given if value]
 
 
@@ -28,15 +29,15 @@ def _applies(host: _Element, site: Site) -> bool:
     return text in values_at(host, f"{above}/{sibling}" if above else sibling)
 
 
-def _default(host: _Element, default: str) -> str:
+def default_of(host: _Element, default: str) -> str:
     """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
-    a sibling with its last segment replaced."""
+    a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as."""
     conditions, asked, default = default.rpartition("?")
     if asked and not all(_holds(host, it) for it in conditions.split(",")):
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
-        return default
+        return completed(host, default)
     topic = child_text(host, sibling) or ""
     return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
 
@@ -44,7 +45,9 @@ def _default(host: _Element, default: str) -> str:
 def _holds(host: _Element, condition: str) -> bool:
     tag, _, wanted = condition.partition("=")
     text = child_text(host, tag) or ""
-    return is_on(text, usual=False) if wanted == "true" else text == wanted
+    if wanted not in ("true", "false"):
+        return text == wanted
+    return is_on(text, usual=False) == (wanted == "true")
 
 
 def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:

@@ -7,10 +7,12 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.model import Site
 from multibot_rewrite.readback.nodes import TOPIC, ReadNode, frames_of, node_of, resolved
-from multibot_rewrite.readback.parameters import values_of
+from multibot_rewrite.readback.own_defaults import MODEL, around, is_nested
+from multibot_rewrite.readback.parameters import default_of, values_of
 from multibot_rewrite.readback.sections import hardware_section, plugin_section, sensor_sections
-from multibot_rewrite.readback.xml import read_xml
+from multibot_rewrite.readback.xml import read_xml, values_at
 from multibot_rewrite.rewriters.vocabulary import Vocabulary, VocabularySection
 
 NODE, FRAME = "node", "frame"
@@ -25,22 +27,25 @@ WITH_TOPICS = (
 class RuntimeName(NamedTuple):
     """A name in the running system: its kind (topic, service, node, frame, or what a plugin looks up
     in the whole world), its text, and where it comes from: the ``number``-th element with this
-    ``tag``, and ``path``, the parameter."""
+    ``tag``, and ``path``, the parameter; ``of_controllers`` as in ``ReadEndpoint``."""
 
     kind: str
     name: str
     tag: str
     number: int
     path: str
+    of_controllers: bool = False
 
 
 class Reading(NamedTuple):
     """What a description starts. ``unknown`` are the plugins that the vocabulary does not have, each
-    as its number among the plugins and its library."""
+    as its number among the plugins and its library; ``missed`` the frames below a model's name, which
+    are in the tree of no robot, though nothing else of the model sends their transform."""
 
     nodes: tuple[ReadNode, ...]
     names: tuple[RuntimeName, ...]
     unknown: tuple[tuple[int, str], ...]
+    missed: tuple[RuntimeName, ...] = ()
 
 
 class _Host(NamedTuple):
@@ -67,12 +72,45 @@ def read(data: bytes, file: str, vocabulary: Vocabulary) -> Reading:
             hosts.append(_Host(plugin, number, section))
     links = [*_links(root)]
     known_links = frozenset(it.name for it in links)
-    nodes = tuple(node for it in hosts if (node := node_of(*it, known_links)) is not None)
+    made = (node_of(*it, known_links, vocabulary.release) for it in hosts)
+    nodes = tuple(node for node in made if node is not None)
     with_node = {it.number for it in nodes}
     names = [*links, *_of_nodes(nodes), *_of_plugins(root, hosts, with_node, vocabulary)]
     names += [*_of_hardware(root, vocabulary), *_of_sensors(root, vocabulary)]
     names += _of_elements(root, vocabulary)
-    return Reading(nodes, tuple(names), tuple(unknown))
+    missed = tuple(it for it in names if it.kind == FRAME and it.name.startswith(MODEL))
+    heard = tuple(it for it in names if it not in missed) if missed else tuple(names)
+    return Reading(nodes, heard, tuple(unknown), _of_first_senders(missed, hosts))
+
+
+def _of_first_senders(
+    missed: tuple[RuntimeName, ...], hosts: list[_Host]
+) -> tuple[RuntimeName, ...]:
+    """Without those of systems whose transform another one of the model sends, or sends first."""
+    numbers = {it.number for it in missed}
+    models = {it.number: around(it.element) for it in hosts}
+    sent = {models[it.number] for it in hosts if it.number not in numbers and _sends_frames(it)}
+    partly = {it.number for it in hosts if it.number in numbers and _gives_frames(it)}
+    sent |= {models[it] for it in partly}
+    first: dict[_Element, int] = {}
+    for number in sorted(numbers - partly):
+        if models[number] not in sent:
+            first.setdefault(models[number], number)
+    first = {model: it for model, it in first.items() if not is_nested(model)}
+    return tuple(it for it in missed if it.number in partly or it.number in first.values())
+
+
+def _sends_frames(host: _Host) -> bool:
+    return any(default_of(host.element, it.default) for it in _frame_sites(host))
+
+
+def _frame_sites(host: _Host) -> list[Site]:
+    sites = host.section.sites
+    return [it for it in sites if MODEL in it.default and it.kinds[0] == FRAME]
+
+
+def _gives_frames(host: _Host) -> bool:
+    return any(any(values_at(host.element, it.path)) for it in _frame_sites(host))
 
 
 def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
@@ -81,7 +119,8 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
             yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
         for it in node.endpoints:
             if not it.off:
-                yield RuntimeName(it.kind, it.full, "plugin", node.number, it.parameter or it.name)
+                path, of = it.parameter or it.name, it.of_controllers
+                yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of)
         for path, full in node.stems:
             yield RuntimeName(TOPIC, full, "plugin", node.number, path)
 

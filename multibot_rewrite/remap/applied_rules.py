@@ -8,17 +8,16 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.readback.controllers import ControllerWay, controller_way
 from multibot_rewrite.remap.records import PUBLISHES, Endpoint, NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,
     MANAGER,
     PLUGIN,
     SPAWNER,
-    ControllerWay,
     Delivery,
     Key,
     Pair,
-    controller_way,
     deliveries,
     rules_by_taker,
 )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.releases import RELEASES, has_release, since_version
+from multibot_rewrite.releases import RELEASES, has_release, releases_with, since_version
 from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 
@@ -51,7 +51,7 @@ def _elsewhere(library: NodeLibrary, release: str) -> Iterator[tuple[str, str]]:
     """Nodes and stacks that the release lacks, and the releases that have them."""
     for name, node in library.nodes.items():
         if name not in library.stacks and not has_release(node.releases, release):
-            yield name, ", ".join(it for it in RELEASES if has_release(node.releases, it))
+            yield name, ", ".join(releases_with(node.releases))
     for name in library.stacks:
         if not _has_stack(library, name, release):
             yield name, ", ".join(it for it in RELEASES if _has_stack(library, name, it))
@@ -71,6 +71,7 @@ def _node(node: NodeFacts, release: str) -> NodeFacts:
         when=_condition(node.when, node.releases, node.package, release),
         frames=frames,
         sends=tuple(it for it in node.sends if known.issuperset(it[:2])),
+        claims=tuple(it for it in node.claims if has_release(it.releases, release)),
     )
 
 

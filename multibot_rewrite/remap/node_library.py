@@ -42,13 +42,13 @@ from multibot_rewrite.remap.yaml_with_lines import (
 from multibot_rewrite.rosnames import check_node_name
 
 NODE_WORDS = (
-    *("package", "host", "plugin", "shared", "note"),
+    *("package", "host", "plugin", "shared", "note", "when"),
     *("with", "frames", "sends", "ids", "claims", "fixed"),
     "nodl",
 )
 SENT_KEYS = ("child", "if")
 CLAIM_KINDS = ("command", "state")
-CLAIM_KEYS = (*CLAIM_KINDS, "if")
+CLAIM_KEYS = (*CLAIM_KINDS, "if", "releases")
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS, *ROLES)
 STACK_KEYS = ("about", "include", "container", "nodes", "releases")
 ENTRY_KEYS = ("node", "as", "shared", "when", "with", "names", "remaps", "releases")
@@ -178,10 +178,11 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         flag_of(keys, "shared"),
         word_of(keys, "note"),
         host=word_of(keys, "host"),
+        when=word_of(keys, "when"),
         frames=frames,
         fixed=words_of(keys, "fixed"),
         sends=tuple(_sends(keys, frames)),
-        claims=tuple(_claims(keys)),
+        claims=tuple(read_claims(keys)),
         nodl=words_of(keys, "nodl"),
         ids=tuple((name, word(it, f"ids {name}")) for name, it in table_of(keys, "ids").items()),
         releases=releases_of(keys),
@@ -218,15 +219,15 @@ def _sends(
         yield SentTransform(parent, _known(sent["child"], "frame", known), condition_of(sent))
 
 
-def _claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
-    """The interfaces of a controller: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``, with ``if``."""
+def read_claims(keys: Mapping[str, YamlItem]) -> Iterator[Claim]:
+    """The interfaces under ``claims``: ``{command: TEMPLATE}`` or ``{state: TEMPLATE}``."""
     for item in entries_of(keys, "claims"):
         claim = table(item, "a claim", CLAIM_KEYS)
         kinds = [it for it in CLAIM_KINDS if it in claim]
         if len(kinds) != 1:
             wrong(item, "a claim is of one kind; write {command: ...} or {state: ...}")
         for template in words_of(claim, kinds[0]):
-            yield Claim(kinds[0], template, condition_of(claim))
+            yield Claim(kinds[0], template, condition_of(claim), releases_of(claim))
 
 
 def _taken_over(

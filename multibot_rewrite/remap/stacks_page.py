@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.readback.controllers import CONTROLLER_WAYS, ControllerWay
 from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
-from multibot_rewrite.remap.ways import CONTROLLER_WAYS, ControllerWay
 
 HEAD = """\
 # Nodes and stacks
 
 The topics, services and actions of known nodes, and the stacks of nodes that are started together.
-Generated from `multibot_rewrite/remap/nodes.yaml` and `stacks.yaml` by
+Generated from `nodes.yaml`, `controllers.yaml` and `stacks.yaml` of `multibot_rewrite/remap/` by
 `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
 
 Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;

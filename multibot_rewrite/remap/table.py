@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
+from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -25,7 +26,7 @@ from multibot_rewrite.remap.records import (
 from multibot_rewrite.remap.table_checks import PROBE, collisions, unreachable, useless_rules
 from multibot_rewrite.remap.targets import expanded, placed, target_of
 from multibot_rewrite.remap.way_checks import not_taken
-from multibot_rewrite.remap.ways import MANAGER, controller_way
+from multibot_rewrite.remap.ways import MANAGER
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 SAME = "all robots would share this name otherwise"
@@ -83,8 +84,7 @@ def _build(
 
 def _given_by_plugins(own: Pairs, robot: str, release: str) -> Pairs | None:
     """The controllers that get the rules of their plugin; None where no stack names them."""
-    way = controller_way(release)
-    if not (way.forwarded or way.process_wide):
+    if not controller_way(release).of_manager:
         return ()
     found = [pair for pair in own if pair[0].host == MANAGER]
     facts = [node for node, _ in found]

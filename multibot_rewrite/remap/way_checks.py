@@ -7,9 +7,10 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
-from multibot_rewrite.remap.records import ACTION, TOPIC, EndpointName, Table
-from multibot_rewrite.remap.ways import MANAGER, PLUGIN, controller_way
+from multibot_rewrite.remap.records import ACTION, PUBLISHES, TOPIC, EndpointName, Table
+from multibot_rewrite.remap.ways import MANAGER, PLUGIN
 from multibot_rewrite.rosnames import resolve_bound
 
 # A second robot shows what rules for all of a process do.
@@ -31,7 +32,7 @@ NOT_TAKEN = declare(
   <gazebo>
     <plugin name="control" filename="gz_ros2_control-system">
       <ros>
-        <remapping>/tf:=tf</remapping>
+        <remapping>~/odom:=odom</remapping>
       </ros>
     </plugin>
   </gazebo>
@@ -57,8 +58,10 @@ NOT_TAKEN = declare(
 def not_taken(table: Table) -> Iterator[Finding]:
     """Names of the code or of another robot that a node has because its rule does not reach it.
 
-    One finding a node.
+    One finding a node. What a plugin's controllers are known to publish is for the judge of the
+    description, who says it where no stack names them (MB435).
     """
+    of_manager = controller_way(table.release).of_manager
     names: dict[tuple[str, str], list[EndpointName]] = {}
     owners: dict[str, set[str]] = {}
     for it in table.names:
@@ -69,6 +72,8 @@ def not_taken(table: Table) -> Iterator[Finding]:
         plain = tuple((it.source, it.target) for it in running.node.rules)
         if running.node.home.process_wide or running.rules != plain:
             own = names.get((running.node.robot, running.node.full_name), ())
+            if running.node.home.process_wide and not of_manager:
+                own = [it for it in own if it.endpoint.role != PUBLISHES]
             wrong = dict.fromkeys(_wrong(own, running, owners))
             if wrong:
                 yield _finding(running, list(wrong), table.release)

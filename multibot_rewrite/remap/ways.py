@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
+from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.records import EndpointName, NodeRule, NodeTable, Table
 
@@ -22,29 +23,6 @@ MANAGER = "controller_manager"
 # A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
 COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 Pair: TypeAlias = tuple[str, str]
-
-
-class ControllerWay(NamedTuple):
-    """How the controllers of ros2_control get rules in some releases.
-
-    ``spawner``: its option --controller-ros-args has them. ``forwarded``: those of the controller
-    manager are theirs, too. ``process_wide``: those of the whole process are.
-    """
-
-    releases: str
-    spawner: bool
-    forwarded: bool
-    process_wide: bool
-    source: str
-
-
-_IN = "controller_manager/src/controller_manager.cpp"
-CONTROLLER_WAYS = (
-    ControllerWay("<=humble", False, False, True, f"ros-controls/ros2_control@2.54.0 {_IN}"),
-    # The spawner's option came with 4.22.0, the forwarding with 4.16.1; it warns since then.
-    ControllerWay("jazzy, kilted", True, True, False, f"ros-controls/ros2_control@4.46.0 {_IN}"),
-    ControllerWay("lyrical+", True, False, False, f"ros-controls/ros2_control@6.5.0 {_IN}"),
-)
 
 
 class Delivery(NamedTuple):
@@ -64,11 +42,6 @@ class Delivery(NamedTuple):
 Key: TypeAlias = tuple[str, str]
 Nodes: TypeAlias = Mapping[Key, NodeTable]
 Sources: TypeAlias = Mapping[str, frozenset[str]]
-
-
-def controller_way(release: str) -> ControllerWay:
-    """How controllers get rules in a release."""
-    return next(it for it in CONTROLLER_WAYS if has_release(it.releases, release))
 
 
 def deliveries(table: Table) -> tuple[Delivery, ...]:

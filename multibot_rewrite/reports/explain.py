@@ -10,6 +10,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
+from multibot_rewrite.rewriters.insert import Insertion, without
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.tree import Tree
@@ -22,6 +23,7 @@ class Explanation(NamedTuple):
     """One value: its place, the site that claims or keeps it if any, and in words what follows.
 
     ``new`` is the value for the robot; ``inserted`` are elements the plugin at this place gets.
+    ``source`` is where the vocabulary has it from, empty where it does not say.
     """
 
     line: int
@@ -32,6 +34,7 @@ class Explanation(NamedTuple):
     reason: str
     new: str
     inserted: tuple[str, ...] = ()
+    source: str = ""
 
 
 def explain_line(
@@ -41,7 +44,15 @@ def explain_line(
     plan = make_plan(inventory, naming)
     found = [*_claimed(inventory, plan, naming, robot, line), *_others(inventory, tree, line)]
     found += _inserted(inventory, plan, robot, line)
+    found = [it._replace(source=_source(tree, it.site)) if it.site else it for it in found]
     return sorted(found, key=lambda item: (item.column, item.path))
+
+
+def _source(tree: Tree, site: Site) -> str:
+    """The source of the section that has the site."""
+    type_, name, *_ = site.section.split(" ")
+    sections = tree.vocabulary.find(type_, name)
+    return next((it.source for it in sections if it.source and site in it.sites), "")
 
 
 def _claimed(
@@ -134,16 +145,20 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
         mine = [item for item in plan.insertions if item.parent in inside]
         added = tuple(item.xml.replace(ROBOT_SLOT, robot) for item in mine if not item.step)
         if place[0] == line and added:
-            reason = "added, or all robots would share the default"
+            reason = f"added, or {without(mine[0])} the default"
             yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
         for item in mine:
             there = item.filled
             place = (0, 0) if there is None else locate(source, starts[there])
             if there is not None and place[0] == line:
                 text = item.xml.replace(ROBOT_SLOT, robot)
-                reason = f"filled: empty it is read as {item.old!r}, which all robots would share"
+                reason = f"filled: empty it is read as {item.old!r}, which {_who(item)}"
                 path = tag_path(there, "")
                 yield Explanation(*place, path, name, None, reason, name, (text,))
+
+
+def _who(item: Insertion) -> str:
+    return "all robots would share" if item.shared else "nothing else has"
 
 
 def _place(inventory: Inventory, start: int, attribute: str, value: str) -> tuple[int, int]:

@@ -7,10 +7,18 @@ from typing import NamedTuple
 
 from lxml import etree
 
-from multibot_rewrite.naming import NAMESPACE, POSTFIX, Naming, spelled
+from multibot_rewrite.model import Site
+from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.rewriters.own_defaults import (
+    MODEL,
+    SENSOR,
+    Hosts,
+    default_of,
+    filled,
+    second_senders,
+)
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, respelled, spell_default
-from multibot_rewrite.rewriters.switches import is_true
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection, split_path, split_step
 from multibot_rewrite.rosnames import expand, split_remap
@@ -25,7 +33,8 @@ class Insertion(NamedTuple):
 
     ``xml`` and ``new`` hold ``ROBOT_SLOT`` where the robot's name goes; ``old`` is what the consumer
     would use without it. ``step`` finds the element in ``parent`` where it is there and empty: then
-    nothing but its text is put into it.
+    nothing but its text is put into it. ``shared`` tells that all robots would have ``old``, else it is
+    a name that nothing else has.
     """
 
     parent: etree._Element
@@ -35,6 +44,7 @@ class Insertion(NamedTuple):
     old: str
     new: str
     step: str = ""
+    shared: bool = True
 
     @property
     def filled(self) -> etree._Element | None:
@@ -42,17 +52,33 @@ class Insertion(NamedTuple):
         return self.parent.find(query(self.step)) if self.step else None
 
 
-def insertions(
+def insertions(hosts: Hosts, declared: Declared, naming: Naming) -> list[Insertion]:
+    """Everything that ``hosts`` need beyond what they say themselves."""
+    served = [(host, section) for host, section in hosts if section.inserts]
+    silent = second_senders(served, naming)
+    return [
+        item
+        for host, section in served
+        for item in _insertions(host, section, declared, naming)
+        if item.shared or host not in silent
+    ]
+
+
+def _insertions(
     host: etree._Element, section: VocabularySection, declared: Declared, naming: Naming
 ) -> list[Insertion]:
-    """Everything ``host``, served by ``rewriter``, needs beyond what it says itself."""
-    if not section.inserts:
-        return []
     home = _ros_home(host, section)
     found = list(_defaults(host, section, declared, naming, "ros/" if home is host else ""))
     if any(site.path == "ros/remapping" for site in section.sites):
         found += _remaps(host, section, naming, home)
     return found
+
+
+def without(item: Insertion) -> str:
+    """What would be wrong without it, before the name."""
+    if item.shared:
+        return "all robots would share"
+    return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
 
 
 def _ros_home(host: etree._Element, section: VocabularySection) -> etree._Element | None:
@@ -72,38 +98,33 @@ def _defaults(
     hidden: str,
 ) -> Iterator[Insertion]:
     for site in section.sites:
-        default = _default(host, site.default, naming)
+        default = default_of(host, site.default, naming)
         if not default:
             continue
+        of_model = default.startswith(MODEL)
         path = site.path.removeprefix(hidden)
         there = _there(host, path)
         if there is not None and (site.empty != "default" or "@" in path or text_of(there)):
             continue
-        spelling = spell_default(site, default, declared, naming)
-        if not spelling:
+        wanted = filled(host, site.fill) or default.removeprefix(MODEL)
+        # A naming that renames nothing is for one robot as it is.
+        if of_model and not naming.separators:
             continue
-        new = respelled(default, spelling, ROBOT_SLOT)
-        made = _insertion(host, path, spelling[0].kind, default, new)
+        spelling = spell_default(site, wanted, declared, naming)
+        new = respelled(wanted, spelling, ROBOT_SLOT)
+        if not of_model and new == _without(site, default, naming):
+            continue
+        kind = spelling[0].kind if spelling else site.kinds[0]
+        shared = not of_model and _without(site, default, naming) == default
+        made = _insertion(host, path, kind, default, new)._replace(shared=shared)
         yield made if there is None else _filling(made, there, path)
 
 
-def _default(host: etree._Element, default: str, naming: Naming) -> str:
-    """The value in force where the site is absent: a literal, or made from another topic."""
-    conditions, asked, default = default.rpartition("?")
-    if asked and not all(_holds(host, condition) for condition in conditions.split(",")):
-        return ""
-    sibling, derived, last = default.partition("/../")
-    if not derived:
+def _without(site: Site, default: str, naming: Naming) -> str:
+    """What the consumer has where nothing is inserted: a sensor may be renamed itself."""
+    if site.default != SENSOR:
         return default
-    # Only a postfix is in the segment that is replaced.
-    topic = text_at(host, sibling) if naming.topics == POSTFIX else ""
-    return topic[: topic.rfind("/") + 1] + last if topic else ""
-
-
-def _holds(host: etree._Element, condition: str) -> bool:
-    child, _, wanted = condition.partition("=")
-    text = text_at(host, child)
-    return is_true(text) if wanted == "true" else text == wanted
+    return spelled(naming, ROBOT_SLOT, "sensor", default)
 
 
 def _there(host: etree._Element, path: str) -> etree._Element | None:

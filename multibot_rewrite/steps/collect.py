@@ -15,6 +15,7 @@ from multibot_rewrite.rewriters.model_namespaces import below_models
 from multibot_rewrite.rewriters.spelling import ResolvedName, resolved_names, takes_empty
 from multibot_rewrite.rewriters.text import text_at, text_of
 from multibot_rewrite.rewriters.tree import Tree, TreeNode
+from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.steps.document import Document, read_document
 
 NOTHING: Declared = {}
@@ -40,6 +41,11 @@ class Inventory(NamedTuple):
     declared: dict[str, dict[str, Claim]]
     format: str
     names: list[tuple[ResolvedName, ...]]
+
+    @property
+    def served(self) -> list[tuple[etree._Element, VocabularySection]]:
+        """The hosts that have a section, with it."""
+        return [(it.element, it.node.section) for it in self.hosts if it.node.section is not None]
 
 
 def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHING) -> Inventory:

@@ -20,14 +20,14 @@ from typing import NamedTuple
 from lxml import etree
 
 from multibot_rewrite.model import Edit, InputError
-from multibot_rewrite.rewriters.insert import ESCAPES, Insertion, query
+from multibot_rewrite.rewriters.insert import ESCAPES, Insertion, query, without
+from multibot_rewrite.rewriters.own_defaults import MODEL
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rewriters.vocabulary import is_step
 from multibot_rewrite.steps.document import Document, emptied, fillable, tag_end, text_slot
 
 MARKER = b"<!-- multibot "
-WHY = "added, or all robots would share"
 
 
 class Marker(NamedTuple):
@@ -66,8 +66,8 @@ def _parent_edits(
     filled = [item.step for item in items if item.step]
     words = ["expanded"] if expanded else ["filled", *filled] if filled else []
     head = " ".join(["multibot", ROBOT_SLOT, f"+{len(elements)}", *words])
-    why = WHY if elements else WHY.removeprefix("added, ")
-    marker = f"<!-- {head} ({why} {_shared(items)}) -->"
+    added = "added, " if elements else ""
+    marker = f"<!-- {head} ({added}or {_why(items)}) -->"
     text = "".join(lead + part for part in (marker, *elements))
     if expanded:
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
@@ -75,11 +75,17 @@ def _parent_edits(
     return slot_edits(end, end, text)
 
 
-def _shared(items: list[Insertion]) -> str:
-    """What all robots would share without the inserted elements, as a comment can hold it."""
-    names = ("the root namespace" if item.kind == "namespace" else item.old for item in items)
+def _why(items: list[Insertion]) -> str:
+    """What would be without the inserted elements, as a comment can hold it."""
+    texts = dict.fromkeys(without(item) for item in items)
+    parts = [f"{it} {_names([item for item in items if without(item) == it])}" for it in texts]
     # A comment may not hold "--", a YAML string may not hold a colon and a space.
-    return ", ".join(dict.fromkeys(names)).replace("--", "- -").replace(": ", ":")
+    return ", and ".join(parts).replace("--", "- -").replace(": ", ":")
+
+
+def _names(items: list[Insertion]) -> str:
+    names = ("the root namespace" if item.kind == "namespace" else item.old for item in items)
+    return ", ".join(dict.fromkeys(name.replace(MODEL, "MODEL/") for name in names))
 
 
 def _lead(source: bytes, start: int, end: int) -> str:

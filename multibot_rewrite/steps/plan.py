@@ -59,7 +59,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
     """Apply ``naming`` once to every distinct name and place the results."""
     renames = make_renames(inventory, naming)
     edits, findings = _edits(inventory, renames)
-    document, claims, hosts, declared, *_ = inventory
+    document, claims, _, declared, *_ = inventory
     collisions = respell_collisions(document.root, claims, declared, respeller(renames, ROBOT_SLOT))
     findings += _unstable(inventory, renames, collisions)
     for claim, new in collisions:
@@ -68,12 +68,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
             findings.append(_not_editable(inventory, claim))
         else:
             edits += slot_edits(*slot, new)
-    added = [
-        item
-        for host in hosts
-        if host.node.section is not None
-        for item in insertions(host.element, host.node.section, declared, naming)
-    ]
+    added = insertions(inventory.served, declared, naming)
     edits += insertion_edits(document, added)
     # Stable: several edits at one place stay in the order they were made.
     edits.sort(key=_START)

@@ -18,7 +18,7 @@ from multibot_rewrite.model import Claim, Edit, InputError, ProofError
 from multibot_rewrite.naming import FRAME_KINDS, Naming, affix, removal, spelled
 from multibot_rewrite.rewriters.contact import respell_collisions
 from multibot_rewrite.rewriters.forms import Declared
-from multibot_rewrite.rewriters.insert import insertions, query
+from multibot_rewrite.rewriters.insert import insertions, query, without
 from multibot_rewrite.rewriters.spelling import (
     ROBOT_SLOT,
     ResolvedName,
@@ -195,12 +195,9 @@ def _inserted_names(it: Evidence) -> Iterator[tuple[ResolvedName, bool]]:
 
 def nothing_to_add(it: Evidence) -> None:
     """No plugin is left with a default or hard-wired topic that another robot would share."""
-    for host in it.result.hosts:
-        if host.node.section is None:
-            continue
-        for item in insertions(host.element, host.node.section, it.result.declared, it.naming):
-            file = it.inventory.document.file
-            raise ProofError(f"{file}: all robots would share {item.old!r}: nothing was inserted")
+    for item in insertions(it.result.served, it.result.declared, it.naming):
+        file = it.inventory.document.file
+        raise ProofError(f"{file}: {without(item)} {item.old!r}: nothing was inserted")
 
 
 def added_once(it: Evidence) -> None:

@@ -102,3 +102,25 @@ def test_a_vocabulary_is_checked_for_its_release(
     assert multibot.main([*words, "humble"]) == 2
     assert "there is no [element nowhere]" in capsys.readouterr().err
     assert multibot.main([*words, "jazzy"]) == 0
+
+
+def test_a_section_of_another_release_is_named(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "lamp.vocab").write_text("[plugin lamp]\nreleases: <=jazzy\nlink uses link\n")
+    words = ["vocabulary", "lamp", "--vocabulary", "lamp.vocab", "--distro"]
+    assert multibot.main([*words, "lyrical"]) == 2
+    said = "'lamp' is not in lyrical, only in humble, jazzy; name one of them with --distro"
+    assert said in capsys.readouterr().err
+    assert multibot.main([*words, "humble"]) == 0
+
+
+def test_why_says_where_it_is_written(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    place = "acme/lamps@1.2.0 src/lamp.cpp:34"
+    (folder / "why.vocab").write_text(f"[plugin lamp]\nsource: {place}\nlink uses link\n")
+    plugin = "<plugin filename='liblamp.so'><link>base</link></plugin>"
+    text = f"<robot name='r'><link name='base'/>\n<gazebo>\n{plugin}</gazebo></robot>"
+    (folder / "lamp.urdf").write_text(text)
+    assert urdf_postfix.main(["--why", "lamp.urdf:3", "--vocabulary", "why.vocab"]) == 0
+    said = [it.strip() for it in capsys.readouterr().out.splitlines()]
+    assert said[-1] == f"source: {place}"

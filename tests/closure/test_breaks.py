@@ -9,127 +9,16 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from closed_robot import FILES
 
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
-FILES = {
-    "rover.urdf": """\
-<robot name="rover">
-  <link name="base_link"/>
-  <link name="left_wheel_link"/>
-  <link name="right_wheel_link"/>
-  <link name="imu_link"/>
-  <link name="lidar_link"/>
-  <link name="finger_link"/>
-  <joint name="left_wheel_joint" type="continuous">
-    <parent link="base_link"/><child link="left_wheel_link"/><axis xyz="0 1 0"/>
-  </joint>
-  <joint name="right_wheel_joint" type="continuous">
-    <parent link="base_link"/><child link="right_wheel_link"/><axis xyz="0 1 0"/>
-  </joint>
-  <joint name="imu_joint" type="fixed"><parent link="base_link"/><child link="imu_link"/></joint>
-  <joint name="finger_joint" type="prismatic">
-    <parent link="base_link"/><child link="finger_link"/>
-    <limit lower="0" upper="1" effort="1" velocity="1"/>
-  </joint>
-  <joint name="lidar_joint" type="fixed"><parent link="base_link"/><child link="lidar_link"/></joint>
-  <ros2_control name="rover_base" type="system">
-    <hardware><plugin>gz_ros2_control/GazeboSimSystem</plugin></hardware>
-    <joint name="left_wheel_joint">
-      <command_interface name="velocity"/>
-      <state_interface name="velocity"/>
-      <state_interface name="position"/>
-    </joint>
-    <joint name="right_wheel_joint">
-      <command_interface name="velocity"/>
-      <state_interface name="velocity"/>
-      <state_interface name="position"/>
-    </joint>
-    <joint name="finger_joint">
-      <command_interface name="effort"/>
-      <state_interface name="effort"/>
-    </joint>
-  </ros2_control>
-  <gazebo>
-    <plugin filename="gz_ros2_control-system" name="gz_ros2_control::GazeboSimROS2ControlPlugin">
-      <parameters>controllers.yaml</parameters>
-    </plugin>
-  </gazebo>
-  <gazebo reference="imu_link">
-    <sensor name="imu" type="imu"><topic>imu/data</topic><gz_frame_id>imu_link</gz_frame_id></sensor>
-  </gazebo>
-  <gazebo reference="lidar_link">
-    <sensor name="lidar" type="gpu_lidar">
-      <topic>scan</topic><gz_frame_id>lidar_link</gz_frame_id>
-    </sensor>
-  </gazebo>
-</robot>
-""",
-    "controllers.yaml": """\
-controller_manager:
-  ros__parameters:
-    update_rate: 100
-    joint_state_broadcaster: {type: joint_state_broadcaster/JointStateBroadcaster}
-    base_controller: {type: diff_drive_controller/DiffDriveController}
-    gripper_controller: {type: joint_trajectory_controller/JointTrajectoryController}
-base_controller:
-  ros__parameters:
-    left_wheel_names: [left_wheel_joint]
-    right_wheel_names: [right_wheel_joint]
-    wheel_separation: 0.4
-    wheel_radius: 0.1
-    base_frame_id: base_link
-    odom_frame_id: odom
-    enable_odom_tf: false
-joint_state_broadcaster:
-  ros__parameters: {frame_id: base_link}
-gripper_controller:
-  ros__parameters:
-    joints: [finger_joint]
-    command_interfaces: [effort]
-    state_interfaces: [effort]
-""",
-    "ekf.yaml": """\
-ekf_filter_node:
-  ros__parameters:
-    odom0: base_controller/odom
-    imu0: imu/data
-    odom_frame: odom
-    base_link_frame: base_link
-    world_frame: odom
-    publish_tf: true
-""",
-    "bridge.yaml": """\
-- ros_topic_name: imu/data
-  gz_topic_name: imu/data
-  ros_type_name: sensor_msgs/msg/Imu
-  gz_type_name: gz.msgs.IMU
-  direction: GZ_TO_ROS
-""",
-    "moveit.yaml": """\
-moveit_simple_controller_manager:
-  controller_names: [gripper_controller]
-  gripper_controller:
-    type: FollowJointTrajectory
-    action_ns: follow_joint_trajectory
-    joints: [finger_joint]
-""",
-    "fleet.yaml": """\
-distro: jazzy
-description: rover.urdf
-companions:
-  params: [controllers.yaml, ekf.yaml]
-  bridge: bridge.yaml
-  moveit: moveit.yaml
-robots: [{name: robot1, pose: {x: 0}}, {name: robot2, pose: {x: 2}}]
-""",
-}
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 # What a build tells of the odometry of this robot in some layouts, and is no gap.
-BESIDE = ("MF7", "MB", "MR")
+BESIDE = ("MF125", "MF7", "MB", "MR")
 
 
 def found(folder: Path, files: dict[str, str], layout: str = "frames-per-robot") -> list[Finding]:
@@ -165,7 +54,7 @@ BREAKS = [
     # The filter's odometry is not that of the controller's parameters: nothing joins the two.
     ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MF813", 15, ""),
     # Nobody sends odom -> base_link.
-    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 8, ""),
+    ("ekf.yaml", "publish_tf: true", "publish_tf: false", "MF813", 15, ""),
     # Both send it.
     ("controllers.yaml", "enable_odom_tf: false", "enable_odom_tf: true", "MF607", 1, ""),
     ("controllers.yaml", "    enable_odom_tf: false\n", "", "MF607", 1, ""),
@@ -201,6 +90,71 @@ BREAKS = [
         "rover.urdf",
         'state_interface name="effort"',
         'state_interface name="force"',
+        "MF811",
+        20,
+        "",
+    ),
+    # Nav2 reads what nobody sends.
+    ("nav2.yaml", "scan_topic: scan", "scan_topic: scan_front", "MF812", 2, "/scan"),
+    ("nav2.yaml", "topic: /scan", "topic: /front", "MF812", 12, "/scan"),
+    ("nav2.yaml", "type: scan, topic: scan", "type: scan, topic: lidar", "MF812", 22, "/scan"),
+    ("nav2.yaml", "topic: cmd_vel_smoothed", "topic: cmd_vel_smoth", "MF812", 25, ""),
+    (
+        "nav2.yaml",
+        "base_link, odom_topic: odometry/filtered",
+        "base_link, odom_topic: odom",
+        "MF812",
+        14,
+        "",
+    ),
+    (
+        "nav2.yaml",
+        "{odom_topic: odometry/filtered, feedback",
+        "{odom_topic: odom, feedback",
+        "MF812",
+        16,
+        "",
+    ),
+    ("nav2.yaml", "{odom_topic: odometry/filtered}", "{odom_topic: odm}", "MF812", 27, ""),
+    ("rover.urdf", "<topic>scan</topic>", "<topic>front/scan</topic>", "MF812", 2, "/front/scan"),
+    # A source in the list without a topic of its own: it reads what it is called.
+    (
+        "nav2.yaml",
+        "observation_sources: scan\n",
+        "observation_sources: scan lidar\n",
+        "MF127",
+        11,
+        "",
+    ),
+    # Two trees of frames, with both lines.
+    ("nav2.yaml", "odom_frame: odom,", "odom_frame: odom_slam,", "MF817", 1, "nav2.yaml:1"),
+    ("ekf.yaml", "frame: odom", "frame: odom_combined", "MF817", 1, "nav2.yaml:1"),
+    # Frames that nothing sends.
+    ("nav2.yaml", "base_frame: base_link,", "base_frame: base_lnk,", "MF112", 2, "base_link"),
+    ("nav2.yaml", "global_frame: odom", "global_frame: odomm", "MF112", 6, ""),
+    (
+        "controllers.yaml",
+        "base_frame_id: base_link",
+        "base_frame_id: base_footprint",
+        "MF112",
+        13,
+        "",
+    ),
+    # A controller of a type that does not exist, one without its section, one that nobody declares.
+    (
+        "controllers.yaml",
+        "DiffDriveController",
+        "DifDriveController",
+        "MF802",
+        5,
+        "DiffDriveController",
+    ),
+    ("controllers.yaml", "base_controller:\n  ros", "base_controler:\n  ros", "MF607", 9, ""),
+    # The joint of the hardware is called otherwise than the controller's.
+    (
+        "rover.urdf",
+        'joint name="finger_joint">\n      <command',
+        'joint name="finger">\n      <command',
         "MF811",
         20,
         "",

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.closure.frames import Sender, tree_gaps
+from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.graph.transforms import Edge
 
 
@@ -32,3 +33,15 @@ def test_nodes_whose_transforms_are_apart(
     made = [Sender(node, (edge(text),), None) for node, text in senders.items()]
     gaps = tree_gaps([edge(it) for it in description.split()], made)
     assert [it.node for it in gaps] == apart
+
+
+def test_both_places_are_told() -> None:
+    slam, ekf = Place("slam.yaml", 3), Place("ekf.yaml", 5)
+    senders = [
+        Sender("still", (), Place("still.yaml", 1)),
+        Sender("slam", (edge("map>odom"),), slam),
+        Sender("ekf", (edge("odom2>base"), edge("base>mast")), ekf),
+    ]
+    (gap,) = tree_gaps([], senders)
+    assert (gap.kind, gap.name, gap.place) == ("tree", "odom2 -> base", ekf)
+    assert (gap.near, gap.near_place) == ("map -> odom", slam)

@@ -6,8 +6,12 @@ doc/migration.rst), controller_interface/tf_prefix.hpp and nav2_amcl/src/amcl_no
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from made_params import codes, made, section
+
+from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 
 DRIVES = ("diff_drive_controller", "mecanum_drive_controller", "omni_wheel_drive_controller")
 
@@ -164,3 +168,51 @@ def test_the_default_of_a_release_is_inserted(release: str, frame: str) -> None:
     """behavior_server's global_frame is odom in Humble; map is shared."""
     found = lines("behavior_server", "use_sim_time: true", release=release)
     assert (f"global_frame: {frame}" in found) == (release == "humble")
+
+
+@pytest.mark.parametrize(
+    ("node", "line", "release", "others"),
+    [
+        # nav2_behaviors: costmap_topic until Humble, local_costmap_topic since Iron.
+        ("behavior_server", "costmap_topic: local_costmap/costmap_raw", "jazzy", "humble"),
+        ("behavior_server", "local_costmap_topic: x", "humble", "jazzy, kilted, lyrical, rolling"),
+        # nav2_collision_monitor: the transport of a source is main's.
+        ("collision_monitor", "scan.transport_type: raw", "lyrical", "rolling"),
+        ("collision_monitor", "scan: {transport_type: raw}", "lyrical", "rolling"),
+    ],
+)
+def test_a_parameter_that_only_other_releases_have(
+    node: str, line: str, release: str, others: str
+) -> None:
+    _, findings = made(section(node, line), distro=release)
+    (found,) = (it for it in findings if it.code == "MF131")
+    assert (found.level, found.line) == ("note", 3)
+    assert found.message.endswith(f"is not in {release}, only in {others}")
+    assert codes(made(section(node, line), distro=others.rpartition(" ")[2])[1]).count("MF131") == 0
+
+
+def test_a_parameter_that_the_release_deprecates_is_told_once() -> None:
+    text = section("joint_state_broadcaster", "publish_dynamic_joint_states: false")
+    assert codes(made(text, distro="lyrical")[1]) == ["MF129"]
+
+
+def test_an_unknown_parameter_is_of_no_release() -> None:
+    assert codes(made(section("behavior_server", "my_gain: 0.1"), distro="humble")[1]) == []
+
+
+def test_a_node_that_only_another_release_has_is_told_once() -> None:
+    known = built_in_nodes("humble")
+    later = known.nodes["amcl"]._replace(releases="rolling")
+    known = known._replace(nodes={**known.nodes, "amcl": later})
+    text = section("amcl", "saved_pose_filepath: /tmp/x")
+    _, found = made(text, distro="humble", known=known)
+    assert [it.message for it in found if it.code == "MF131"] == [
+        "node amcl is not in humble, only in rolling"
+    ]
+
+
+def test_what_is_told_of_a_release_says_where_that_is_written() -> None:
+    line = "saved_pose_filepath: /tmp/x"
+    (found,) = (it for it in made(section("amcl", line), distro="jazzy")[1] if it.code == "MF131")
+    place = "ros-navigation/navigation2@1.5.1 nav2_amcl/src/amcl_node.cpp"
+    assert re.search(rf"; source: {place}:\d+$", found.hint)

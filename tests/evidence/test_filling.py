@@ -9,7 +9,7 @@ from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.nodes import nodes_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import load_nodes, load_stack
 
 
@@ -90,6 +90,8 @@ def test_a_costmap_has_the_layers_of_its_list() -> None:
     assert "/map" not in names(node, "subscribes")
     assert {"obstacles", "obstacles_raw", "voxel_grid"} <= names(node, "publishes")
     assert "keepout/toggle_filter" in names(node, "serves")
+    # Each of these names can be remapped, now that it is known.
+    assert not [it.name for it in node.endpoints if it.fixed and "mask" not in it.name]
 
 
 def test_costmaps_resolve_topics_below_the_robot_from_kilted_on() -> None:
@@ -162,3 +164,23 @@ def test_a_section_below_a_namespace_is_for_the_node_of_the_stack() -> None:
     (amcl,) = (it for it in found.nodes if it.name.endswith("amcl"))
     assert amcl.name == "amcl"
     assert "front" in names(amcl, "subscribes")
+
+
+def test_a_layer_whose_sources_are_in_another_file_may_read_any() -> None:
+    text = COSTMAP.replace("        observation_sources: front back\n", "").replace(
+        'observation_sources: "", ', ""
+    )
+    old = "      # No layer of this costmap.\n"
+    node = run("local_costmap/local_costmap", text.partition(old)[0])
+    assert {it.name for it in node.endpoints if it.when} >= {"<source>"}
+
+
+def test_what_no_rule_reaches_is_fixed_unless_a_parameter_could_name_it() -> None:
+    known = load_nodes("jazzy")["ekf_filter_node"]
+    named = Endpoint(
+        "topic", "publishes", "a", parameter="a_topic", fixed="made absolute", condition="wanted"
+    )
+    bare = named._replace(name="b", parameter="")
+    node = known._replace(endpoints=(named, bare))
+    found = filled(node, given("ekf_filter_node:\n  ros__parameters: {wanted: true}\n")[0])
+    assert [(it.name, it.fixed) for it in found.endpoints] == [("a", ""), ("b", "made absolute")]

@@ -351,7 +351,8 @@ def test_a_description_that_already_starts_with_the_world(fleet: Any) -> None:
         '<parent link="world"/><child link="base"/></joint>'
     )
     found = start_poses.start_poses(fleet("L2", body=body))
-    assert not found.transforms and [it.code for it in found.findings] == ["MF702"]
+    assert not found.transforms and [it.code for it in found.findings] == ["MF709"]
+    assert "fixes 'r1/base' to 'world'" in found.findings[0].message
 
 
 def test_the_fleets_world_frame_is_the_parent(fleet: Any) -> None:
@@ -420,7 +421,25 @@ def test_driving(fleet: Any) -> None:
         f"ros2 run teleop_twist_keyboard teleop_twist_keyboard --ros-args -r cmd_vel:=/{it}/cmd_vel"
         for it in ("r1", "two")
     ]
-    assert teleop.teleops(fleet("L4"))[0].topic == "/cmd_vel/r1"
+    plan = fleet("L4")
+    assert teleop.teleops(plan) == ()
+    assert teleop.teleop(plan, plan.robots[0]).topic == "/cmd_vel/r1"
+
+
+def test_a_bridge_to_the_simulator_reads_commands(fleet: Any) -> None:
+    drive = (
+        '<gazebo><plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
+        "<topic>drive</topic></plugin></gazebo>"
+    )
+    assert [it.topic for it in teleop.teleops(fleet("L2", body=drive))] == [
+        "/r1/drive",
+        "/two/drive",
+    ]
+    rows = f"- topic_name: go\n{TYPES}  direction: {{}}\n".replace("a/msg/B", teleop.PLAIN)
+    for direction, heard in (("ROS_TO_GZ", ["/r1/go"]), ("GZ_TO_ROS", [])):
+        Path("bridge.yaml").write_text(rows.format(direction))
+        plan = fleet("L2", more="companions: {bridge: bridge.yaml}\n")
+        assert [it.topic for it in teleop.teleops(plan)][:1] == heard
 
 
 def test_a_controller_that_takes_stamped_commands_only(fleet: Any) -> None:
@@ -430,13 +449,8 @@ def test_a_controller_that_takes_stamped_commands_only(fleet: Any) -> None:
 
 
 def test_a_bridge_that_takes_stamped_commands(fleet: Any) -> None:
-    first, second = teleop.teleops(fleet("L2"), stamped={"/r1/cmd_vel"})
-    assert (first.stamped, first.frame, second.stamped, second.frame) == (
-        True,
-        "r1/base",
-        False,
-        "",
-    )
+    (first,) = teleop.teleops(fleet("L2"), stamped={"/r1/cmd_vel"})
+    assert (first.robot, first.stamped, first.frame) == ("r1", True, "r1/base")
 
 
 def test_a_listener_that_takes_no_stamp_decides(fleet: Any) -> None:

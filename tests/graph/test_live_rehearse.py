@@ -50,7 +50,7 @@ def layouts(
     folder = tmp_path_factory.mktemp("rehearsals")
 
     def run(at: int, layout: str) -> subprocess.CompletedProcess[str]:
-        words = ["--stack", "nav2", "--layout", layout]
+        words = ["--stack", "nav2", "--layout", layout, "--distro", "lyrical"]
         words += ["--save-snapshot", str(folder / layout)]
         words += ["--report", str(folder / f"{layout}.html")]
         return rehearse(at, *PAIR, *words)
@@ -71,7 +71,8 @@ def test_every_layout_holds(
     # The tree is on the graph, too: from the map to every link of both robots.
     assert len({frame.child for frame in graph.frames}) == (9 if layout == "L1" else 18)
     assert not [node for node in graph.nodes if not _of_a_robot(node.name)]
-    assert len(actions(graph)) == 34
+    # 18 of each robot: with those of route_server and of following_server, which is new in Lyrical.
+    assert len(actions(graph)) == 36
     page = file.with_suffix(".html").read_text()
     assert "as planned" in page
     assert "/navigate_to_pose" in page
@@ -155,12 +156,13 @@ def children(pid: int) -> Iterator[int]:
     "number", [signal.SIGINT, pytest.param(signal.SIGKILL, marks=pytest.mark.deep)]
 )
 def test_no_node_is_left(number: signal.Signals) -> None:
-    command = [*COMMAND, *PAIR, "--stack", "nav2", "--layout", "L2", "--domain", str(domain(9))]
+    words = ["--stack", "nav2", "--layout", "L2", "--domain", str(domain(9)), "--distro", "lyrical"]
+    command = [*COMMAND, *PAIR, *words]
     env = live_fleet.environ(domain(9))
     play = subprocess.Popen(command, env=env, stderr=subprocess.PIPE, text=True)
     try:
         assert play.stderr is not None
-        assert "44 nodes in domain" in play.stderr.readline()
+        assert "46 nodes in domain" in play.stderr.readline()
         there = list(children(play.pid))
         assert len(there) >= 2
         play.send_signal(number)

@@ -63,3 +63,50 @@ def test_only_what_ros_2_does_not_read_is_named(tmp_path: Path) -> None:
     file.write_text(f'<robot name="r"><link name="a"/><gazebo>{plugin}</gazebo></robot>')
     (found,) = lint_file(str(file), Settings(select=("MB904",)))
     assert "does not read <topicName> in ROS 2" in found.message
+
+
+@pytest.mark.parametrize(
+    ("row", "text", "line"),
+    [
+        ("a uses link", "<a>base</a>", "a"),
+        ("b/c uses link", "<b>\n<c>base</c></b>", "b/c"),
+        ("@d uses link", "", ""),
+        ("e[@name=f] uses link", "<e name='f'>base</e>", "e[@name=f]"),
+        ("e[@name=f] uses link", "<e name='g'>base</e>", ""),
+        ("h@i uses link", "<h i='base'/><h/>", "h@i"),
+        ("k keep a word", "<k>base</k>", ""),
+    ],
+)
+@pytest.mark.parametrize("whole", [False, True])
+def test_a_row_of_another_release(
+    row: str, text: str, line: str, whole: bool, tmp_path: Path
+) -> None:
+    """By a word in the row, or by the setting of a section that adds it."""
+    words, setting = ("", "releases: humble\n") if whole else (" releases=humble", "")
+    row = row.replace(" uses link", f" uses link{words}").replace(" keep ", f" keep{words} ")
+    vocabulary = tmp_path / "my.vocab"
+    vocabulary.write_text(f"[plugin lamp]\nz uses link\n[plugin lamp]\n{setting}{row}\n")
+    file = tmp_path / "r.urdf"
+    plugin = f"<gazebo><plugin name='l' filename='liblamp.so'>{text}</plugin></gazebo>"
+    file.write_text(f"<robot name='r'><link name='base'/>{plugin}</robot>")
+
+    def found(release: str) -> list[str]:
+        settings = Settings(select=("MB905",), vocabulary=(str(vocabulary),), distro=release)
+        return [it.message for it in lint_file(str(file), settings)]
+
+    about = f"{line} of plugin lamp is not in jazzy, only in humble: nothing in it is renamed"
+    assert found("jazzy") == ([about] if line else [])
+    assert found("humble") == []
+
+
+def test_a_plugin_that_only_another_release_has(tmp_path: Path) -> None:
+    vocabulary = tmp_path / "my.vocab"
+    vocabulary.write_text("[plugin lamp]\nreleases: <=jazzy\nlink uses link\n")
+    file = tmp_path / "r.urdf"
+    plugin = "<gazebo><plugin name='l' filename='liblamp.so'><link>a</link></plugin></gazebo>"
+    file.write_text(f"<robot name='r'><link name='a'/>{plugin}</robot>")
+    settings = Settings(select=("MB902",), vocabulary=(str(vocabulary),), distro="kilted")
+    (found,) = lint_file(str(file), settings)
+    assert "plugin 'liblamp.so' is not in kilted, only in humble, jazzy" in found.message
+    assert "--distro" in found.hint
+    assert lint_file(str(file), settings._replace(distro="jazzy")) == []

@@ -25,7 +25,7 @@ from multibot_rewrite.rewriters.builtin import builtin_tree
 pytestmark = pytest.mark.slow
 
 ROBOTS = ("robot1", "robot2")
-CODES = ("MB425", "MB430", "MB431", "MB432", "MR102")
+CODES = ("MB425", "MB430", "MB431", "MB432", "MB435", "MR102")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 EVERY = 23
 _NAME = re.compile(r"'([^']+)'")

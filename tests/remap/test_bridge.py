@@ -137,7 +137,7 @@ def test_what_hangs_on_the_world_is_said() -> None:
     _, left = fleet("L2")
     assert [(item.robot, item.line, item.what) for item in left if item.robot == "robot1"] == [
         ("robot1", 6, "sensor mute_robot1"),
-        ("robot1", 13, "<topic> of gz-sim-joint-state-publisher-system"),
+        ("robot1", 16, "<topic> of gz-sim-joint-state-publisher-system"),
     ]
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import pytest
 
 from multibot_rewrite.naming import make_naming
+from multibot_rewrite.readback.controllers import CONTROLLER_WAYS
 from multibot_rewrite.releases import RELEASES, has_release
 from multibot_rewrite.remap.applied_rules import RunningNode, running_nodes
 from multibot_rewrite.remap.records import (
@@ -24,7 +25,7 @@ from multibot_rewrite.remap.records import (
     Table,
 )
 from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.remap.ways import CONTROLLER_WAYS, deliveries, rules_by_taker
+from multibot_rewrite.remap.ways import deliveries, rules_by_taker
 
 TF = Endpoint(TOPIC, PUBLISHES, "/tf")
 HEARD = Endpoint(TOPIC, SUBSCRIBES, "/tf", helper=True)

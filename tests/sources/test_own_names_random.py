@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from multibot_rewrite import RewriteRefused, pipeline
@@ -76,8 +76,14 @@ def by_hand(policy: Mapping[str, Any], robot: str, kind: str, name: str) -> str:
     return f"{robot}{mark}{name}" if policy["affix"] == "prefix" else f"{name}{mark}{robot}"
 
 
+# An argument makes of one link what the rewrite makes of another.
+MET = Tree(("arm_left", "left_arm"), ("x",), (0,), frozenset({("link", "arm_left")}))
+POSTFIX = {"layout": "postfix", "affix": "postfix", "separators": {"link": "_"}}
+
+
 @settings(max_examples=300, deadline=None)
 @given(trees(), policies, ROBOTS, VALUES)
+@example(MET, POSTFIX, "left", "{robot}_")
 def test_every_name_has_the_robots_name_once(
     tree: Tree, policy: dict[str, Any], robot: str, value: str
 ) -> None:

@@ -10,7 +10,6 @@ from multibot_rewrite.companions.template import fill_template
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.stacks import load_stack
 
 LINKS = ("base_link", "base_footprint", "laser", "tool0")
@@ -30,11 +29,8 @@ L1, L2, L3, L4 = ("L1", "prefix"), ("L2", "prefix"), ("L3", "prefix"), ("L4", "p
 def setting(policy: tuple[str, str] = L2, distro: str = "jazzy", **more: object) -> Context:
     layout, affix = policy
     naming = make_naming(layout=layout, affix=affix, **more)  # type: ignore[arg-type]
-    facts = [
-        *load_stack("nav2", NEWEST_LTS),
-        *load_stack("ros2_control", NEWEST_LTS),
-        *load_stack("slam_toolbox", NEWEST_LTS),
-    ]
+    stacks = ("nav2", "ros2_control", "slam_toolbox")
+    facts = [node for it in stacks for node in load_stack(it, distro)]
     return make_context(DECLARED, naming, dict.fromkeys(facts), distro)  # type: ignore[arg-type]
 
 

@@ -150,7 +150,9 @@ def without_lines(text: str, source: str) -> str:
             over[start_of(line)] -= 1
         else:
             kept.append(line)
-    return "".join(kept)
+    whole = "".join(kept)
+    # Sections behind the last line begin on a new one.
+    return whole if source.endswith("\n") else whole.rstrip("\r\n")
 
 
 def start_of(line: str) -> str:

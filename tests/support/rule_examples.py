@@ -90,6 +90,7 @@ def lint_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     options: dict[str, Any] = {"roots": (str(folder),), **rule.options}
     if "urdf" in options:
         options["urdf"] = str(folder / options["urdf"])
+    options["vocabulary"] = tuple(str(folder / it) for it in options.get("vocabulary", ()))
     return lint_file(str(file), Settings(select=(rule.code,), **options))
 
 

@@ -25,6 +25,7 @@ from multibot_rewrite.cli.options import (
     form,
     output,
     output_group,
+    repeated,
     several,
     switch,
     value,
@@ -53,6 +54,18 @@ _DESCRIPTION = OptionGroup(
             "--nodl",
             "PATH",
             "NoDL files or folders of them, besides those of installed packages; none: use no NoDL",
+            [],
+        ),
+        repeated(
+            "--launch",
+            "'FILE NAME:=VALUE...'",
+            "a launch file that starts each robot's nodes, with its arguments, or a system_model.yaml;"
+            " it is read, nothing is started (docs/launch.md)",
+        ),
+        several(
+            "--launch-roots",
+            "A,B",
+            "folders with packages that a launch file needs, if not installed",
             [],
         ),
         VOCABULARY,

@@ -12,6 +12,16 @@ from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, s
 
 Speller = Callable[[Context, str], str]
 _WORD = re.compile(r"[\w./-]+")
+# What the code of a node puts between a joint_stem and a name.
+STEM_END = "_"
+# The kind of the names that a prefix of some kind is put before.
+PREFIXED = {
+    "stem": "frame",
+    "link_prefix": "link",
+    "joint_prefix": "joint",
+    "gpio_prefix": "gpio",
+    "joint_stem": "joint",
+}
 
 
 def is_plain(value: str) -> bool:
@@ -34,7 +44,11 @@ def interface(context: Context, value: str) -> str:
     owner, slash, last = value.rpartition("/")
     if not slash:
         return value
-    if "/" in owner or is_component(context, owner):
+    first, inside, rest = owner.partition("/")
+    if inside and not is_component(context, rest.rpartition("/")[2]):
+        # drive/linear/velocity: no part of the robot, so only drive is a controller.
+        return f"{_chain(context, first)}/{rest}/{last}"
+    if inside or is_component(context, owner):
         return f"{_chain(context, owner)}/{last}"
     # Descriptions do not declare all their gpios.
     return f"{spell(context.names, 'gpio', owner)}/{last}"
@@ -46,14 +60,17 @@ def is_component(context: Context, value: str) -> bool:
 
 
 def _chain(context: Context, value: str) -> str:
-    """What is before an interface: parts of the robot, and controllers that export interfaces."""
+    """What is before a name: parts of the robot, and controllers that export interfaces."""
     parts = (
-        spell(context.names, "component", it)
-        if is_component(context, it)
-        else controller(context, it)
+        component(context, it) if is_component(context, it) else controller(context, it)
         for it in value.split("/")
     )
     return "/".join(parts)
+
+
+def component(context: Context, value: str) -> str:
+    """A joint, a sensor or a gpio that the description declares."""
+    return spell(context.names, "component", value) if is_component(context, value) else value
 
 
 def controller(context: Context, value: str) -> str:
@@ -96,6 +113,17 @@ def joint_prefix(context: Context, value: str) -> str:
     return _prefix(context, "joint", value)
 
 
+def gpio_prefix(context: Context, value: str) -> str:
+    """What the node adds before gpios; it may be empty."""
+    return _prefix(context, "gpio", value)
+
+
+def joint_stem(context: Context, value: str) -> str:
+    """What the node adds before joints, with _ behind it if it is not empty."""
+    whole = joint_prefix(context, f"{value}{STEM_END}" if value else "")
+    return whole.removesuffix(STEM_END) if whole.endswith(STEM_END) else value
+
+
 def words(context: Context, value: str) -> str:
     """Text with names of the description in it: ``joints(shoulder,elbow)``."""
     return _WORD.sub(lambda found: _word(context, found[0]), value)
@@ -113,9 +141,22 @@ def _prefixes(context: Context) -> bool:
 
 def _prefix(context: Context, kind: str, value: str) -> str:
     separator = context.names.naming.separators.get(kind)
+    own = _own_prefix(context, kind)
+    if own:
+        return own if value in ("", own) else f"{own}{value}"
     if separator is None or not _prefixes(context) or (value and not is_plain(value)):
         return value
     return f"{TAG_SLOT}{separator}{value}"
+
+
+def _own_prefix(context: Context, kind: str) -> str:
+    """What an argument of the xacro puts before names of this kind; empty for nothing."""
+    texts = (
+        text.removesuffix(plain)
+        for (of, plain), text in context.names.own.items()
+        if of == kind and plain and text.endswith(plain)
+    )
+    return next((it for it in texts if it), "")
 
 
 def _declared(word: str) -> Speller:
@@ -132,6 +173,9 @@ SPELLERS: Mapping[str, Speller] = {
     "stem": stem,
     "link_prefix": link_prefix,
     "joint_prefix": joint_prefix,
+    "gpio_prefix": gpio_prefix,
+    "joint_stem": joint_stem,
+    "component": component,
     "words": words,
     **{word: _declared(word) for word in ("frame", "link", "sensor", "gpio", "hardware", "group")},
 }
@@ -139,8 +183,11 @@ SPELLERS: Mapping[str, Speller] = {
 
 def expressible(context: Context, kind: str) -> bool:
     """Can a prefix parameter of this kind express the fleet's naming?"""
-    of = {"stem": "frame", "link_prefix": "link", "joint_prefix": "joint"}.get(kind)
-    return of is None or of not in context.names.naming.separators or _prefixes(context)
+    of = PREFIXED.get(kind)
+    if of is None or of not in context.names.naming.separators or _own_prefix(context, of):
+        return True
+    ends = kind != "joint_stem" or context.names.naming.separators[of] == STEM_END
+    return ends and _prefixes(context)
 
 
 def is_shared_frame(context: Context, value: str) -> bool:

@@ -34,9 +34,14 @@ from multibot_rewrite.remap.yaml_with_lines import (
     wrong,
 )
 
-NAME_KINDS = ("frame", "link", "joint", "sensor", "gpio", "hardware", "group", "interface")
+NAME_KINDS = (
+    *("frame", "link", "joint", "sensor", "gpio", "component"),
+    *("hardware", "group", "interface"),
+)
 GRAPH_NAME_KINDS = ("topic", "service", "node", "controller", "namespace")
-OTHER_KINDS = ("stem", "link_prefix", "joint_prefix", "words", "text", "pattern", "doubles")
+# Put before names by the node; an empty one is a default.
+PREFIX_KINDS = ("joint_prefix", "gpio_prefix", "joint_stem")
+OTHER_KINDS = ("stem", "link_prefix", *PREFIX_KINDS, "words", "text", "pattern", "doubles")
 SWITCH_KINDS = ("off", "no_prefix")
 KINDS = (*NAME_KINDS, *GRAPH_NAME_KINDS, *OTHER_KINDS, *SWITCH_KINDS, "exclusive", "keep")
 # Placeholders for a segment of a path; an id holds no name of a robot.
@@ -234,7 +239,7 @@ def _deprecated_types(keys: Mapping[str, YamlItem]) -> dict[str, str]:
 
 def has_default(param: Param) -> bool:
     """Does the parameter have a default, and a path without placeholders?"""
-    return bool(param.default or param.kind == "joint_prefix") and "<" not in param.path
+    return bool(param.default or param.kind in PREFIX_KINDS) and "<" not in param.path
 
 
 def _param_in(path: str, item: YamlItem, absolute: str, release: str) -> Param:

@@ -15,6 +15,7 @@ from multibot_rewrite.companions.names.by_kind import (
     is_shared_frame,
 )
 from multibot_rewrite.companions.names.rename_map import is_declared
+from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS
 from multibot_rewrite.companions.params.name_sites import NameSite
 from multibot_rewrite.companions.params.values import ParamsJob, renamed
 from multibot_rewrite.companions.yaml_text import YamlText, found_at
@@ -37,7 +38,7 @@ def name_findings(job: ParamsJob, site: NameSite) -> Iterator[Finding]:
         yield from _undeclared_interface(job, site)
     elif site.kind in ("topic", "service"):
         yield from _invalid_topic(job, site)
-    elif site.kind in ("stem", "link_prefix", "joint_prefix"):
+    elif site.kind in ("stem", "link_prefix", *PREFIX_KINDS):
         yield from _inexpressible(job, site)
     elif site.kind == "doubles":
         yield from _prefix_twice(job, site)

@@ -7,7 +7,14 @@ from typing import NamedTuple
 
 import yaml
 
-from multibot_rewrite.companions.params.known_nodes import Branch, KnownNodes, Param, guess
+from multibot_rewrite.companions.params.known_nodes import (
+    PREFIX_KINDS,
+    Branch,
+    KnownNode,
+    KnownNodes,
+    Param,
+    guess,
+)
 from multibot_rewrite.companions.params.sections import ParamSection
 from multibot_rewrite.companions.yaml_text import YamlText, items, line_of
 from multibot_rewrite.model import InputError
@@ -21,7 +28,7 @@ _STEM = re.compile(r"(.*?)\d+")
 # Segments of a path that hold no name of the robot.
 _IDS = frozenset({"id", "*"})
 # An empty prefix is replaced as well.
-_TAKE_EMPTY = ("link_prefix", "joint_prefix", "no_prefix")
+_TAKE_EMPTY = ("link_prefix", *PREFIX_KINDS, "no_prefix")
 # ~ is no text for YAML.
 _ANY_TYPE = ("off", "no_prefix", "exclusive")
 _NO_NAMES = frozenset(f"tag:yaml.org,2002:{it}" for it in ("int", "float", "bool"))
@@ -67,6 +74,11 @@ def find_names(document: YamlText, section: ParamSection, known: KnownNodes) -> 
     tree = section.node.tree if section.node else known.anywhere
     _walk(document, section.body, [(tree, ())], known, names)
     return names
+
+
+def params_at(node: KnownNode, name: str, key: yaml.ScalarNode) -> list[Param]:
+    """What is known of a parameter by its dotted name, in this release or another."""
+    return [param for branch, _ in _below([(node.tree, ())], name, key) for param in branch.params]
 
 
 def _walk(

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Iterator
 
 from multibot_rewrite.companions.params.known_nodes import (
+    PREFIX_KINDS,
     KnownNode,
     KnownNodes,
     Param,
@@ -48,7 +49,7 @@ def _listed(params: list[Param]) -> str:
 
 
 def _inserted(node: KnownNode) -> str:
-    kinds = ("frame", "link", "stem", "off", "joint_prefix")
+    kinds = ("frame", "link", "stem", "off", "interface", *PREFIX_KINDS)
     found = (it for it in node.params.values() if it.kind in kinds and has_default(it))
     return ", ".join(f"`{it.path}`{it.releases and f' (in {it.releases})'}" for it in found)
 

@@ -1,17 +1,19 @@
-"""What is deprecated in a release, and what a broadcaster no longer sends in it."""
+"""What a release lacks, what is deprecated in it, and what a broadcaster no longer sends in it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import yaml
 
+from multibot_rewrite.companions.params.known_nodes import KnownNode, Param
+from multibot_rewrite.companions.params.name_sites import params_at
 from multibot_rewrite.companions.params.sections import ParamSection, flattened
 from multibot_rewrite.companions.params.values import ParamsJob
 from multibot_rewrite.companions.yaml_text import found_at, items, pairs
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.releases import has_release
+from multibot_rewrite.releases import has_release, releases_with
 
 _BROADCASTER = "joint_state_broadcaster"
 # What sensor_msgs/JointState has a field for.
@@ -71,9 +73,35 @@ joint_state_broadcaster:
 )
 
 
+ELSEWHERE = declare(
+    "MF131",
+    "parameter-of-another-release",
+    NOTE,
+    what="A parameter, or its node, is not in the release that is meant.",
+    why="The node does not declare it, so the value has no effect. The names in it are rewritten all "
+    "the same, since the file may be for another release.",
+    fix="Delete it, or set the parameter that the release has in its place. If the file is for another "
+    "release, name that one: distro: in the fleet file, or --distro.",
+    bad="""\
+behavior_server:
+  ros__parameters:
+    costmap_topic: local_costmap/costmap_raw
+""",
+    good="""\
+behavior_server:
+  ros__parameters:
+    local_costmap_topic: local_costmap/costmap_raw
+""",
+    line=3,
+    formats=("params",),
+    options={"distro": "lyrical"},
+)
+
+
 def release_findings(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
     """What is to be told of a section for the release that is meant."""
     yield from _deprecated_parameters(job, section)
+    yield from _of_another_release(job, section)
     yield from _deprecated_types(job, section.body)
     if section.node is not None and section.node.name == _BROADCASTER:
         yield from _not_sent(job, section.body)
@@ -86,7 +114,39 @@ def _deprecated_parameters(job: ParamsJob, section: ParamSection) -> Iterator[Fi
             there = has_release(param.releases, job.context.distro)
             state = "is deprecated" if there else "is gone and has no effect"
             message = f"{name} {state} in {job.context.distro}"
-            yield found_at(job.document, key, DEPRECATED, message, param.note)
+            hint = f"{param.note}{_source(param.source)}"
+            yield found_at(job.document, key, DEPRECATED, message, hint)
+
+
+def _of_another_release(job: ParamsJob, section: ParamSection) -> Iterator[Finding]:
+    """Nodes and parameters that only other releases have; what is called deprecated is told there."""
+    node, release = section.node, job.context.distro
+    if node is None or section.wild:
+        return
+    if not has_release(node.releases, release):
+        yield _elsewhere(job, section.keys[-1], f"node {node.name}", node)
+        return
+    for name, key in flattened(section.body):
+        found = params_at(node, name, key)
+        told = any(it.deprecated and has_release(it.deprecated, release) for it in found)
+        if found and not told and not any(has_release(it.releases, release) for it in found):
+            yield _elsewhere(job, key, name, found[0])
+
+
+def _source(places: Sequence[str]) -> str:
+    """Where it can be read, as the end of a hint."""
+    return f"; source: {places[0]}" if places else ""
+
+
+def _elsewhere(
+    job: ParamsJob, key: yaml.ScalarNode, what: str, known: KnownNode | Param
+) -> Finding:
+    others = ", ".join(releases_with(known.releases))
+    message = f"{what} is not in {job.context.distro}, only in {others}"
+    hint = (
+        "delete it, or name the release that the file is for: distro: in the fleet file, --distro"
+    )
+    return found_at(job.document, key, ELSEWHERE, message, f"{hint}{_source(known.source)}")
 
 
 def _deprecated_types(job: ParamsJob, body: yaml.Node) -> Iterator[Finding]:

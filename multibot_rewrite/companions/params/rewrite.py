@@ -11,6 +11,10 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
+from multibot_rewrite.companions.params.controller_sections import (
+    controller_sections,
+    takes_sections,
+)
 from multibot_rewrite.companions.params.known_nodes import KnownNodes, built_in_nodes
 from multibot_rewrite.companions.params.name_checks import name_findings
 from multibot_rewrite.companions.params.name_sites import SectionNames, find_names
@@ -25,6 +29,7 @@ from multibot_rewrite.companions.params.section_checks import key_findings, sect
 from multibot_rewrite.companions.params.sections import (
     ParamSection,
     RawSection,
+    controller_types,
     identify_node,
     identify_sections,
     key_splices,
@@ -83,10 +88,11 @@ def rewrite_params(
 
 def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
     document, context, known = job.document, job.context, job.known
-    sections = identify_sections(raw_sections(document), context, known)
+    found = raw_sections(document)
+    sections = identify_sections(found, context, known)
     pages = [(it, find_names(document, it, known)) for it in sections if not it.shared]
     others = [it for other in beside for it in raw_sections(other)]
-    made = list(_made(job, sections, pages, others))
+    made = [*_made(job, sections, pages, others), *controller_sections(job, found, others)]
     splices = [it for it in made if isinstance(it, Splice)]
     findings = [it for it in made if isinstance(it, Finding)]
     template = make_template(document.text, splices)
@@ -156,11 +162,20 @@ def nodes_without_section(
     known = known or built_in_nodes(context.distro)
     if not documents:
         return ()
-    sections = [identify_sections(raw_sections(it), context, known) for it in documents]
+    raw = [raw_sections(it) for it in documents]
+    types = controller_types(section for found in raw for section in found)
+    sections = [identify_sections(it, context, known) for it in raw]
     full = [it.full for found in sections for it in found if it.path != "**"]
+    given = {
+        name
+        for file, found in zip(documents, raw, strict=True)
+        if takes_sections(file)
+        for name in controller_types(found)
+    }
     nodes = {
         name: node
         for name in context.nodes
-        if (node := identify_node(name.rpartition("/")[2], None, known, {}))
+        if name.rpartition("/")[2] not in given
+        if (node := identify_node(name.rpartition("/")[2], None, known, types))
     }
     return _once(without_section(documents[0], full, context, nodes))

@@ -10,7 +10,7 @@ import yaml
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import SPELLERS, expressible
-from multibot_rewrite.companions.params.known_nodes import KnownNode, is_absolute
+from multibot_rewrite.companions.params.known_nodes import PREFIX_KINDS, KnownNode, is_absolute
 from multibot_rewrite.companions.params.name_checks import prefix_only
 from multibot_rewrite.companions.params.name_sites import SectionNames
 from multibot_rewrite.companions.params.sections import (
@@ -28,7 +28,7 @@ from multibot_rewrite.naming import NAMESPACE
 
 DEFAULT = "# multibot: the default is every robot's"
 OFF = "# multibot: the default puts the namespace before frames"
-_FRAMES = ("frame", "link", "stem", "joint_prefix")
+_FRAMES = ("frame", "link", "stem", "interface", *PREFIX_KINDS)
 
 
 class DefaultLine(NamedTuple):

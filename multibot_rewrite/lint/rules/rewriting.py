@@ -5,7 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 
-from multibot_rewrite.checks.audit import other_ros, unknown_hardware, unknown_plugins
+from multibot_rewrite.checks.audit import (
+    other_releases,
+    other_ros,
+    unknown_hardware,
+    unknown_plugins,
+)
 from multibot_rewrite.checks.mentions import MENTIONED, as_problem, unclaimed_mentions
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
@@ -100,3 +105,21 @@ parameter_of_ros_1 = rule(
     "</gazebo>\n",
     line=2,
 )(partial(_audit, other_ros))
+
+row_of_another_release = rule(
+    "MB905",
+    "row-of-another-release",
+    NOTE,
+    what="A plugin has a parameter that the vocabulary knows, and its release does not read it.",
+    why="A row of the vocabulary may hold in some releases only (releases=). In the others the "
+    "parameter has no effect, so no name in it is renamed.",
+    fix="Delete the parameter, or name the release that the description is for: --distro, or distro: "
+    "in a fleet file.",
+    bad='<gazebo><plugin name="p" filename="libmy_lamp.so"><lamp_link>a</lamp_link></plugin></gazebo>',
+    good='<gazebo><plugin name="p" filename="libmy_lamp.so"><link>a</link></plugin></gazebo>',
+    beside={
+        "my.vocab": "[plugin my_lamp]\nlamp_link uses link releases=<=jazzy\n"
+        "link uses link releases=kilted+\n"
+    },
+    options={"vocabulary": ["my.vocab"], "distro": "lyrical"},
+)(partial(_audit, other_releases))

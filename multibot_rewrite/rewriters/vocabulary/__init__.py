@@ -24,7 +24,9 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
     form=NAME          where in the value the names are
     default=TEXT       the literal the consumer falls back to; ``topic/../x`` is the value at ``topic``
                        with its last segment replaced; ``a=true,b=?x`` is x where those siblings have
-                       these texts
+                       these texts; in it ``{model}`` is the name that the spawner gives, ``{link}``
+                       the canonical link, ``{sensor}`` the sensor around, ``{topic}`` the text there
+    fill=TEXT          what is written in place of a default below ``{model}/``, if not what is behind
     when=SIBLING=TEXT  only where that sibling has this text is it a name of ours
     empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
                        if it was not there (usual for a namespace: the root); ``model``, the model's
@@ -79,13 +81,13 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 
 from multibot_rewrite.bounded import read_text
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.model import Site, VocabularyError
-from multibot_rewrite.releases import has_release, is_release_words
+from multibot_rewrite.releases import RELEASES, has_release, is_release_words
 from multibot_rewrite.rewriters.vocabulary.grammar import (
     FORMS,
     KINDS,
@@ -191,6 +193,23 @@ class Vocabulary:
     def names(self, type_: str) -> list[str]:
         """Every name and alias of that type."""
         return list(self._names[type_])
+
+    def rows_elsewhere(self, type_: str, name: str) -> Iterator[Site]:
+        """The rows that this release lacks, each with the words for the releases that have it."""
+        for file, line, chunk in self._raw.get((type_, name), ()):
+            if "releases" in chunk:
+                settings, own = read_section(file, line, chunk.split("\n"))
+                words = settings.get("releases", "")
+                for site in own.values():
+                    if not (self._is_here(words) and self._is_here(site.releases)):
+                        yield site._replace(releases=site.releases or words)
+
+    def releases_elsewhere(self, type_: str, name: str) -> tuple[str, ...]:
+        """The releases with a section of that name, where this one has none."""
+        if self.find(type_, name):
+            return ()
+        words = [_released(chunk) for *_, chunk in self._raw.get((type_, name), ())]
+        return tuple(it for it in RELEASES if any(has_release(word, it) for word in words))
 
     def places(self) -> dict[str, list[str]]:
         """Each element with a section and the elements it may be in, without reading more."""

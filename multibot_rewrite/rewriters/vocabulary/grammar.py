@@ -43,7 +43,7 @@ VALUES = {
 }
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
-OPTIONS = ("form", "default", "when", "empty")
+OPTIONS = ("form", "default", "when", "empty", "fill")
 RELEASES = "releases="
 EMPTY = ("default", "model", "itself")
 FORMS = (
@@ -300,7 +300,8 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     empty = options.get("empty", "default" if kinds[0] == "namespace" else "itself")
     note = note.strip()
     own = (path, role, kinds, form, default, False, section, note, line)
-    return Site(*own, plain, when, file, empty, releases=releases)
+    fill = options.get("fill", "")
+    return Site(*own, plain, when, file, empty, releases=releases, fill=fill)
 
 
 def _no_releases(words: str) -> str:

@@ -11,8 +11,9 @@ from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.source_values import claim_is_fixed
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.multirobot.shared import inserted, is_plain, tag_of
+from multibot_rewrite.lint.rules.multirobot.shared import inserted, is_plain, missed, tag_of
 from multibot_rewrite.model import Claim
+from multibot_rewrite.naming import FRAME_KINDS
 from multibot_rewrite.rewriters.switches import switched_off
 from multibot_rewrite.rewriters.text import text_of
 from multibot_rewrite.rosnames import split_remap
@@ -79,6 +80,40 @@ def default_frame_shared(subject: Subject) -> Iterator[Problem]:
         if item[0] in ("frame", "link"):
             message = f"without <{item[2]}> the plugin uses {item[1]!r}, the same for every robot"
             yield Problem(element, message, None, f"set <{item[2]}> for each robot")
+
+
+@rule(
+    "MB433",
+    "default-frame-below-model",
+    NOTE,
+    what="A system of gz-sim sends odometry without its frames, whose defaults start with the name of "
+    "the model.",
+    why="It sends robot1/odom -> robot1/base_link, robot_state_publisher sends base_link: once "
+    "bridged, the odometry is a tree of its own, and no lookup from odom to the robot succeeds.",
+    fix="Set both frames to those of the robot; urdf-postfix inserts them.",
+    bad='<link name="base"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">\n'
+    "    <frame_id>odom</frame_id>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="base"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">\n'
+    "    <frame_id>odom</frame_id>\n"
+    "    <child_frame_id>base</child_frame_id>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
+)
+def default_frame_below_model(subject: Subject) -> Iterator[Problem]:
+    """Frames that would be below the name by which the model is spawned."""
+    for element, item in missed(subject):
+        if item.kind in FRAME_KINDS:
+            tag = item.xml[1:].partition(">")[0]
+            was = item.old.replace("{model}", "MODEL")
+            message = f"without <{tag}> the frame is {was!r}, which no robot has in tf"
+            yield Problem(element, message, None, f"set <{tag}>; urdf-postfix does")
 
 
 @rule(

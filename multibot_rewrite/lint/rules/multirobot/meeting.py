@@ -12,8 +12,11 @@ from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.memo import memoized
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.multirobot.shared import APART, AS_WRITTEN, TWO
+from multibot_rewrite.naming import SHARED_TOPICS, make_naming
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.plan import make_plan
+
+ODOMETRY_APART = make_naming("tf-per-robot", shared_topics=[*SHARED_TOPICS, "tf_static"])
 
 
 @memoized
@@ -78,6 +81,36 @@ shared_topic = rule(
     line=3,
     options={"robots": TWO, "naming": APART},
 )(partial(_of_code, meeting.SHARED_TOPIC))
+
+controllers_apart = rule(
+    meeting.CONTROLLERS,
+    "controllers-without-rules",
+    WARNING,
+    what="All robots would have a topic of their controllers. From ros2_control 6.5 on (Lyrical) "
+    "controllers take no remap rules of the plugin that loads them.",
+    why="The controllers keep the name in their code: the odometry of all robots is on one /tf, and "
+    "the tree of each robot jumps between them. The rule in the plugin is applied to the controller "
+    "manager alone.",
+    fix="Start each controller with its spawner and its option --controller-ros-args "
+    '"-r /tf:=tf"; multibot remap and build print the lines if a stack names the controllers '
+    "(--stack gz_ros2_control).",
+    bad='<link name="a"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="c" filename="gz_ros2_control-system">\n'
+    "    <parameters>controllers.yaml</parameters>\n"
+    "    <ros><remapping>/tf:=tf</remapping></ros>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    good='<link name="a"/>\n'
+    "<gazebo>\n"
+    '  <plugin name="d" filename="gz-sim-diff-drive-system">\n'
+    "    <left_joint>l</left_joint>\n"
+    "    <right_joint>r</right_joint>\n"
+    "  </plugin>\n"
+    "</gazebo>\n",
+    line=3,
+    options={"robots": TWO, "naming": ODOMETRY_APART},
+)(partial(_of_code, meeting.CONTROLLERS))
 
 shared_node = rule(
     meeting.SHARED_NODE,

@@ -78,7 +78,7 @@ def no_namespace(subject: Subject) -> Iterator[Problem]:
         section = host.node.section
         if section is None or not any("namespace" in it.kinds for it in section.sites):
             continue
-        items = insertions(host.element, section, declared, APART)
+        items = insertions([(host.element, section)], declared, APART)
         if any(it.kind == "namespace" for it in items):
             bare.append(host.element)
     if bare:

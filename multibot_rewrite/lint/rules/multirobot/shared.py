@@ -9,7 +9,7 @@ from lxml.etree import _Element
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import NOT_PLAIN, make_naming
-from multibot_rewrite.rewriters.insert import insertions
+from multibot_rewrite.rewriters.insert import Insertion, insertions
 
 TWO = ("robot1", "robot2")
 # Frames, tf and topics are all per robot: what a rewrite inserts for that is shared by copies.
@@ -44,15 +44,26 @@ def process_wide_plugins(subject: Subject) -> set[_Element]:
 
 def inserted(subject: Subject) -> Iterator[tuple[_Element, tuple[str, str, str]]]:
     """Kind, default and tag of what urdf-postfix would insert, except namespaces."""
-    declared = subject.inventory.declared
-    for host in subject.inventory.hosts:
-        section = host.node.section
-        if section is None or not any(map(_may_insert, section.sites)):
-            continue
-        for it in insertions(host.element, section, declared, APART):
-            tag = it.xml[1:].partition(">")[0].partition(" ")[0]
-            if it.kind != "namespace" and tag != "remapping":
-                yield host.element, (it.kind, it.old, tag)
+    for host, it in _insertions(subject):
+        tag = it.xml[1:].partition(">")[0].partition(" ")[0]
+        if it.shared and it.kind != "namespace" and tag != "remapping":
+            yield host, (it.kind, it.old, tag)
+
+
+def missed(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
+    """The defaults that are names of nothing else, which urdf-postfix would replace."""
+    yield from ((host, it) for host, it in _insertions(subject) if not it.shared)
+
+
+def _insertions(subject: Subject) -> Iterator[tuple[_Element, Insertion]]:
+    declared, hosts = subject.inventory.declared, subject.inventory.served
+    may = [it for it in hosts if any(map(_may_insert, it[1].sites))]
+    plugins = {host for host, _ in may}
+    for it in insertions(may, declared, APART):
+        inside = it.parent
+        while inside not in plugins:
+            inside = inside.getparent()  # type: ignore[assignment]
+        yield inside, it
 
 
 def _may_insert(site: Site) -> bool:

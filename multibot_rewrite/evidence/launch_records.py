@@ -1,0 +1,118 @@
+"""What launch files start, as records; how they pass from the process that reads them."""
+
+from __future__ import annotations
+
+import json
+import shlex
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.model import UsageError
+
+
+class LaunchOrder(NamedTuple):
+    """A launch file or system_model.yaml to read, with launch arguments.
+
+    ``roots`` are folders with the sources of packages that are not installed; ``trusted`` says that
+    whoever runs this named the file: a launch file is a program.
+    """
+
+    file: str
+    arguments: tuple[tuple[str, str], ...] = ()
+    roots: tuple[str, ...] = ()
+    trusted: bool = False
+
+
+class ParameterText(NamedTuple):
+    """A parameter file that a node gets, or values that a launch file gives it, in YAML; ``file`` is
+    empty for these, and for a file that the launch makes."""
+
+    file: str
+    text: str
+
+
+class LaunchedNode(NamedTuple):
+    """A node that a launch file starts.
+
+    ``executable`` is the plugin of a component, ``name`` is empty where the node has its own.
+    ``container`` is the full name of the node that a component is loaded into. ``later`` says what
+    starts it if not the launch itself. ``place`` is where the launch file has it.
+    """
+
+    package: str
+    executable: str
+    name: str
+    namespace: str
+    remappings: tuple[tuple[str, str], ...]
+    parameters: tuple[ParameterText, ...]
+    container: str
+    arguments: tuple[str, ...]
+    later: str
+    place: Place
+
+
+class LaunchNote(NamedTuple):
+    """Something of a launch file whose nodes are not known, and why."""
+
+    place: Place
+    message: str
+
+
+class LaunchGraph(NamedTuple):
+    """What launch files start; with notes the nodes may not be all."""
+
+    nodes: tuple[LaunchedNode, ...] = ()
+    notes: tuple[LaunchNote, ...] = ()
+
+
+def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
+    """The order of what follows ``ros2 launch``: a file and ``NAME:=VALUE`` words.
+
+    Raises UsageError for another word.
+    """
+    try:
+        file, *words = shlex.split(text)
+    except ValueError:
+        raise UsageError(f"--launch {text!r}: write FILE NAME:=VALUE ...") from None
+    for it in words:
+        if not it.partition(":=")[0] or ":=" not in it:
+            raise UsageError(f"launch {file}: {it!r} is no argument; write NAME:=VALUE")
+    arguments = (it.partition(":=") for it in words)
+    return LaunchOrder(file, tuple((name, value) for name, _, value in arguments), tuple(roots))
+
+
+def to_json(record: LaunchOrder | LaunchGraph) -> str:
+    """The record as a text."""
+    return json.dumps(record)
+
+
+def order_of(text: str) -> LaunchOrder:
+    """The order that ``to_json`` wrote."""
+    file, arguments, roots, trusted = json.loads(text)
+    pairs = tuple((name, value) for name, value in arguments)
+    return LaunchOrder(file, pairs, tuple(roots), trusted)
+
+
+def graph_of(text: str) -> LaunchGraph:
+    """The graph that ``to_json`` wrote."""
+    nodes, notes = json.loads(text)
+    found = (LaunchNote(Place(*place), message) for place, message in notes)
+    return LaunchGraph(
+        tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes), tuple(found)
+    )
+
+
+_FIELDS = LaunchedNode._fields
+
+
+def _node(values: Mapping[str, Any]) -> LaunchedNode:
+    return LaunchedNode(
+        **{
+            **values,
+            "remappings": tuple((old, new) for old, new in values["remappings"]),
+            "parameters": tuple(ParameterText(*it) for it in values["parameters"]),
+            "arguments": tuple(values["arguments"]),
+            "place": Place(*values["place"]),
+        }
+    )

@@ -1,0 +1,294 @@
+"""The nodes of a robot's stacks and what its launch files start -> the nodes that it runs.
+
+A node that is launched runs: that is the surest evidence there is. What a stack has and no launch file
+starts is left out, if all of the launch files is known.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from functools import cache
+from importlib.resources import files
+from typing import NamedTuple
+
+from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.companions.params.known_nodes import KnownNodes
+from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
+from multibot_rewrite.evidence.nodes import MANAGER
+from multibot_rewrite.evidence.parameter_files import given_nodes
+from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
+from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.remap.records import NodeFacts
+
+_ROBOTS = """\
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+"""
+_AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
+NOT_LAUNCHED = declare(
+    "MF821",
+    "node-not-launched",
+    NOTE,
+    what="A stack has a node that none of the robot's launch files starts; it is left out of the plan.",
+    why="The launch files say what runs. A plan with another node would report it as missing.",
+    fix="Nothing, if the launch files are right. Else start the node, or name its launch file, too.",
+    bad=f"launch: system_model.yaml\nstack: [robot_localization]\n{_ROBOTS}",
+    good=f"launch: system_model.yaml\n{_ROBOTS}",
+    formats=("fleet",),
+    beside={"system_model.yaml": _AMCL},
+)
+NOT_KNOWN = declare(
+    "MF822",
+    "launched-node-not-known",
+    NOTE,
+    what="A launch file starts a node that is not known: the plan has its name, and nothing of its "
+    "topics, services and frames.",
+    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
+    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
+    bad=f"launch: system_model.yaml\n{_ROBOTS}",
+    good=f"{_ROBOTS}launch: known.yaml\n",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "system_model.yaml": "structure:\n  nodes:\n    /d: {pkg: my_driver, exec: d, node_name: d}\n",
+        "known.yaml": _AMCL,
+    },
+)
+NOT_WHOLE = declare(
+    "MF823",
+    "launch-not-whole",
+    WARNING,
+    what="A part of a launch file cannot be read here, or is decided only at run time.",
+    why="The nodes that it starts are not in the plan, unless a stack has them.",
+    fix="Source the workspace that has the package, or give the folder of its sources as root; name a "
+    "stack for what only a run decides.",
+    bad=f"launch: system_model.yaml\n{_ROBOTS}",
+    good=f"launch: known.yaml\n{_ROBOTS}",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "system_model.yaml": "structure:\n  nodes:\n    /d: {exec: ./start.sh}\n",
+        "known.yaml": _AMCL,
+    },
+)
+_TF = ("/tf", "/tf_static")
+_CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+# Stands for the name of a file in what a launch file gives itself.
+_OWN = "parameters of a launch file"
+NO_NAME = "the launch file gives it no name"
+
+
+class Programs(NamedTuple):
+    """Executables whose node is called otherwise, and those that are no node of a robot."""
+
+    nodes: Mapping[str, str]
+    passing: Collection[str]
+
+
+class Launched(NamedTuple):
+    """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
+    its name, if that is all that runs, and findings."""
+
+    nodes: tuple[NodeFacts, ...]
+    given: tuple[GivenNode, ...]
+    started: Mapping[str, LaunchedNode]
+    whole: bool
+    findings: tuple[Finding, ...]
+
+
+class _Pair(NamedTuple):
+    node: LaunchedNode
+    facts: NodeFacts
+    known: bool
+
+
+@cache
+def programs() -> Programs:
+    """Those of ``launch_programs.yaml``."""
+    text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
+    data = load_yaml(text)
+    return Programs(data["nodes"], frozenset(data["passing"]))
+
+
+def with_launched(
+    stack: Sequence[NodeFacts],
+    graph: LaunchGraph,
+    known: Mapping[str, NodeFacts],
+    words: Collection[str],
+    parameters: KnownNodes,
+) -> Launched:
+    """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces.
+
+    Raises InputError for a parameter file of a launch file that cannot be read.
+    """
+    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
+    nodes = {it.facts.name: it.facts for it in pairs}
+    left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
+    gone = {it.name for it in left}
+    # A node that every robot has, such as robot_state_publisher, may be launched under another name.
+    gone |= {it.known for it in nodes.values()} - {it.name for it in stack if _is_named(it)}
+    kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
+    hosted = list(_hosted(pairs, known, {it.name for it in kept}))
+    inside = [*hosted, *(it for it in kept if it.host)]
+    given = [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    return Launched(
+        (*kept, *nodes.values(), *hosted),
+        tuple({it.name: it for it in reversed(given)}.values()),
+        {it.facts.name: it.node for it in pairs},
+        not graph.notes,
+        tuple(_findings(graph, pairs, left)),
+    )
+
+
+def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[NodeFacts]:
+    """The nodes under the remap rules of the launch files, without those that only have parameters."""
+    origins = {it.name: it.origin for it in launched.nodes}
+    for it in nodes:
+        if it.name in launched.started:
+            yield _remapped(it, launched.started[it.name], origins[it.name])
+        elif it.host in launched.started:
+            yield it._replace(origin=origins.get(it.name, it.origin))
+        elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
+            yield it
+
+
+def _passes(it: LaunchedNode) -> bool:
+    return not it.package or f"{it.package}/{it.executable}" in programs().passing
+
+
+def _pair(
+    it: LaunchedNode,
+    stack: Sequence[NodeFacts],
+    known: Mapping[str, NodeFacts],
+    words: Collection[str],
+) -> _Pair:
+    base = _base(it, stack, known)
+    name = it.name or (base.name if base else it.executable.rpartition(":")[2])
+    facts = base or NodeFacts(name, it.package, ())
+    unnamed = NO_NAME if not it.name and base is None else ""
+    found = facts._replace(
+        name=_below(it.namespace, name, words),
+        endpoints=tuple(end._replace(remapped="") for end in facts.endpoints),
+        known=facts.known or facts.name if base else "",
+        when=it.later or unnamed,
+        container=_below(it.container, "", words),
+        origin=_origin(it.place),
+    )
+    return _Pair(it, found, base is not None)
+
+
+def _base(
+    it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
+) -> NodeFacts | None:
+    """What is known of a node: by its name in a stack, else by its package and executable."""
+    executable = _CAMEL.sub("_", it.executable.rpartition(":")[2]).lower()
+    named = programs().nodes.get(f"{it.package}/{it.executable}")
+    of_stack = (node for node in stack if node.name == it.name and node.package == it.package)
+    wanted = {it.name, it.executable, executable, executable.removesuffix("_node"), named}
+    of_package = [node for node in known.values() if node.package == it.package and not node.host]
+    by_word = (node for node in of_package if wanted & {node.name, *node.nodl})
+    chosen = known.get(named) if named else None
+    return next(of_stack, None) or chosen or next(by_word, None)
+
+
+def _below(namespace: str, name: str, words: Collection[str]) -> str:
+    """The name of a node as a stack has it: without the robot's namespace."""
+    tokens = [*(it for it in namespace.split("/") if it), *([name] if name else [])]
+    return "/".join(tokens[1:] if len(tokens) > 1 and tokens[0] in words else tokens)
+
+
+def _origin(place: Place) -> str:
+    # Without its folder: a plan is the same from every working directory.
+    return f"{os.path.basename(place.file)}:{place.line}"
+
+
+def _is_left(node: NodeFacts, launched: Mapping[str, NodeFacts]) -> bool:
+    """Should a launch file have started it? What has no process of its own is not launched, and what
+    no stack is named for is added to every robot."""
+    own = not node.host and not node.plugin and node.name != MANAGER
+    return own and node.name not in launched and _is_named(node)
+
+
+def _is_named(node: NodeFacts) -> bool:
+    return node.origin.startswith("stack ")
+
+
+def _hosted(
+    pairs: Iterable[_Pair], known: Mapping[str, NodeFacts], there: Collection[str]
+) -> Iterator[NodeFacts]:
+    """The nodes that run inside of launched ones, such as costmaps."""
+    origins = {it.facts.known: it.facts.origin for it in pairs}
+    for node in known.values():
+        if node.host in origins and node.host != MANAGER and node.name not in there:
+            yield node._replace(origin=origins[node.host])
+
+
+def _given(
+    pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
+) -> Iterator[GivenNode]:
+    """What the launch file's parameters set for a node, the nodes in it and its controllers."""
+    own = f"{pair.node.namespace.strip('/')}/{pair.facts.name.rpartition('/')[2]}".lstrip("/")
+    # Sections for any node count, too, so each node gets one of its own.
+    first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
+    documents = [_document(it) for it in (first, *pair.node.parameters)]
+    names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
+    for it in given_nodes(documents, parameters):
+        name, manager = _stripped(it.name, words), _stripped(it.manager, words)
+        if name in names or manager == pair.facts.name:
+            yield _placed(it, pair.node.place)._replace(name=name, manager=manager)
+
+
+def _placed(given: GivenNode, place: Place) -> GivenNode:
+    """What a launch file gives itself is where that starts the node."""
+    values = {
+        name: it if it.place.file != _OWN else it._replace(place=place)
+        for name, it in given.values.items()
+    }
+    return given._replace(values=values, place=place if given.place.file == _OWN else given.place)
+
+
+def _stripped(name: str, words: Collection[str]) -> str:
+    above, slash, rest = name.partition("/")
+    return rest if slash and above in words else name
+
+
+def _document(it: ParameterText) -> YamlText:
+    return read_yaml(it.text.encode(), it.file or _OWN)
+
+
+def _remapped(node: NodeFacts, launched: LaunchedNode, origin: str) -> NodeFacts:
+    """The node with the remap rules of its launch file; those of tf belong to the layout."""
+    rules = dict(reversed([it for it in launched.remappings if it[0] not in _TF]))
+    ends = tuple(
+        it._replace(remapped=rules[it.name]) if rules.get(it.name, it.name) != it.name else it
+        for it in node.endpoints
+    )
+    return node._replace(endpoints=ends, origin=origin)
+
+
+def _findings(
+    graph: LaunchGraph, pairs: Iterable[_Pair], left: Iterable[NodeFacts]
+) -> Iterator[Finding]:
+    for note in graph.notes:
+        hint = "the nodes that it starts are not in the plan"
+        yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
+    for it in pairs:
+        if not it.known:
+            message = f"node {it.facts.name} ({it.node.package} {it.node.executable}) is not known"
+            hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
+            yield NOT_KNOWN.finding(message, hint, **_place(it.node.place))
+    for node in left:
+        if not node.when:
+            message = f"{node.name} of {node.origin} is not launched; it is left out"
+            hint = "leave out the stack, or name the launch file that starts it, too"
+            place = Place(next((it.place.file for it in graph.nodes), ""), 1)
+            yield NOT_LAUNCHED.finding(message, hint, **_place(place))
+
+
+def _place(place: Place) -> dict[str, object]:
+    return {"file": place.file, "line": place.line, "column": 1}

@@ -1,0 +1,79 @@
+"""The launch files of a robot -> its nodes: its stacks as the launch files start them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from multibot_rewrite.companions.params.known_nodes import KnownNodes
+from multibot_rewrite.evidence.launch_child import launch_graph
+from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
+from multibot_rewrite.evidence.launched import Launched, as_launched, with_launched
+from multibot_rewrite.evidence.nodes import RobotNodes, nodes_of
+from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.sources.own_names import filled
+
+
+def launched_robot(
+    stack: Sequence[NodeFacts],
+    orders: Sequence[LaunchOrder],
+    known: Mapping[str, NodeFacts],
+    words: Sequence[str],
+    parameters: KnownNodes,
+) -> Launched | None:
+    """The nodes of a robot with these launch files; None without any.
+
+    ``words`` stand for the robot in names, the first one for ``{robot}`` in arguments. Raises
+    InputError for a launch file that cannot be read, and UsageError for an unknown placeholder.
+    """
+    if not orders:
+        return None
+    mine = [it._replace(arguments=tuple(_filled(it, words[0]))) for it in orders]
+    graphs = [launch_graph(it) for it in mine]
+    graph = LaunchGraph(
+        tuple(node for it in graphs for node in it.nodes),
+        tuple(note for it in graphs for note in it.notes),
+    )
+    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters)
+
+
+def nodes_with(
+    launched: Launched | None,
+    stack: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+) -> RobotNodes:
+    """The nodes that a robot runs, by its launch files, its other files and its stacks."""
+    if launched is None:
+        return nodes_of(stack, given, known)
+    nodes, findings = nodes_of(launched.nodes, given, known)
+    return RobotNodes(tuple(as_launched(nodes, launched)), (*launched.findings, *findings))
+
+
+def given_with(launched: Launched | None, given: Sequence[GivenNode]) -> tuple[GivenNode, ...]:
+    """What a robot's files set and what its launch files do: these come last, so they count."""
+    if launched is None:
+        return tuple(given)
+    own = {it.name: it for it in given}
+    both = [_both(own.pop(it.name), it) if it.name in own else it for it in launched.given]
+    return (*own.values(), *both)
+
+
+def _both(own: GivenNode, launched: GivenNode) -> GivenNode:
+    """A value that both have keeps its place in the robot's own file."""
+    same = {
+        k: it
+        for k, it in own.values.items()
+        if k in launched.values and launched.values[k].value == it.value
+    }
+    values = {**own.values, **launched.values, **same}
+    return launched._replace(values=values, place=own.place)
+
+
+def _filled(order: LaunchOrder, robot: str) -> Iterator[tuple[str, str]]:
+    yield from filled(dict(order.arguments), robot).items()
+
+
+def _values(orders: Collection[LaunchOrder]) -> Iterator[str]:
+    """What stands for the robot besides its own words: its namespace in a launch."""
+    yield from (value.strip("/") for it in orders for _, value in it.arguments if value.strip("/"))

@@ -1,0 +1,1 @@
+"""What a launch file would start: its description is visited as a launch would, and nothing starts."""

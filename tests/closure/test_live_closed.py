@@ -1,0 +1,24 @@
+"""The plan that follows from a robot's own files, on a real graph: nothing is missing or too much."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from closed_robot import FILES
+
+from multibot_rewrite.cli.multibot import main
+
+pytestmark = pytest.mark.live
+
+
+@pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
+def test_the_plan_of_a_robot_s_own_files_holds(
+    layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(f"layout: {layout}\n{FILES['fleet.yaml']}")
+    assert main(["rehearse", str(fleet), "--select", "MG"]) == 0
+    assert "2 robots, 0 findings: as planned" in capsys.readouterr().err

@@ -1,0 +1,209 @@
+"""What launch files start, and the nodes of a robot that follow from it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import pytest
+
+from multibot_rewrite import InputError, UsageError
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.launch_child import launch_graph
+from multibot_rewrite.evidence.launch_records import (
+    LaunchedNode,
+    LaunchGraph,
+    LaunchNote,
+    LaunchOrder,
+    ParameterText,
+    graph_of,
+    launch_order,
+    order_of,
+    to_json,
+)
+from multibot_rewrite.evidence.launched import Launched, with_launched
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.evidence.ros_arguments import ros2_run, ros_arguments
+from multibot_rewrite.fleets.fleet import facts_of, known_nodes
+from multibot_rewrite.fleets.launched_robot import given_with, nodes_with
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.records import NodeFacts
+
+PUBLISHER = "robot_state_publisher"
+AT = Place("/ws/bringup.launch.py", 12)
+
+
+def started(package: str, executable: str, name: str = "", **more: object) -> LaunchedNode:
+    words = dict.fromkeys(LaunchedNode._fields, ()) | {
+        "package": package,
+        "executable": executable,
+        "name": name,
+        "namespace": "/",
+        "container": "",
+        "later": "",
+        "place": AT,
+    }
+    return LaunchedNode(**{**words, **more})
+
+
+def launched(
+    *nodes: LaunchedNode, stacks: tuple[str, ...] = (), notes: tuple[LaunchNote, ...] = ()
+) -> Launched:
+    stack = facts_of(stacks, None, NEWEST_LTS)
+    known = known_nodes(None, NEWEST_LTS, ()).library.nodes
+    parameters = load_known_nodes("", NEWEST_LTS)
+    return with_launched(stack, LaunchGraph(nodes, notes), known, {"robot1", "r"}, parameters)
+
+
+def runs(found: Launched) -> Mapping[str, NodeFacts]:
+    known = known_nodes(None, NEWEST_LTS, ()).library.nodes
+    return {it.name: it for it in nodes_with(found, (), given_with(found, ()), known).nodes}
+
+
+AMCL = started("nav2_amcl", "amcl", "amcl")
+
+
+def test_a_launched_node_runs_and_the_plan_says_its_line() -> None:
+    found = runs(launched(AMCL))["amcl"]
+    assert (found.origin, found.when, found.package) == ("bringup.launch.py:12", "", "nav2_amcl")
+    assert "scan" in {it.name for it in found.endpoints}
+
+
+def test_what_a_stack_has_and_nothing_launches_is_left_out_with_a_note() -> None:
+    found = launched(AMCL, stacks=("robot_localization",))
+    assert [(it.code, it.line) for it in found.findings] == [("MF821", 1)]
+    assert "ekf_filter_node" in found.findings[0].message
+    # Every robot runs robot_state_publisher, though no stack is named for it.
+    assert set(runs(found)) == {"amcl", PUBLISHER}
+    other = started(PUBLISHER, PUBLISHER, "rsp")
+    assert set(runs(launched(AMCL, other))) == {"amcl", "rsp"}
+
+
+def test_stacks_keep_their_nodes_where_a_part_of_a_launch_is_not_known() -> None:
+    note = LaunchNote(AT, "package 'acme' is not installed here")
+    found = launched(AMCL, stacks=("robot_localization",), notes=(note,))
+    assert [(it.code, it.file, it.line) for it in found.findings] == [("MF823", *AT)]
+    assert {"amcl", "ekf_filter_node"} <= set(runs(found))
+
+
+@pytest.mark.parametrize(
+    ("node", "name"),
+    [
+        (started("nav2_amcl", "amcl", "amcl", namespace="/robot1"), "amcl"),
+        (started("nav2_amcl", "amcl", "amcl", namespace="/robot1/front"), "front/amcl"),
+        (started("nav2_amcl", "amcl", "amcl", namespace="/front"), "front/amcl"),
+        (started("nav2_amcl", "amcl", namespace="/r"), "amcl"),
+        (started("robot_localization", "ekf_node", "ekf_odom"), "ekf_odom"),
+        (started("robot_localization", "ekf_node"), "ekf_filter_node"),
+        (started("slam_toolbox", "async_slam_toolbox_node"), "slam_toolbox"),
+        (started("nav2_controller", "nav2_controller::ControllerServer"), "controller_server"),
+        (started("rclcpp_components", "component_container_mt"), "component_container"),
+    ],
+)
+def test_the_name_of_a_node_is_that_of_its_launch_file_or_its_own(
+    node: LaunchedNode, name: str
+) -> None:
+    found = launched(node)
+    assert name in runs(found)
+    assert [it.code for it in found.findings] == []
+    assert runs(found)[name].endpoints
+
+
+def test_a_costmap_comes_with_the_server_that_has_it() -> None:
+    found = runs(launched(started("nav2_controller", "controller_server", "controller_server")))
+    assert set(found) == {PUBLISHER, "controller_server", "local_costmap/local_costmap"}
+    assert found["local_costmap/local_costmap"].origin == "bringup.launch.py:12"
+
+
+def test_a_component_is_in_its_container() -> None:
+    it = started("nav2_amcl", "nav2_amcl::AmclNode", "amcl", container="/robot1/nav2_container")
+    assert runs(launched(it))["amcl"].container == "nav2_container"
+
+
+def test_remap_rules_count_the_first_of_a_name_and_not_those_of_tf() -> None:
+    rules = (("scan", "front/scan"), ("scan", "rear/scan"), ("/tf", "tf"))
+    ends = runs(launched(AMCL._replace(remappings=rules)))["amcl"].endpoints
+    moved = {it.name: it.remapped for it in ends if it.remapped}
+    assert moved == {"scan": "front/scan"}
+
+
+def test_the_usual_remap_rules_of_a_stack_do_not_count() -> None:
+    plain = started("nav2_controller", "controller_server", "controller_server")
+    usual = {it.remapped for it in facts_of(("nav2",), None, NEWEST_LTS) for it in it.endpoints}
+    assert "cmd_vel_nav" in usual
+    found = runs(launched(plain, stacks=("nav2",)))["controller_server"]
+    assert {it.remapped for it in found.endpoints} == {""}
+
+
+def test_parameters_of_a_launch_file_set_names_and_later_ones_win() -> None:
+    files = (
+        ParameterText(
+            "/ws/a.yaml", "/**:\n  ros__parameters: {scan_topic: one, odom_frame_id: o}\n"
+        ),
+        ParameterText("", "robot1:\n  amcl:\n    ros__parameters: {scan_topic: two}\n"),
+        ParameterText("/ws/b.yaml", "other:\n  ros__parameters: {scan_topic: three}\n"),
+    )
+    found = launched(AMCL._replace(namespace="/robot1", parameters=files))
+    (given,) = found.given
+    assert given.name == "amcl"
+    assert given.values["scan_topic"] == ("two", AT)
+    assert given.values["odom_frame_id"] == ("o", Place("/ws/a.yaml", 2))
+    names = {it.name for it in runs(found)["amcl"].endpoints}
+    assert "two" in names and not {"one", "three", "scan"} & names
+
+
+def test_a_node_that_nothing_is_known_of_has_its_name_alone() -> None:
+    found = launched(started("acme", "driver", "d"))
+    assert [(it.code, it.file, it.line) for it in found.findings] == [("MF822", *AT)]
+    assert runs(found)["d"].endpoints == () and runs(found)["d"].when == ""
+    # Its code decides the name.
+    assert runs(launched(started("acme", "driver")))["driver"].when
+
+
+def test_what_an_event_starts_is_optional_and_a_spawner_is_no_node() -> None:
+    late = AMCL._replace(later="after a time")
+    found = runs(launched(late, started("controller_manager", "spawner")))
+    assert {name: it.when for name, it in found.items()} == {PUBLISHER: "", "amcl": "after a time"}
+
+
+def test_the_records_pass_between_processes() -> None:
+    node = AMCL._replace(remappings=(("a", "b"),), parameters=(ParameterText("f", "x: 1"),))
+    graph = LaunchGraph((node._replace(arguments=("-d", "f")),), (LaunchNote(AT, "no"),))
+    assert graph_of(to_json(graph)) == graph
+    order = LaunchOrder("f", (("a", "b"),), ("src",), True)
+    assert order_of(to_json(order)) == order
+
+
+def test_an_order_is_what_follows_ros2_launch() -> None:
+    assert launch_order("my.launch.py a:=1 b:='x y' c:=", ["src"]) == LaunchOrder(
+        "my.launch.py", (("a", "1"), ("b", "x y"), ("c", "")), ("src",)
+    )
+    for text in ("f a=1", "f :=1", "f 'open"):
+        with pytest.raises(UsageError, match="NAME:=VALUE"):
+            launch_order(text)
+
+
+def test_a_launch_file_that_nobody_trusts_is_not_run(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    ran = tmp_path_factory.mktemp("ran") / "ran"
+    file = ran.with_name("a.launch.py")
+    file.write_text(f"open({str(ran)!r}, 'w')\n")
+    with pytest.raises(InputError, match="--trust"):
+        launch_graph(LaunchOrder(str(file)))
+    assert not ran.exists()
+
+
+def test_ros_arguments_are_those_between_their_flags() -> None:
+    line = "-d f --ros-args -r __node:=n -r a:=b --params-file p -p x:=1 -r __ns:=/r -- --last"
+    found = ros_arguments(line.split())
+    assert found == ("n", "/r", (("a", "b"),), (("x", "1"),), ("p",), ("-d", "f", "--last"))
+
+
+def test_a_line_of_ros2_run_has_package_and_executable() -> None:
+    assert ros2_run(["/opt/bin/ros2", "run", "--prefix", "gdb", "acme", "driver", "-v"]) == (
+        "acme",
+        "driver",
+        ("-v",),
+    )
+    assert ros2_run(["ros2", "service", "call", "/a", "b"]) is None
+    assert ros2_run(["ros2", "run", "acme"]) is None

@@ -1,0 +1,222 @@
+"""What a launch file would start, read with the real launch and launch_ros; without them skipped.
+
+Expectations: what launch_ros passes to the processes, read in actions/node.py and
+actions/load_composable_nodes.py.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite import InputError
+from multibot_rewrite.evidence.launch_child import launch_graph
+from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, LaunchOrder
+from multibot_rewrite.launch import missing
+from multibot_rewrite.launch.door import of_launch_ros
+
+
+def without() -> str:
+    """Why launch_ros cannot be imported here; empty if it can."""
+    try:
+        of_launch_ros("actions")
+    except ImportError as error:
+        return str(error)
+    return missing()
+
+
+REASON = f"not tried in the real launch_ros, which is not here: {without()}"
+in_launch = pytest.mark.skipif(bool(without()), reason=REASON)
+HEAD = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.conditions import *
+from launch.event_handlers import *
+from launch.launch_description_sources import *
+from launch.substitutions import *
+from launch_ros.actions import *
+from launch_ros.descriptions import *
+from launch_ros.substitutions import *
+
+
+def generate_launch_description():
+    return LaunchDescription([
+"""
+NAMES = HEAD.count("\n")
+
+
+def read(folder: Path, actions: str, *arguments: tuple[str, str], roots: str = "") -> LaunchGraph:
+    file = folder / "bringup.launch.py"
+    file.write_text(f"{HEAD}{actions}\n    ])\n")
+    return launch_graph(LaunchOrder(str(file), arguments, (roots,) if roots else (), True))
+
+
+def one(graph: LaunchGraph) -> LaunchedNode:
+    assert graph.notes == ()
+    (node,) = graph.nodes
+    return node
+
+
+@in_launch
+def test_a_node_is_under_the_group_that_has_it(tmp_path: Path) -> None:
+    (tmp_path / "p.yaml").write_text("/**: {ros__parameters: {a: 1}}\n")
+    found = one(
+        read(
+            tmp_path,
+            f"""\
+        DeclareLaunchArgument("robot", default_value="robot9"),
+        GroupAction([
+            PushROSNamespace(LaunchConfiguration("robot")),
+            SetRemap("scan", "front/scan"),
+            SetParameter("use_sim_time", True),
+            Node(package="acme", executable="driver", name="d", namespace="left", arguments=["-v"],
+                 parameters=[{str(tmp_path / "p.yaml")!r}, {{"rate": 5.0, "n": {{"m": "y"}}}}],
+                 remappings=[("a", "b")]),
+        ]),
+        SetLaunchConfiguration("robot", "later"),""",
+            ("robot", "robot1"),
+        )
+    )
+    assert found[:4] == ("acme", "driver", "d", "/robot1/left")
+    assert found.remappings == (("scan", "front/scan"), ("a", "b"))
+    assert found.arguments == ("-v",)
+    assert (Path(found.place.file).name, found.place.line) == ("bringup.launch.py", NAMES + 6)
+    files = [it.file for it in found.parameters]
+    assert files == ["", str(tmp_path / "p.yaml"), "", ""]
+    assert "use_sim_time: True" in found.parameters[0].text
+    assert "m: y" in found.parameters[3].text.replace("'", "")
+
+
+@in_launch
+def test_includes_get_their_arguments_and_conditions_decide(tmp_path: Path) -> None:
+    (tmp_path / "inner.launch.xml").write_text(
+        '<launch>\n  <arg name="which"/>\n'
+        "  <node pkg=\"acme\" exec=\"one\" if=\"$(eval '\\'$(var which)\\' == \\'one\\'')\"/>\n"
+        '  <node pkg="acme" exec="two" name="$(var which)"/>\n</launch>\n'
+    )
+    found = one(
+        read(
+            tmp_path,
+            f"""\
+        IncludeLaunchDescription({str(tmp_path / "inner.launch.xml")!r},
+                                 launch_arguments=[("which", "other")]),
+        Node(package="acme", executable="never", condition=IfCondition("false")),""",
+        )
+    )
+    assert (found.executable, found.name, found.namespace) == ("two", "other", "/")
+    assert (Path(found.place.file).name, found.place.line) == ("inner.launch.xml", 4)
+
+
+@in_launch
+def test_components_are_in_their_container(tmp_path: Path) -> None:
+    graph = read(
+        tmp_path,
+        """\
+        PushROSNamespace("robot1"),
+        ComposableNodeContainer(package="rclcpp_components", executable="component_container",
+            name="box", namespace="", composable_node_descriptions=[
+                ComposableNode(package="acme", plugin="acme::One", name="one"),
+                ComposableNode(package="acme", plugin="acme::No", condition=IfCondition("0")),
+            ]),
+        LoadComposableNodes(target_container="/robot1/box", composable_node_descriptions=[
+            ComposableNode(package="acme", plugin="acme::Two", name="two", namespace="in",
+                           remappings=[("a", "b")]),
+        ]),""",
+    )
+    assert graph.notes == ()
+    box, first, second = graph.nodes
+    assert (box.name, box.namespace, box.container) == ("box", "/robot1", "")
+    assert first[1:4] == ("acme::One", "one", "/robot1")
+    assert second[1:5] == ("acme::Two", "two", "/robot1/in", (("a", "b"),))
+    assert {first.container, second.container} == {"/robot1/box"}
+
+
+@in_launch
+def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
+    graph = read(
+        tmp_path,
+        """\
+        OpaqueFunction(function=lambda context: [Node(package="acme", executable="f")]),
+        TimerAction(period=5.0, actions=[Node(package="acme", executable="t")]),
+        RegisterEventHandler(OnProcessExit(on_exit=[Node(package="acme", executable="e")])),
+        RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: [])),
+        LifecycleNode(package="acme", executable="l", name="l", namespace=""),
+        ExecuteProcess(cmd=["ros2 run acme r", "--ros-args", "-r", "__node:=n", "-r", "a:=b"]),
+        ExecuteProcess(cmd=["rm", "-rf", "build"]),""",
+    )
+    assert [(it.executable, bool(it.later)) for it in graph.nodes] == [
+        ("f", False),
+        ("t", True),
+        ("e", True),
+        ("l", False),
+        ("r", False),
+    ]
+    assert (graph.nodes[-1].name, graph.nodes[-1].remappings) == ("n", (("a", "b"),))
+    (note,) = graph.notes
+    assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
+
+
+@in_launch
+def test_nothing_is_started(tmp_path: Path) -> None:
+    made = tmp_path / "made"
+    found = one(
+        read(
+            tmp_path,
+            f"""\
+        ExecuteProcess(cmd=["touch", {str(made)!r}]),
+        Node(package="acme", executable="d", parameters=[
+            {{"robot_description": Command(["touch ", {str(made)!r}]), "rate": 1}}]),""",
+        )
+    )
+    assert not made.exists()
+    assert any("rate: 1" in it.text for it in found.parameters)
+
+
+@in_launch
+def test_a_missing_package_is_named_and_found_in_its_sources(tmp_path: Path) -> None:
+    share = 'FindPackageShare("acme_bringup")'
+    include = f'        IncludeLaunchDescription([{share}, "/launch/a.launch.py"]),'
+    (note,) = read(tmp_path, include).notes
+    assert note.place.line == NAMES + 1
+    assert "package 'acme_bringup' is not installed here" in note.message
+    sources = tmp_path / "src" / "deep" / "bringup"
+    (sources / "launch").mkdir(parents=True)
+    (sources / "package.xml").write_text("<package><name>acme_bringup</name></package>")
+    inner = HEAD + '        Node(package="acme", executable="d"),\n    ])\n'
+    (sources / "launch" / "a.launch.py").write_text(inner)
+    found = one(read(tmp_path, include, roots=str(tmp_path / "src")))
+    assert found.place == (str(sources / "launch" / "a.launch.py"), NAMES + 1)
+
+
+@in_launch
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("import acme_tools\n", "package 'acme_tools' is not installed here"),
+        ("def generate(:\n", "SyntaxError"),
+        ("print('no')\n", "generate_launch_description"),
+        ("raise SystemExit(0)\n", "SystemExit"),
+    ],
+)
+def test_a_launch_file_that_cannot_be_read_is_one_line(
+    text: str, said: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "broken.launch.py"
+    file.write_text(text)
+    with pytest.raises(InputError) as caught:
+        launch_graph(LaunchOrder(str(file), trusted=True))
+    assert str(caught.value).startswith(f"{file}: ") and said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.skipif(not without(), reason="launch_ros is here")
+def test_without_launch_one_line_says_what_to_do(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"launch_ros cannot be imported.*source ROS 2") as caught:
+        read(tmp_path, "")
+    assert "\n" not in str(caught.value)
+
+
+def test_the_command_itself_imports_no_launch() -> None:
+    assert "launch_ros" not in sys.modules or not without()
