@@ -131,7 +131,9 @@ def with_launched(
     left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
-    gone |= {it.known for it in nodes.values()} - {it.name for it in stack if _is_named(it)}
+    gone |= {it.known for it in nodes.values() if it.known} - {
+        it.name for it in stack if _is_named(it)
+    }
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
@@ -224,7 +226,7 @@ def _hosted(
     """The nodes that run inside of launched ones, such as costmaps."""
     origins = {it.facts.known: it.facts.origin for it in pairs}
     for node in known.values():
-        if node.host in origins and node.host != MANAGER and node.name not in there:
+        if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
             yield node._replace(origin=origins[node.host])
 
 

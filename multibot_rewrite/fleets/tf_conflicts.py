@@ -19,8 +19,11 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.graph.expectation import tf_topic
 from multibot_rewrite.graph.transforms import Edge, description_edges
+from multibot_rewrite.rewriters.own_defaults import frame_sites
+from multibot_rewrite.rewriters.text import text_at
 
 DESCRIPTION = "the description"
+SIMULATOR = "the bridge from gz-sim"
 
 
 FRAME_TWICE = declare(
@@ -110,6 +113,7 @@ def _sent(fleet: Fleet, group: RobotGroup) -> Iterator[SentTransform]:
     name = robot.spec.namespace
     tree = list(description_edges(robot.member.inventory))
     yield from (SentTransform(edge, DESCRIPTION, "") for edge in tree)
+    yield from (SentTransform(edge, SIMULATOR, "") for edge in _simulated(robot))
     full = {
         it.node: f"{it.namespace.rstrip('/')}/{it.name}"
         for it in fleet.table.nodes
@@ -120,6 +124,15 @@ def _sent(fleet: Fleet, group: RobotGroup) -> Iterator[SentTransform]:
             yield from (
                 SentTransform(it, node, full.get(node, "")) for it in edges if it not in tree
             )
+
+
+def _simulated(robot: RewrittenRobot) -> Iterator[Edge]:
+    """The transforms of gz-sim's drive and odometry systems, which the bridge brings to tf."""
+    for host, section in robot.member.inventory.served:
+        sites = frame_sites(host, section, robot.names.naming)
+        given = [text_at(host, it.path) for it in sites]
+        if len(given) == 2 and all(given):
+            yield Edge(given[0], given[1], False)
 
 
 def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:

@@ -100,7 +100,7 @@ def second_senders(hosts: Hosts, naming: Naming) -> frozenset[etree._Element]:
     Their frames stay below the model's name, where they are in nobody's way.
     """
     senders = [
-        (host, sites) for host, section in hosts if (sites := _frames(host, section, naming))
+        (host, sites) for host, section in hosts if (sites := frame_sites(host, section, naming))
     ]
     given = {host for host, sites in senders if any(text_at(host, it.path) for it in sites)}
     taken = {model_of(host) for host in given}
@@ -117,7 +117,7 @@ def _is_nested(model: etree._Element) -> bool:
     return next(model.iterancestors("model"), None) is not None
 
 
-def _frames(host: etree._Element, section: VocabularySection, naming: Naming) -> list[Site]:
+def frame_sites(host: etree._Element, section: VocabularySection, naming: Naming) -> list[Site]:
     """Where the frames of a transform are, of a system that sends one with these parameters."""
     sites = [it for it in section.sites if MODEL in it.default and it.kinds[:1] == ("frame",)]
     return [it for it in sites if default_of(host, it.default, naming)]

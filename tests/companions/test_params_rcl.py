@@ -143,7 +143,10 @@ def differences(before: dict[str, Any], after: dict[str, Any]) -> Iterator[str]:
         elif not is_same(key, value, left.pop(same)):
             yield f"{key}: {value!r} became {after[same]!r}"
     for key, value in left.items():
-        if ROBOT not in str(value) and not (key.endswith("tf_frame_prefix_enable") and not value):
+        # No prefix: / says so from Lyrical on, the other parameter before.
+        no_prefix = key.endswith("tf_frame_prefix_enable") and not value
+        no_prefix = no_prefix or (key.endswith("tf_frame_prefix") and value == "/")
+        if ROBOT not in str(value) and not no_prefix:
             yield f"{key}: {value!r} is new"
 
 

@@ -154,6 +154,9 @@ def test_parameters_of_a_launch_file_set_names_and_later_ones_win() -> None:
 def test_a_node_that_nothing_is_known_of_has_its_name_alone() -> None:
     found = launched(started("acme", "driver", "d"))
     assert [(it.code, it.file, it.line) for it in found.findings] == [("MF822", *AT)]
+    assert set(runs(found)) == {"d", PUBLISHER}
+    with_stack = launched(started("acme", "driver", "d"), AMCL, stacks=("localization",))
+    assert set(runs(with_stack)) == {"d", "amcl", PUBLISHER}
     assert runs(found)["d"].endpoints == () and runs(found)["d"].when == ""
     # Its code decides the name.
     assert runs(launched(started("acme", "driver")))["driver"].when

@@ -243,6 +243,26 @@ def test_what_a_parameter_file_says_is_sent(more: str, said: list[str], tmp_path
     assert [said[0] in it.message for it in found] == [True] * len(said)
 
 
+GZ_DRIVE = """<robot name="rover"><link name="base_link"/><gazebo>
+<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system"/></gazebo></robot>"""
+
+
+@pytest.mark.parametrize(
+    ("more", "frames"),
+    [("", ["r1/base_link"]), (", publish_tf: false", []), (", base_link_frame: mast", [])],
+)
+def test_the_drive_of_the_simulator_and_a_filter(
+    more: str, frames: list[str], tmp_path: Path
+) -> None:
+    params = f"ekf_filter_node:\n  ros__parameters: {{odom_frame: odom, world_frame: odom{more}}}\n"
+    text = f"stack: robot_localization\ncompanions: {{params: params.yaml}}\n{PARENTS}"
+    plan = planned(tmp_path, text, params__yaml=params, rover__urdf=GZ_DRIVE)
+    found = [it for it in make_outputs(plan).findings if it.code == "MF607"]
+    assert [
+        it.message.split()[1] for it in found if "the bridge from gz-sim" in it.message
+    ] == frames
+
+
 def test_two_robots_that_send_a_shared_frame_on_one_topic(tmp_path: Path) -> None:
     text = f"stack: nav2\nshared_frames: [map, odom]\n{PARENTS}"
     found = [it for it in make_outputs(planned(tmp_path, text)).findings if it.code == "MF607"]

@@ -18,8 +18,8 @@ from multibot_rewrite.releases import NEWEST_LTS
 from multibot_rewrite.remap.node_library import stack_of
 from multibot_rewrite.remap.records import NodeTable, Table
 from multibot_rewrite.remap.stacks import user_stack
+from multibot_rewrite.remap.started import arguments, started
 from multibot_rewrite.remap.table import build_table
-from multibot_rewrite.remap.table_formats import arguments
 
 pytestmark = pytest.mark.live
 
@@ -128,7 +128,7 @@ def test_started_with_the_rules_nothing_leaks(
 ) -> None:
     rules = table(files[learned], layout)
     spec = {node["name"]: node for node in code}
-    fleet = [[{**spec[it.node], "arguments": arguments(it)}] for it in rules.nodes]
+    fleet = [[{**spec[it.node.node], "arguments": arguments(it)}] for it in started(rules)]
     file = tmp_path / "graph.json"
     with live_fleet.running(domain(1), *fleet, **tf2):
         done = multibot(1, "snapshot", "-o", str(file), **tf2)

@@ -42,8 +42,14 @@ def table(request: pytest.FixtureRequest) -> Table:
 
 
 def rules_of(lines: list[str], node: NodeTable) -> list[str]:
-    """What follows each ``-r`` in the node's line of the ros-args form."""
-    at = lines.index(f"# {node.robot}: {node.node}")
+    """What follows each ``-r`` in the line of the ros-args form of the node, or of its host, whose
+    namespace and name are not its own."""
+    own = f"# {node.robot}: {node.node}"
+    if own not in lines:
+        name = f"__node:={node.name}", f"__ns:={node.namespace}"
+        rules = rules_of(lines, node._replace(node=node.home.host))
+        return [*name, *(it for it in rules if not it.startswith("__"))]
+    at = lines.index(own)
     words = shlex.split(lines[at + 1]) if lines[at + 1] != "(no rule)" else []
     return [word for before, word in itertools.pairwise(words) if before == "-r"]
 
