@@ -238,7 +238,7 @@ def _given(
     own = f"{pair.node.namespace.strip('/')}/{pair.facts.name.rpartition('/')[2]}".lstrip("/")
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
-    # launch_ros gives a component the values of a file that has no such key; no name of a node is in it.
+    # launch_ros gives a component the values of a file without such a key; it names no node.
     files_ = (it for it in pair.node.parameters if PARAMETERS in it.text)
     documents = [_document(it) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
