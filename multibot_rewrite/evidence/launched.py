@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
+from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
@@ -131,7 +132,9 @@ def with_launched(
     left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
-    gone |= {it.known for it in nodes.values()} - {it.name for it in stack if _is_named(it)}
+    gone |= {it.known for it in nodes.values() if it.known} - {
+        it.name for it in stack if _is_named(it)
+    }
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
@@ -235,7 +238,9 @@ def _given(
     own = f"{pair.node.namespace.strip('/')}/{pair.facts.name.rpartition('/')[2]}".lstrip("/")
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
-    documents = [_document(it) for it in (first, *pair.node.parameters)]
+    # launch_ros gives a component the values of a file without such a key; it names no node.
+    files_ = (it for it in pair.node.parameters if PARAMETERS in it.text)
+    documents = [_document(it) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
         name, manager = _stripped(it.name, words), _stripped(it.manager, words)

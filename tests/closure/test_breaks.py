@@ -149,7 +149,7 @@ BREAKS = [
         5,
         "DiffDriveController",
     ),
-    ("controllers.yaml", "base_controller:\n  ros", "base_controler:\n  ros", "MF607", 9, ""),
+    ("controllers.yaml", "base_controller:\n  ros", "base_controler:\n  ros", "MF607", 22, ""),
     # The joint of the hardware is called otherwise than the controller's.
     (
         "rover.urdf",
