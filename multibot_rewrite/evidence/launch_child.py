@@ -34,7 +34,10 @@ def launch_graph(order: LaunchOrder) -> LaunchGraph:
         raise InputError(f"{order.file}: a fleet file names it; {hint}")
     if os.environ.get(_INSIDE):
         return LaunchGraph()
-    return _asked(order)
+    found = _asked(order)
+    if not found.nodes and not found.notes:
+        raise InputError(f"{order.file}: it starts no node with these arguments; correct them")
+    return found
 
 
 def _asked(order: LaunchOrder) -> LaunchGraph:

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
+from multibot_rewrite.companions.params.sections import PARAMETERS
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
@@ -237,7 +238,9 @@ def _given(
     own = f"{pair.node.namespace.strip('/')}/{pair.facts.name.rpartition('/')[2]}".lstrip("/")
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
-    documents = [_document(it) for it in (first, *pair.node.parameters)]
+    # launch_ros gives a component the values of a file without such a key; it names no node.
+    files_ = (it for it in pair.node.parameters if PARAMETERS in it.text)
+    documents = [_document(it) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
         name, manager = _stripped(it.name, words), _stripped(it.manager, words)

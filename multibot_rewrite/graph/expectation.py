@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
+from multibot_rewrite.remap.ways import COMPONENT, SPAWNER, deliveries
 from multibot_rewrite.steps.collect import Inventory
 
 # Topics of every node, which the plan leaves out.
@@ -58,7 +59,8 @@ class Expectation(NamedTuple):
     ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
     ``sources`` has for a node ``file:line`` of the plugin that starts it, ``origins`` for any other
     node the file (``file:line``) or stack (``stack nav2``) that names it. ``release`` is that whose
-    facts it rests on, empty if that is not known.
+    facts it rests on, empty if that is not known. ``ways`` has for a node that takes its rules from
+    its spawner or at its loading which of the two (``remap.ways``).
     """
 
     layout: str
@@ -71,6 +73,7 @@ class Expectation(NamedTuple):
     sources: tuple[tuple[str, str], ...] = ()
     origins: tuple[tuple[str, str], ...] = ()
     release: str = ""
+    ways: tuple[tuple[str, str], ...] = ()
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:
@@ -131,6 +134,17 @@ def expect(
         tuple(sorted(naming.shared_frames)),
         tuple(dict.fromkeys(_planned(table.names))),
         sources=tuple(sources.items()),
+        ways=tuple(_ways(table)),
+    )
+
+
+def _ways(table: Table) -> Iterator[tuple[str, str]]:
+    """The nodes that are started without --ros-args of their own, each with its way."""
+    found = {it.node.full_name: it.way for it in reversed(deliveries(table))}
+    return (
+        (node.full_name, found[node.full_name])
+        for node in table.nodes
+        if found.get(node.full_name) in (SPAWNER, COMPONENT)
     )
 
 

@@ -30,8 +30,8 @@ HEAD = """\
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
-# Node -> text; key -> field of Expectation.
-BY_NODE = {"sources": "sources", "from": "origins"}
+# Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
+BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways"}
 OPTIONAL_KEYS = ("distro", "ignored_nodes", *BY_NODE)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
@@ -118,7 +118,7 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         robot, ends = _read_robot(str(name), given, file)
         robots.append(robot)
         endpoints += ends
-    sources, origins = (tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE)
+    sources, origins, ways = (tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE)
     plan = Expectation(
         str(top["layout"]),
         tuple(robots),
@@ -130,6 +130,7 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         sources,
         origins,
         _release(top.get("distro", ""), file),
+        ways,
     )
     nothing = vacuous(plan)
     if nothing:

@@ -1,7 +1,8 @@
 """``python -m multibot_rewrite.interfaces FOLDER...``: what known nodes declare.
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed;
-with ``--compare RELEASE``, the differences to the nodes that are known of that release.
+with ``--compare RELEASE``, the differences to the nodes that are known of that release, and nodes
+beside them that ``nodes.txt`` does not have.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ import sys
 from pathlib import Path
 
 from multibot_rewrite.interfaces.checkouts import read_folder
-from multibot_rewrite.interfaces.compare import differences
-from multibot_rewrite.interfaces.known_nodes import extracted
+from multibot_rewrite.interfaces.compare import difference_of, differences
+from multibot_rewrite.interfaces.known_nodes import extracted, unlisted
 from multibot_rewrite.interfaces.records import joined
 from multibot_rewrite.interfaces.scope import indexed
 from multibot_rewrite.interfaces.table import to_table
@@ -34,9 +35,11 @@ def main(arguments: list[str]) -> int:
     except UsageError as error:
         print(f"interfaces: {error}", file=sys.stderr)
         return 2
-    facts = tuple(extracted(indexed(source)))
+    index = indexed(source)
+    facts = tuple(extracted(index))
     if given.compare:
-        rows = sorted(set(differences(facts, built_in(given.compare))))
+        new = map(difference_of, unlisted(index))
+        rows = sorted({*differences(facts, built_in(given.compare)), *new})
         sys.stdout.writelines("\t".join(row) + "\n" for row in rows)
         return int(bool(rows))
     sys.stdout.write(to_table(facts))

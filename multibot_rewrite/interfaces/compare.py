@@ -6,20 +6,21 @@ import re
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from multibot_rewrite.interfaces.records import Fact
+from multibot_rewrite.interfaces.records import Class, Fact
 from multibot_rewrite.remap.node_library import NodeLibrary
 from multibot_rewrite.remap.records import Endpoint
 
 # Parts of nodes.yaml that come from rclcpp and rclcpp_lifecycle, which are not read.
 NOT_READ = ("every_node", "lifecycle")
 OURS, THEIRS, WAY, WHEN = "not in the sources", "not in nodes.yaml", "another way", "only sometimes"
+UNLISTED = "not in nodes.txt"
 # A condition with one of these is never true for all.
 SOMETIMES = re.compile(r"plugin |class |tree has ")
 _MADE = re.compile(r"<[^<>]*>")
 
 
 class Difference(NamedTuple):
-    """One difference; ``what`` is one of the four words above."""
+    """One difference; ``what`` is one of the words above."""
 
     node: str
     role: str
@@ -37,6 +38,14 @@ def differences(facts: Iterable[Fact], library: NodeLibrary) -> Iterator[Differe
     for node, found in by_node.items():
         known = library.nodes.get(node)
         yield from _of_node(node, found, tuple(_read(library, known.endpoints)) if known else ())
+
+
+def difference_of(found: Class) -> Difference:
+    """That of a node without a line in ``nodes.txt``."""
+    place = found.place
+    return Difference(
+        f"{place.package}/{found.name}", "", "", "", UNLISTED, f"{place.path}:{place.line}"
+    )
 
 
 def _read(library: NodeLibrary, endpoints: Iterable[Endpoint]) -> Iterator[Endpoint]:
@@ -82,8 +91,8 @@ def same_name(one: str, other: str, node: str) -> bool:
 
 def _plain(name: str, node: str) -> str:
     """With the node's own name as ``~``."""
-    name = re.sub(r"^(<get_name>|<this>)/", "~/", name)
     above, _, own = node.rpartition("/")
+    name = re.sub(rf"^(<get_name>|<this>|{re.escape(own)})/", "~/", name)
     if above:  # nodes.yaml has names of the namespace above it as absolute ones.
         name = name.lstrip("/")
     return name.replace("<getName>", f"<{own}>") if name.startswith("~") else name

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
 LONGEST_CONDITION = 60
 _EXPORT = re.compile(r"PLUGINLIB_EXPORT_CLASS\(\s*([\w:<>]+)\s*,\s*([\w:<>]+)\s*,?\s*\)")
+_COMPONENT = re.compile(r"^\s*RCLCPP_COMPONENTS_REGISTER_NODE\(\s*([\w:]+)\s*\)", re.MULTILINE)
 _MACRO = re.compile(r"\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|LOCAL)\b")
 
 
@@ -50,7 +51,13 @@ def read_cpp(text: str, place: Place) -> Source:
         for item in HANDLERS[node.type](node, place):
             found[type(item)].append(item)
     found[Plugin] = [Plugin(last(one), last(base)) for one, base in _EXPORT.findall(text)]
+    found[Call] += [_component(it, place) for it in _COMPONENT.findall(text)]
     return Source(*(tuple(found[kind]) for kind in _COLUMNS))
+
+
+def _component(name: str, place: Place) -> Call:
+    """A registered component is made as a main would."""
+    return Call("", "main", last(name), (), (), "", "", place)
 
 
 _COLUMNS = (Class, Call, Value, Alias, Constructor, Plugin)
@@ -214,6 +221,13 @@ def _alias(node: Node, place: Place) -> Iterator[Alias]:
     yield Alias(_around(node)[0], name, type_)
 
 
+def _used(node: Node, place: Place) -> Iterator[Alias]:
+    """``using a_msgs::msg::Scan;``; not of a namespace."""
+    name = text_of(node.named_children[-1])
+    if MESSAGE.search(name):
+        yield Alias(_around(node)[0], last(name), name)
+
+
 def _taking(node: Node, place: Place) -> Iterator[Constructor]:
     """The names of a function's parameters."""
     parameters = node.child_by_field_name("parameters")
@@ -241,5 +255,6 @@ HANDLERS: dict[str, Callable[[Any, Place], Iterator[Any]]] = {
     "field_declaration": _default,
     "alias_declaration": _alias,
     "type_definition": _alias,
+    "using_declaration": _used,
     "function_declarator": _taking,
 }

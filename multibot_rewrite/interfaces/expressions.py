@@ -18,6 +18,7 @@ MAKERS = ("make_shared", "make_unique", "allocate_shared")
 SAME_TEXT = (
     *("string", "c_str", "str", "to_string", "move", "getString", "topicResolve", "ParameterValue"),
     *("static_pointer_cast", "dynamic_pointer_cast"),
+    *("resolve_topic_or_service_name", "expand_topic_or_service_name"),
 )
 LAST_TEXT = ("joinWithParentNamespace", "resolve_topic_name", "append")
 NAMES_PARAMETER = re.compile(r"(get|declare|add)\w*[pP]aram(eter)?(_if_not_declared|_or)?")
@@ -132,6 +133,7 @@ def _passed_on(name: str, given: tuple[str, ...], on: str) -> str:
 
 TEXTS: dict[str, Callable[[Any], str]] = {
     "string_literal": lambda node: text_of(node)[1:-1],
+    "user_defined_literal": lambda node: evaluated(node.named_children[0]),
     "concatenated_string": _all,
     "initializer_list": _all,
     "compound_literal_expression": _field("value"),

@@ -74,3 +74,22 @@ def _roots(index: Index, mode: tuple[tuple[str, str], ...]) -> Iterator[Class]:
         if not name:
             there = [Class("", (), (), {}, Place("", "", "", 0, package))]
         yield from there[:1]
+
+
+def unlisted(index: Index) -> Iterator[Class]:
+    """Nodes that no line has, of packages that some line has: components, and what a main makes.
+
+    A class that declares nothing is left out.
+    """
+    listed = {part for it in known_nodes() for mode in it.modes for part in mode}
+    packages = {package for package, _ in listed}
+    made = {(it.place.package, it.name) for it in index.functions.get("main", ())}
+    names = sorted({name for _, name in made})
+    for found in (it for name in names for it in index.classes.get(name, ())):
+        key = (found.place.package, found.name)
+        if key in made and key not in listed and key[0] in packages and _declares(index, found):
+            yield found
+
+
+def _declares(index: Index, found: Class) -> bool:
+    return next(facts_of(index, found.name, found, frozenset()), None) is not None

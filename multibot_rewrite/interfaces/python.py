@@ -16,9 +16,13 @@ from multibot_rewrite.interfaces.records import (
     joined,
 )
 
-# The type is the first argument of these; ActionServer's and ActionClient's is the second.
-BY_TYPE = ("create_publisher", "create_subscription", "create_service", "create_client")
-WITH_NODE = ("ActionServer", "ActionClient")
+# Which argument is the type.
+TYPE_AT = {
+    **dict.fromkeys(("create_publisher", "create_subscription"), 0),
+    **dict.fromkeys(("create_service", "create_client"), 0),
+    **dict.fromkeys(("ActionServer", "ActionClient"), 1),
+    "service_caller": 2,
+}
 
 
 def read_python(text: str, place: Place) -> Source:
@@ -87,11 +91,11 @@ def _call(
 ) -> Call:
     name = node.func.attr if isinstance(node.func, ast.Attribute) else _text(node.func).strip("<>")
     words = [it.value for it in node.keywords]
-    args = [*node.args, *words] if name in (*BY_TYPE, *WITH_NODE) else list(node.args)
+    args = [*node.args, *words] if name in TYPE_AT else list(node.args)
     given = [_text(it) for it in args]
-    at = 0 if name in BY_TYPE else 1
+    at = TYPE_AT.get(name, len(args))
     typed: tuple[str, ...] = ()
-    if name in (*BY_TYPE, *WITH_NODE) and len(args) > at:
+    if len(args) > at:
         written = ast.unparse(args[at])
         typed = (types.get(written, written),)
         del given[at]

@@ -25,7 +25,7 @@ from multibot_rewrite.remap.records import (
 )
 from multibot_rewrite.remap.table_checks import PROBE, collisions, unreachable, useless_rules
 from multibot_rewrite.remap.targets import expanded, placed, target_of
-from multibot_rewrite.remap.way_checks import not_taken
+from multibot_rewrite.remap.way_checks import NOT_TAKEN, not_taken
 from multibot_rewrite.remap.ways import MANAGER
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
@@ -112,9 +112,11 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
             by_robot.setdefault(name.robot, []).append(name)
     known = {(it.code, it.message) for it in (*table.problems, *other.problems)}
     met = (it for it in collisions(by_robot, naming) if (it.code, it.message) not in known)
-    problems = tuple(dict.fromkeys((*table.problems, *other.problems, *met)))
     nodes = tuple(dict.fromkeys((*table.nodes, *other.nodes)))
-    return Table(table.layout, nodes, names, problems, table.release)
+    made = Table(table.layout, nodes, names, (), table.release)
+    # The first robot of all is another one than the first of each.
+    each = (it for it in (*table.problems, *other.problems) if it.code != NOT_TAKEN.code)
+    return made._replace(problems=tuple(dict.fromkeys((*each, *met, *not_taken(made)))))
 
 
 def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:

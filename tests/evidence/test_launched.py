@@ -151,6 +151,11 @@ def test_parameters_of_a_launch_file_set_names_and_later_ones_win() -> None:
     assert "two" in names and not {"one", "three", "scan"} & names
 
 
+def test_a_file_that_sets_no_parameters_of_nodes_is_passed_over() -> None:
+    flat = AMCL._replace(parameters=(ParameterText("/ws/flat.yaml", "scan_topic: one\n"),))
+    assert "amcl" in runs(launched(flat))
+
+
 def test_a_node_that_nothing_is_known_of_has_its_name_alone() -> None:
     found = launched(started("acme", "driver", "d"))
     assert [(it.code, it.file, it.line) for it in found.findings] == [("MF822", *AT)]

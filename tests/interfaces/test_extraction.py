@@ -9,6 +9,7 @@ import pytest
 from multibot_rewrite.interfaces.__main__ import main
 from multibot_rewrite.interfaces.checkouts import read_folder
 from multibot_rewrite.interfaces.nodes import facts_of
+from multibot_rewrite.interfaces.records import Class, Place
 from multibot_rewrite.interfaces.scope import indexed
 from multibot_rewrite.interfaces.table import COLUMNS, from_table, to_table
 
@@ -81,6 +82,31 @@ def facts(folder: Path, body: str, more: str = "", header: str = HEADER) -> set[
             ("serves", "s", "a_msgs/srv/Spin", "private mine", "", ""),
             id="a-private-node",
         ),
+        pytest.param(
+            'if (a_) { } else { p_ = create_publisher<a_msgs::msg::Scan>("s", 1); }',
+            ("publishes", "s", "a_msgs/msg/Scan", "", "", "not (a_)"),
+            id="the-other-case",
+        ),
+        pytest.param(
+            'using a_msgs::msg::Scan; create_publisher<Scan>(get_name() + "/s"s, 1);',
+            ("publishes", "<get_name>/s", "a_msgs/msg/Scan", "", "", ""),
+            id="a-used-type-and-a-literal",
+        ),
+        pytest.param(
+            'sub_.subscribe(this, resolve_topic_or_service_name("in"));',
+            ("subscribes", "in", "", "", "", ""),
+            id="a-filter-on-this-node",
+        ),
+        pytest.param(
+            "b_ = std::make_shared<tf2_ros::StaticTransformBroadcaster>(this);",
+            ("publishes", "/tf_static", TF, "", "", ""),
+            id="a-static-broadcaster",
+        ),
+        pytest.param(
+            'auto s = rclcpp_action::create_server<a_msgs::action::Go>(this, "go", f, g, h);',
+            ("serves", "go", "a_msgs/action/Go", "", "", ""),
+            id="an-action-server",
+        ),
     ],
 )
 def test_a_declaration(tmp_path: Path, body: str, fact: tuple[str, ...]) -> None:
@@ -98,6 +124,53 @@ def test_bases_and_their_types(tmp_path: Path) -> None:
     more = """template<typename T> class Base {
       void start() { a_ = std::make_shared<SimpleActionServer<T>>(node, "act"); } };"""
     assert facts(tmp_path, "", more) == {("serves", "act", "a_msgs/action/Go", "", "", "")}
+
+
+def test_a_base_builds_the_name(tmp_path: Path) -> None:
+    more = """template<typename T> class Base { std::string topic_;
+      Base(std::string topic) : topic_("/" + topic) {}
+      void start() { create_publisher<T>(topic_, 1); } };"""
+    made = facts(
+        tmp_path,
+        "",
+        more,
+        "class Robot : public Base<a_msgs::msg::Scan> {\n"
+        '  Robot(int i) : Base<a_msgs::msg::Scan>("scan") {} };\n',
+    )
+    assert made == {("publishes", "/scan", "a_msgs/msg/Scan", "", "", "")}
+
+
+def test_a_filter_that_is_given_no_node_is_none(tmp_path: Path) -> None:
+    assert facts(tmp_path, 'bus.subscribe("in");') == set()
+
+
+def test_a_value_is_of_its_package(tmp_path: Path) -> None:
+    """Another node's default of a parameter with the same name is not taken."""
+    other = tmp_path / "repo@1.2.3" / "another"
+    other.mkdir(parents=True)
+    (other / "package.xml").write_text("<package/>")
+    (other / "a.cpp").write_text('void f() { declare_parameter("t", "tilt_scan"); }')
+    body = 'declare_parameter("t", "scan"); create_publisher<a::msg::B>(get_parameter("t"), 1);'
+    assert facts(tmp_path, body) == {("publishes", "scan", "a/msg/B", "", "t", "")}
+
+
+def test_a_constant_is_of_its_package(tmp_path: Path) -> None:
+    other = tmp_path / "repo@1.2.3" / "another"
+    other.mkdir(parents=True)
+    (other / "package.xml").write_text("<package/>")
+    (other / "a.cpp").write_text('const std::string TOPIC = "theirs";')
+    (fact,) = facts(
+        tmp_path, "create_publisher<a::msg::B>(TOPIC, 1);", 'const std::string TOPIC = "ours";'
+    )
+    assert fact[1] == "ours"
+
+
+def test_a_local_name_stays_in_its_function(tmp_path: Path) -> None:
+    more = """void main() { auto name = "mine"; }
+      void create_it(int i) { create_publisher<a::msg::B>(name, 1); }"""
+    assert facts(tmp_path, "create_it(1);", more) == {
+        ("publishes", "<name>", "a/msg/B", "", "", "")
+    }
 
 
 def test_plugins_are_conditions(tmp_path: Path) -> None:
@@ -129,6 +202,20 @@ def test_python(tmp_path: Path) -> None:
     assert from_table(to_table([fact])) == (fact._replace(place=fact.place._replace(package="")),)
 
 
+def test_python_helpers_of_the_spawner(tmp_path: Path) -> None:
+    (tmp_path / "repo@1/robot").mkdir(parents=True)
+    (tmp_path / "repo@1/robot/package.xml").write_text("<package/>")
+    (tmp_path / "repo@1/robot/a.py").write_text(
+        "from a_msgs.srv import Load\n"
+        "def load(node, manager):\n"
+        "  return service_caller(node, f'{manager}/load', Load, 1)\n"
+    )
+    index = indexed(read_folder(tmp_path / "repo@1"))
+    free = Class("", (), (), {}, Place("repo", "1", "", 0, "robot"))
+    (fact,) = facts_of(index, "spawner", free, frozenset())
+    assert fact[1:4] == ("calls", "<manager>/load", "a_msgs/srv/Load")
+
+
 def test_a_folder_that_is_no_checkout(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main([str(tmp_path)]) == 2
     assert "REPOSITORY@VERSION" in capsys.readouterr().err
@@ -157,3 +244,21 @@ def test_the_command_prints_differences(tmp_path: Path, capsys: pytest.CaptureFi
     assert main([str(folder), "--compare", "jazzy"]) == 1
     rows = [row.split("\t")[:5] for row in capsys.readouterr().out.splitlines()]
     assert ["twist_mux", "calls", "c", "a/srv/B", "not in nodes.yaml"] in rows
+
+
+def test_new_nodes_of_a_package_are_seen(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "twist_mux@4"
+    folder.mkdir()
+    part = 'struct {} {{ void f() {{ create_client<a::srv::B>("c"); }} }};'
+    (folder / "a.cpp").write_text(
+        "\n".join(map(part.format, ("TwistMux", "Added", "Made", "Neither")))
+        + "\nRCLCPP_COMPONENTS_REGISTER_NODE(twist_mux::Added)\n"
+        + "int main() { auto a = std::make_shared<TwistMux>(); std::make_shared<Made>(); }"
+        + "struct Silent {}; RCLCPP_COMPONENTS_REGISTER_NODE(twist_mux::Silent)\n"
+    )
+    main([str(folder), "--compare", "jazzy"])
+    rows = [row.split("\t") for row in capsys.readouterr().out.splitlines()]
+    new = {(row[0], row[5]) for row in rows if row[4] == "not in nodes.txt"}
+    assert new == {("twist_mux/Added", "a.cpp:2"), ("twist_mux/Made", "a.cpp:3")}

@@ -60,7 +60,10 @@ OFF = (
     "not (data_type ==",
     "enable_path_lookahead_",
     "subscribe_to_stamped_footprint_",
+    'command_out_type == "std_msgs/Float64MultiArr',
 )
+# moveit_servo/src/utils/common.cpp:509 gives its own name where the monitor has a default.
+GIVEN = {("servo_node", "publishes", "monitored_planning_scene"): "~/publish_planning_scene"}
 
 
 @cache
@@ -68,7 +71,8 @@ def facts(release: str) -> dict[str, list[Fact]]:
     found: dict[str, list[Fact]] = {}
     for fact in from_table((FIXTURES / "interfaces" / f"{release}.tsv").read_text()):
         if not any(it in DEFAULT.sub("", fact.condition) for it in OFF):
-            found.setdefault(fact.node, []).append(fact)
+            name = GIVEN.get((fact.node, fact.role, fact.name), fact.name)
+            found.setdefault(fact.node, []).append(fact._replace(name=name))
     return found
 
 

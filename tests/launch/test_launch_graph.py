@@ -211,6 +211,12 @@ def test_a_launch_file_that_cannot_be_read_is_one_line(
     assert "\n" not in str(caught.value)
 
 
+@in_launch
+def test_a_launch_without_nodes_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="it starts no node"):
+        read(tmp_path, '        Node(package="a", executable="b", condition=IfCondition("0")),')
+
+
 @pytest.mark.skipif(not without(), reason="launch_ros is here")
 def test_without_launch_one_line_says_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"launch_ros cannot be imported.*source ROS 2") as caught:

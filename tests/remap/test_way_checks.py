@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from multibot_rewrite.fleets.fleet import make_fleet
+from multibot_rewrite.fleets.fleet import make_fleet, merge
 from multibot_rewrite.naming import Policy
 
 LAYOUT: Policy = {"layout": "tf-per-robot"}
@@ -70,3 +70,13 @@ def test_on_humble_the_second_robot_has_the_rules_of_the_first() -> None:
 )
 def test_a_rule_for_a_controller(release: str, rule: str, stack: str, found: list[str]) -> None:
     assert sorted({code for code, _ in codes(release, rule, stack=stack)}) == found
+
+
+def test_robots_of_different_stacks_are_looked_at_together() -> None:
+    alone = [
+        make_fleet(description(), [robot], [stack], NEITHER, release="humble")
+        for robot, stack in (("robot1", "gz_ros2_control"), ("robot2", "ros2_control"))
+    ]
+    assert not [it for made in alone for it in made.table.problems if it.robot == "robot2"]
+    found = merge(alone).table.problems
+    assert {it.robot for it in found if it.code == "MR105"} == {"robot2"}

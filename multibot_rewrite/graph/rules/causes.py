@@ -9,6 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
 
 # What a node does with a name, by the role of its endpoint.
@@ -108,6 +109,12 @@ def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
     source, _, target = rule.partition(":=")
+    way = dict(view.plan.ways).get(planned.node, "")
+    if way == SPAWNER:
+        return f'; pass it to its spawner: --controller-ros-args "-r {rule}"{parts}'
+    if way == COMPONENT:
+        loaded = f"remappings=[({source!r}, {target!r})] of its ComposableNode"
+        return f"; pass it where it is loaded into its container: {loaded}{parts}"
     launch = f"remappings=[({source!r}, {target!r})] in the launch file"
     return f"; pass it with --ros-args -r {rule}, or with {launch}{parts}"
 
