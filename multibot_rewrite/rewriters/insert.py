@@ -98,7 +98,7 @@ def _defaults(
     hidden: str,
 ) -> Iterator[Insertion]:
     for site in section.sites:
-        default = default_of(host, site.default, naming)
+        default = default_of(host, site.default, naming) if site.default else ""
         if not default:
             continue
         of_model = default.startswith(MODEL)

@@ -8,7 +8,7 @@ back as the parsed value. What would make that unsafe (other encodings, DOCTYPE)
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from operator import sub
 from typing import NamedTuple
@@ -56,30 +56,37 @@ _HINTS = (
 
 class Document(NamedTuple):
     """One parsed file. ``elements`` are all of the tree in document order, ``starts`` the byte
-    offsets of their start tags. ``file`` is the name used in messages."""
+    offsets of their start tags, or their numbers where no place is asked for. ``file`` is the name
+    used in messages."""
 
     source: bytes
     file: str
     root: etree._Element
     elements: list[etree._Element]
-    starts: list[int]
+    starts: Sequence[int]
 
 
-def read_document(source: bytes, file: str) -> Document:
-    """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done."""
+def read_document(source: bytes, file: str, placed: bool = True) -> Document:
+    """Parse ``source``; raises InputError with place, cause and remedy where that cannot be done.
+
+    Without ``placed`` elements are numbered and not looked for in the bytes.
+    """
     _refuse_bytes(source, file)
     try:
         root = etree.fromstring(source, _PARSER)
     except etree.XMLSyntaxError as error:
         raise InputError(_syntax_message(error, file)) from None
-    document = Document(source, file, root, list(root.iter("*")), start_offsets(source))
+    elements = list(root.iter("*"))
+    starts = start_offsets(source) if placed else range(len(elements))
+    document = Document(source, file, root, elements, starts)
     _refuse_tree(document)
-    _refuse_wide(document)
+    if placed:
+        _refuse_wide(document)
     return document
 
 
 def _refuse_bytes(source: bytes, file: str) -> None:
-    if not source.strip():
+    if not source or source.isspace():
         raise InputError(f"{file}: the file is empty; a robot description starts with <robot>")
     if len(source) > MAX_BYTES:
         sizes = f"{len(source):,} bytes, over the limit of {MAX_BYTES:,}"

@@ -30,7 +30,7 @@ from multibot_rewrite.rewriters.tree import Tree
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.collect import Inventory, collect
 from multibot_rewrite.steps.document import read_document
-from multibot_rewrite.steps.inserted import Marker, markers, removals
+from multibot_rewrite.steps.inserted import MARKER, Marker, markers, removals
 from multibot_rewrite.steps.plan import Plan
 from multibot_rewrite.steps.strip import Place, inside_of, own_places, strip_edits, stripped
 
@@ -79,7 +79,8 @@ def verify(
     file = inventory.document.file
     beside = spelled_names(urdf_declarations, naming, robot)
     try:
-        result = collect(read_document(output, f"{file} for {robot}"), tree, beside)
+        read = read_document(output, f"{file} for {robot}", _asks_places(plan, output, naming))
+        result = collect(read, tree, beside)
         mine = [marker for marker in markers(result.document) if marker.robot == robot]
         inserted = removals(result.document, robot)
     except InputError as error:
@@ -94,6 +95,16 @@ def verify(
     )
     for check in CHECKS:
         check(it)
+
+
+def _asks_places(plan: Plan, output: bytes, naming: Naming) -> bool:
+    """Does a check ask where in the bytes an element of the output is? Only where more than affixes
+    has to be taken out."""
+    return MARKER in output or bool(naming.own) or _replaces(plan)
+
+
+def _replaces(plan: Plan) -> bool:
+    return any(edit.start < edit.end for edit in plan.edits)
 
 
 def same_names(it: Evidence) -> None:
@@ -275,9 +286,8 @@ def a_slot_each(it: Evidence) -> None:
 def strips_to_source(it: Evidence) -> None:
     """Undoing the rewrite, by what the output alone says, gives the input back."""
     own = own_places(it.inventory, it.naming)
-    replaces = any(edit.start < edit.end for edit in it.plan.edits)
     fills = any(marker.filled for marker in it.markers)
-    if not (_strips(it, own) if own or replaces or fills else _adds_affixes(it)):
+    if not (_strips(it, own) if own or fills or _replaces(it.plan) else _adds_affixes(it)):
         file = it.inventory.document.file
         raise ProofError(
             f"{file}: stripping {it.robot} from the output does not give the input back"

@@ -80,7 +80,7 @@ class VocabularySection(NamedTuple):
     tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
     for whatever the file says, each as ``kind:name``. ``model_namespace`` are the releases in which
     its relative topics stand below the namespace of the model. ``releases`` are the words for the only
-    releases that have it.
+    releases that have it. ``tags`` are those of the child elements that its rows know.
     """
 
     type: str
@@ -104,6 +104,7 @@ class VocabularySection(NamedTuple):
     file: str
     line: int
     releases: str = ""
+    tags: frozenset[str] = frozenset()
 
     @property
     def name(self) -> str:
@@ -115,12 +116,6 @@ class VocabularySection(NamedTuple):
     def topics(self) -> tuple[str, ...]:
         """All names that only a remap rule moves."""
         return self.publishes + self.subscribes + self.serves
-
-    @property
-    def tags(self) -> frozenset[str]:
-        """The tags of child elements that its rows know."""
-        paths = (split_path(site.path)[0] for site in self.sites if site.path[0] != "@")
-        return frozenset(split_step(steps[0])[0] for steps in paths)
 
 
 def read_header(place: str, row: str) -> tuple[str, ...]:
@@ -204,7 +199,13 @@ def assemble(
         file,
         line,
         settings.get("releases", ""),
+        _tags(sites),
     )
+
+
+def _tags(sites: Iterable[Site]) -> frozenset[str]:
+    paths = (split_path(site.path)[0] for site in sites if site.path[0] != "@")
+    return frozenset(split_step(steps[0])[0] for steps in paths)
 
 
 def merge(first: VocabularySection, second: VocabularySection) -> VocabularySection:
@@ -237,6 +238,7 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
         hardwired=first.hardwired + second.hardwired,
         inserts=first.inserts and second.inserts,
         process_wide=first.process_wide or second.process_wide,
+        tags=first.tags | second.tags,
     )
 
 
