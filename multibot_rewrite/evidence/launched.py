@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
-from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
@@ -23,6 +23,7 @@ from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
 
 _ROBOTS = """\
@@ -123,10 +124,7 @@ def with_launched(
     words: Collection[str],
     parameters: KnownNodes,
 ) -> Launched:
-    """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces.
-
-    Raises InputError for a parameter file of a launch file that cannot be read.
-    """
+    """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
@@ -239,7 +237,7 @@ def _given(
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
     # launch_ros gives a component the values of a file without such a key; it names no node.
-    files_ = (it for it in pair.node.parameters if PARAMETERS in it.text)
+    files_ = (it for it in pair.node.parameters if _has_sections(it))
     documents = [_document(it) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
@@ -260,6 +258,13 @@ def _placed(given: GivenNode, place: Place) -> GivenNode:
 def _stripped(name: str, words: Collection[str]) -> str:
     above, slash, rest = name.partition("/")
     return rest if slash and above in words else name
+
+
+def _has_sections(it: ParameterText) -> bool:
+    try:
+        return any(True for _ in raw_sections(_document(it)))
+    except InputError:
+        return False
 
 
 def _document(it: ParameterText) -> YamlText:
