@@ -77,7 +77,8 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
         bound = _bound(raw._replace(remapped=remapped), binding)
         if holds(bound.condition, lookup(node, values)):
             decided = bool(binding or bound.condition)
-            yield from _named(bound._replace(when="" if decided else bound.when), values)
+            named = bound._replace(when="" if decided else bound.when)
+            yield from _named(named, values, _ending(node, raw))
 
 
 def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
@@ -145,13 +146,22 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
     )
 
 
-def _named(endpoint: Endpoint, values: Mapping[str, Given]) -> Iterator[Endpoint]:
+def _ending(node: NodeFacts, raw: Endpoint) -> str:
+    """What the node puts behind the topic of a parameter, as ``_updates``: another endpoint has the
+    topic itself."""
+    alike = (it.named_from or it.name for it in node.endpoints if it.parameter == raw.parameter)
+    bases = [it for it in alike if raw.name.startswith(it)] if raw.parameter else []
+    return raw.name.removeprefix(min(bases, key=len)) if bases else ""
+
+
+def _named(endpoint: Endpoint, values: Mapping[str, Given], ending: str) -> Iterator[Endpoint]:
     """The endpoint under the names that its parameter sets; under its own where none is set."""
     names = list(_set_names(endpoint.parameter, values))
     for parameter, name in names:
         if name:
             # The node makes it absolute itself: /scan, or /robot1/scan below robot1.
             full = f"/{name}" if endpoint.above and name[0] not in "/~" else name
+            full += ending
             set_ = endpoint._replace(name=full, parameter=parameter)
             yield set_._replace(fixed="", when="", condition="")
     if not names and "<" not in endpoint.name:

@@ -184,3 +184,9 @@ def test_what_no_rule_reaches_is_fixed_unless_a_parameter_could_name_it() -> Non
     node = known._replace(endpoints=(named, bare))
     found = filled(node, given("ekf_filter_node:\n  ros__parameters: {wanted: true}\n")[0])
     assert [(it.name, it.fixed) for it in found.endpoints] == [("a", ""), ("b", "made absolute")]
+
+
+def test_a_topic_that_is_made_of_a_parameter_keeps_its_ending() -> None:
+    text = "smoother_server:\n  ros__parameters: {costmap_topic: /global_costmap/raw}\n"
+    heard = names(run("smoother_server", text), "subscribes")
+    assert {"/global_costmap/raw", "/global_costmap/raw_updates"} <= heard
