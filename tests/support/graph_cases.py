@@ -254,15 +254,12 @@ def captured(graph: Snapshot) -> Snapshot:
 
 
 def unheard(graph: Snapshot) -> Snapshot:
-    """A bridge for all robots brings the scan, under no robot's name."""
-    ends = (
-        e._replace(name="/scan", node="/lidar_bridge")
-        if (e.name, e.role) == ("/robot1/scan", PUBLISHES)
-        else e
-        for e in graph.endpoints
+    """A bridge for all robots brings an order under no robot's name."""
+    end = GraphEndpoint(
+        TOPIC, PUBLISHES, "/patrol", "std_msgs/msg/String", "", "/order_bridge", None, ""
     )
-    nodes = (*graph.nodes, GraphNode("/lidar_bridge", ""))
-    return graph._replace(nodes=nodes, endpoints=tuple(ends))
+    nodes = (*graph.nodes, GraphNode("/order_bridge", ""))
+    return graph._replace(nodes=nodes, endpoints=(*graph.endpoints, end))
 
 
 def bare(frame: GraphFrame) -> GraphFrame:
@@ -329,7 +326,7 @@ CASES = (
     ),
     Case(L2, "MG109", ("MG109",), silent),
     Case(L2, "MG110", ("MG110",), captured),
-    Case(L2, "MG111", ("MG111",), unheard),
+    Case(L2, "MG111", ("MG111", "MG111"), unheard),
     Case(
         L2, "MG201", ("MG201",),
         reframed(lambda f: f, GraphFrame("base_footprint/robot1", "map", "/tf", False, ())),
