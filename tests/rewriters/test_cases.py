@@ -118,7 +118,7 @@ def test_refused_with_that_code(case: Case) -> None:
 
 def nothing_renamed_is_the_input(case: Case) -> None:
     naming = make_naming(**policy(case))._replace(separators={}, topics=POSTFIX)
-    tree = builtin_tree((), release(case))
+    tree = builtin_tree((), release(case) or NEWEST_LTS)
     template = pipeline.prepare(case.source, case.name, naming, tree, outside(case))
     assert fill(template.pieces, ROBOTS[0]) == case.source
     assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)

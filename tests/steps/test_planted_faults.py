@@ -27,7 +27,7 @@ from multibot_rewrite.steps.collect import declarations
 from multibot_rewrite.steps.template import Template
 
 # Words of a case that are not of its naming.
-NO_POLICY = ("again", "file", "urdf")
+NO_POLICY = ("again", "file", "urdf", "distro")
 CASES = [case for case in load_cases() if case.expect == "changed"]
 SOME = CASES[::40]
 options = st.fixed_dictionaries(
@@ -39,7 +39,7 @@ def template(case: Case) -> Template:
     """The case, ready for any robot."""
     words = {key: it for key, it in case.options.items() if key not in NO_POLICY}
     urdf = case.options.get("urdf")
-    tree = builtin_tree((), NEWEST_LTS)
+    tree = builtin_tree((), str(case.options.get("distro", NEWEST_LTS)))
     beside = {} if urdf is None else declarations(urdf.read_bytes(), "", tree)
     naming = make_naming(**cast(Policy, words))
     return pipeline.prepare(case.source, case.name, naming, tree, beside)
