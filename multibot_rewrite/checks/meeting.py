@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import islice
+
+from lxml.etree import _Element
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.model import InputError, ProofError
@@ -72,10 +74,37 @@ def shared_with(
         raise ProofError(
             f"{document.file}: {it.name!r} ({it.path}) is a frame that tf does not have"
         )
+    of_plugins: dict[int, list[RuntimeName]] = {}
     for it in same_for_all(reading, robot, naming):
-        element = next(islice(document.root.iter(it.tag), it.number, None), document.root)
-        hint = _hint(it, naming)
-        yield Problem(element, _message(it, vocabulary.release), None, hint, (), code_of(it))
+        if it.of_controllers:
+            of_plugins.setdefault(it.number, []).append(it)
+        else:
+            yield Problem(
+                _element(document, it), _message(it), None, _hint(it, naming), (), code_of(it)
+            )
+    for names in of_plugins.values():
+        yield _of_controllers(_element(document, names[0]), names, naming, vocabulary.release)
+
+
+def _element(document: Document, name: RuntimeName) -> _Element:
+    return next(islice(document.root.iter(name.tag), name.number, None), document.root)
+
+
+def _of_controllers(
+    element: _Element, names: Sequence[RuntimeName], naming: Naming, release: str
+) -> Problem:
+    """What the controllers of a plugin would share, though the plugin has rules for it."""
+    shared = ", ".join(it.name for it in names)
+    message = (
+        f"all robots would have {shared} of their controllers, which take no rules of this plugin on"
+        f" {release}"
+    )
+    rules = " ".join(f"-r {_rule(it.name, naming)}" for it in names)
+    hint = (
+        f'start each controller with its spawner and --controller-ros-args "{rules}"; multibot remap'
+        " and build print the lines"
+    )
+    return Problem(element, message, None, hint, (), CONTROLLERS)
 
 
 def code_of(name: RuntimeName) -> str:
@@ -87,12 +116,7 @@ def code_of(name: RuntimeName) -> str:
     return {NODE: SHARED_NODE, FRAME: SHARED_FRAME}.get(name.kind, SHARED_LOOKUP)
 
 
-def _message(name: RuntimeName, release: str) -> str:
-    if name.of_controllers:
-        return (
-            f"all robots would have the {name.kind} {name.name!r} of their controllers, which take no"
-            f" rules of this plugin on {release}"
-        )
+def _message(name: RuntimeName) -> str:
     if code_of(name) == SHARED_LOOKUP:
         return (
             f"the {name.kind} {name.name!r} is looked up by bare name in the whole world: "
@@ -102,11 +126,6 @@ def _message(name: RuntimeName, release: str) -> str:
 
 
 def _hint(name: RuntimeName, naming: Naming) -> str:
-    if name.of_controllers:
-        return (
-            f'start each controller with its spawner and --controller-ros-args "-r'
-            f' {_rule(name.name, naming)}"; multibot remap and build print the lines'
-        )
     if name.kind in TOPIC_KINDS:
         return "set a topic that is renamed for each robot, or allow it with --shared-topics"
     if name.kind == NODE:

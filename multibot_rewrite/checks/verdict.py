@@ -17,7 +17,7 @@ REASONS = {
     "MB903": ("hardware class", "not known"),
     "MB430": ("topic", SHARED),
     "MB431": ("node", SHARED),
-    "MB435": ("topic", "of controllers, which take rules of their spawner alone"),
+    "MB435": ("plugin", "whose controllers take rules of their spawner alone"),
     "MB432": ("frame", SHARED),
     "MB425": ("name", "looked up in the whole world"),
     "MB426": ("remap rule", "of the whole process"),

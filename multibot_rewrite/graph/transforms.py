@@ -58,12 +58,25 @@ def description_edges(inventory: Inventory) -> Iterator[Edge]:
 
 
 def edges_in(root: _Element) -> Iterator[Edge]:
-    """The same, from the root element of a description."""
+    """The same, from the root element of a description. A frame of an SDF is the link that it is
+    attached to."""
+    frames = root.iter("frame")
+    attached = {it.get("name", ""): it.get("attached_to", "") for it in frames}
     for joint in root.iter("joint"):
         ends = [joint.find(tag) for tag in ("parent", "child")]
         names = [(end.get("link") or end.text or "").strip() for end in ends if end is not None]
         if len(names) == 2:
-            yield Edge(names[0], names[1], joint.get("type") == "fixed")
+            parent, child = (_attached_to(name, attached) for name in names)
+            yield Edge(parent, child, joint.get("type") == "fixed")
+
+
+def _attached_to(name: str, attached: Mapping[str, str]) -> str:
+    """What a chain of frames ends at; a frame that is attached to nothing known stays itself."""
+    for _ in attached:
+        if not attached.get(name):
+            return name
+        name = attached[name]
+    return name
 
 
 def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:

@@ -44,6 +44,10 @@ BLOCKS = load_vocabulary((), NEWEST_LTS).sections("block")
 LEAST_CASES = 1050
 LEAST_REFEREED = 980
 # Not a word of rewrite's naming policy.
+# gz-sim's odometry, whose frames are below the name of the model where the file does not say them.
+FRAMES_LEFT_OUT = re.compile(
+    rb"gz-sim-(?:diff-drive|mecanum-drive|ackermann-steering|tracked-vehicle|odometry-publisher)-system"
+)
 NO_POLICY = ("again", "file", "urdf", "distro")
 # Rows of the vocabulary, by section and path, at which no case renames anything.
 UNEXERCISED: set[tuple[str, str]] = set()
@@ -119,6 +123,8 @@ def test_refused_with_that_code(case: Case) -> None:
 def nothing_renamed_is_the_input(case: Case) -> None:
     naming = make_naming(**policy(case))._replace(separators={}, topics=POSTFIX)
     tree = builtin_tree((), release(case) or NEWEST_LTS)
+    if FRAMES_LEFT_OUT.search(case.source):
+        return  # each robot's frames are written in every layout, or tf would not have them
     template = pipeline.prepare(case.source, case.name, naming, tree, outside(case))
     assert fill(template.pieces, ROBOTS[0]) == case.source
     assert list(pipeline.render(template, ROBOTS, again=True)) == [case.source] * len(ROBOTS)
