@@ -167,7 +167,9 @@ def test_lines_are_such_that_editors_find_the_place(capsys: pytest.CaptureFixtur
     lines = [LINE.fullmatch(line) for line in out.splitlines()]
     assert all(lines)
     assert {it["file"] for it in lines if it} >= {"left.urdf", "two_roots.urdf"}
-    assert re.fullmatch(r"urdf-lint: 5 files: 1 error, 1 warning(, \d+ notes?)?\n", err)
+    assert re.fullmatch(
+        r"urdf-lint: 5 files: 1 error, 1 warning(, \d+ notes?)? \(facts of \w+\)\n", err
+    )
 
 
 @pytest.mark.usefixtures("here")
@@ -282,7 +284,7 @@ def test_standard_input(
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(TWO_ROOTS.encode())))
     code, out, err = said(capsys, "-", "--select", "MB501")
     assert (code, out.partition(" ")[0]) == (1, "<stdin>:3:7:")
-    assert err == "urdf-lint: 1 file: 1 error\n"
+    assert err == "urdf-lint: 1 file: 1 error (facts of lyrical)\n"
 
 
 STREAMS = [
