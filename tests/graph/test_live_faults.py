@@ -24,7 +24,7 @@ from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.transforms import description_edges
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -38,7 +38,7 @@ GRAPHS = ROOT / "fixtures" / "graphs"
 ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
 LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}
 TF = "tf2_msgs/msg/TFMessage"
-TRIGGER = "std_srvs/srv/Trigger"
+TEXT, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
 ROUNDS, LOOKS = 7, 3
 # The first ones are enough for a usual run; the deep one has all.
 AT_ONCE = 6
@@ -70,7 +70,9 @@ def fleet_of(layout: str) -> Fleet:
             space, _, name = node.rpartition("/")
             nodes[node] = {"name": name, "namespace": space, **_lists()}
     for it in plan.endpoints:
-        kept = it.type if it.type == TF else types.get(it.name, TRIGGER)
+        # A plan does not know the type of every topic of a plugin.
+        unknown = TEXT if it.kind == TOPIC else TRIGGER
+        kept = it.type if it.type == TF else types.get(it.name, unknown)
         if kept != TF:
             nodes[it.node][LISTS[it.role]].append([it.name, kept])
     fleet = {robot.name: {node: nodes[node] for node in robot.nodes} for robot in plan.robots}
