@@ -18,7 +18,7 @@ from multibot_rewrite.fleets.gap_findings import at_gap, meant
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
-from multibot_rewrite.fleets.robot_nodes import robot_nodes
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
 from multibot_rewrite.graph.transforms import edges_in
 
@@ -164,7 +164,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
     for group in group_robots(plan):
         robot = group.robots[0]
-        evidence = robot_nodes(robot.spec, plan.file)
+        evidence = plan.evidence[node_sources(robot.spec)]
         before, library = system_before(robot, evidence), evidence.known
         after = system_after(robot, fleet, texts, known)
         made = [*interface_gaps(before.given, library, before.exports)]

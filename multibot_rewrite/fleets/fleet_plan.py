@@ -15,19 +15,25 @@ from multibot_rewrite.fleets.rewritten_robots import (
     read_jobs,
     rewrite_robots,
 )
-from multibot_rewrite.fleets.robot_nodes import NodeSources, node_sources, robot_nodes
+from multibot_rewrite.fleets.robot_nodes import (
+    NodeSources,
+    RobotEvidence,
+    node_sources,
+    robot_nodes,
+)
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
 
 
 class FleetPlan(NamedTuple):
     """A fleet file, its rewritten robots, and the fleet of all of them; ``jobs`` are the
-    descriptions as they were read."""
+    descriptions as they were read, ``evidence`` is what the robots' own files say of their nodes."""
 
     file: FleetFile
     robots: tuple[RewrittenRobot, ...]
     fleet: Fleet
     jobs: Mapping[Sources, Jobs]
+    evidence: Mapping[NodeSources, RobotEvidence]
 
 
 def plan_fleet(
@@ -43,7 +49,10 @@ def plan_fleet(
         naming = make_naming(**file.policy)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
-        return FleetPlan(file, tuple(robots), _fleet(file, robots, naming), read)
+        specs = {node_sources(it): it for it in reversed(file.robots)}
+        evidence = {key: robot_nodes(spec, file) for key, spec in specs.items()}
+        fleet = _fleet(file, robots, naming, evidence)
+        return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 
 def _trusted(file: FleetFile) -> FleetFile:
@@ -54,16 +63,21 @@ def _trusted(file: FleetFile) -> FleetFile:
     return file._replace(robots=tuple(robots))
 
 
-def _fleet(file: FleetFile, robots: Sequence[RewrittenRobot], naming: Naming) -> Fleet:
+def _fleet(
+    file: FleetFile,
+    robots: Sequence[RewrittenRobot],
+    naming: Naming,
+    evidence: Mapping[NodeSources, RobotEvidence],
+) -> Fleet:
     groups: dict[NodeSources, list[RewrittenRobot]] = {}
     for robot in robots:
         groups.setdefault(node_sources(robot.spec), []).append(robot)
     fleets: list[Fleet] = []
     notes: list[Finding] = []
-    for group in groups.values():
-        _, _, nodes, findings = robot_nodes(group[0].spec, file)
-        fleets.append(assemble([it.member for it in group], nodes, naming, file.distro))
-        notes += findings
+    for key, group in groups.items():
+        found = evidence[key]
+        fleets.append(assemble([it.member for it in group], found.nodes, naming, file.distro))
+        notes += found.findings
     fleet = merge(fleets)
     members = [it.member for it in robots]
     table = with_meetings(fleet.table, members, naming)

@@ -9,7 +9,7 @@ from multibot_rewrite.companions.context import Context, make_context
 from multibot_rewrite.companions.moveit.rewrite import with_srdf
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.robot_nodes import companion_nodes, robot_nodes, stack_nodes
+from multibot_rewrite.fleets.robot_nodes import companion_nodes, node_sources, stack_nodes
 from multibot_rewrite.remap.records import NodeFacts
 
 
@@ -36,7 +36,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         spec = robots[0].spec
-        nodes = robot_nodes(spec, plan.file).nodes
+        nodes = plan.evidence[node_sources(spec)].nodes
         facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)

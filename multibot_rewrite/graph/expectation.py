@@ -107,6 +107,7 @@ def expect(
     """
     known = tuple(facts)
     nodes, private = _nodes(table), _private_nodes(table.names)
+    always = _private_nodes(it for it in table.names if not it.endpoint.when)
     optional = {node.name for node in known if node.when}
     usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
     robots = []
@@ -119,7 +120,7 @@ def expect(
         full = tuple(
             dict.fromkeys((*(it for _, it in nodes.get(name, ())), *private.get(name, ())))
         )
-        must = _private_nodes(it for it in table.names if not it.endpoint.when).get(name, ())
+        must = always.get(name, ())
         may_miss += tuple(
             it for it in private.get(name, ()) if it not in must or it.startswith(may_miss)
         )
