@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
@@ -106,26 +106,20 @@ def expect(
     frames, where that is another one than its name.
     """
     known = tuple(facts)
-    nodes, private = _nodes(table), _private_nodes(table.names)
+    nodes, optional = _nodes(table), {node.name for node in known if node.when}
+    private = _private_nodes(table.names)
     always = _private_nodes(it for it in table.names if not it.endpoint.when)
-    optional = {node.name for node in known if node.when}
     usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
     robots = []
     for name in dict.fromkeys((*frames, *filter(None, nodes))):
-        own = tuple(frames.get(name, ()))
-        word = words.get(name, name)
+        own, word = tuple(frames.get(name, ())), words.get(name, name)
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
-        may_miss = tuple(full for stack_name, full in nodes.get(name, ()) if stack_name in optional)
-        full = tuple(
-            dict.fromkeys((*(it for _, it in nodes.get(name, ())), *private.get(name, ())))
-        )
-        must = always.get(name, ())
-        may_miss += tuple(
-            it for it in private.get(name, ()) if it not in must or it.startswith(may_miss)
-        )
-        tf = tf_topic(name, naming)
+        made = private.get(name, ())
+        full = tuple(dict.fromkeys((*(it for _, it in nodes.get(name, ())), *made)))
+        may_miss = _may_miss(nodes.get(name, ()), optional, made, always.get(name, ()))
         tag = word if word != name else ""
+        tf = tf_topic(name, naming)
         robots.append(PlannedRobot(name, full, own, tf, tuple(left), may_miss, tag))
     return Expectation(
         table.layout,
@@ -137,6 +131,17 @@ def expect(
         sources=tuple(sources.items()),
         ways=tuple(_ways(table)),
     )
+
+
+def _may_miss(
+    nodes: Iterable[tuple[str, str]],
+    optional: Container[str],
+    private: Iterable[str],
+    always: Container[str],
+) -> tuple[str, ...]:
+    """The nodes of a robot that may be missing, and those that these make for themselves."""
+    found = tuple(full for stack_name, full in nodes if stack_name in optional)
+    return (*found, *(it for it in private if it not in always or it.startswith(found)))
 
 
 def _ways(table: Table) -> Iterator[tuple[str, str]]:
