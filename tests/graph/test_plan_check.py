@@ -164,7 +164,7 @@ def test_the_plan_has_the_lines_of_the_users_file(plan: Path) -> None:
 @pytest.mark.parametrize("layout", ["tf-per-robot", "frames-per-robot", "both", "postfix"])
 def test_inserted_lines_do_not_move_them(layout: str, tmp_path: Path) -> None:
     path = tmp_path / "plan.yaml"
-    assert main(["plan", ROVER, "robot1", "robot2", "--layout", layout, "-o", str(path)]) == 0
+    assert main(["plan", str(ROVER), "robot1", "robot2", "--layout", layout, "-o", str(path)]) == 0
     assert sorted({int(place.rpartition(":")[2]) for place in sources(path).values()}) == [
         88, 97, 106, 118, 126,
     ]  # fmt: skip
@@ -223,3 +223,18 @@ def test_frames_that_parameters_name_are_other_frames(tmp_path: Path) -> None:
     (robot,) = from_yaml(path.read_bytes(), "plan").robots
     assert {"base_footprint/robot1"} <= {*robot.frames, *robot.other_frames}
     assert not {"map", "map/robot1"} & {*robot.frames, *robot.other_frames}
+
+
+@pytest.mark.parametrize("when", ["", "planning"])
+def test_a_node_that_another_one_makes_is_optional_with_it(when: str, tmp_path: Path) -> None:
+    nodes, plan = tmp_path / "nodes.yaml", tmp_path / "plan.yaml"
+    nodes.write_text(
+        "nodes:\n  planner:\n    package: own\n"
+        "    subscribes: {scene: {type: std_msgs/msg/String, by: _private_*}}\n"
+        f"stacks:\n  own: {{about: x, nodes: [{{node: planner, when: {when!r}}}]}}\n"
+    )
+    words = ["--nodes", str(nodes), "--stack", "own", "--layout", "frames-per-robot"]
+    assert main(["plan", str(ROVER), "robot1", "robot2", *words, "-o", str(plan)]) == 0
+    optional = from_yaml(plan.read_bytes(), "plan").robots[0].optional
+    made = ("/robot1/planner", "/robot1/planner_private_*")
+    assert set(made) & set(optional) == (set(made) if when else set())
