@@ -37,7 +37,9 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     plan = _plan(options)
     try:
-        return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
+        return (
+            _watch(options, plan) if options.watch else conclude(options, plan, graph_of(options))
+        )
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -119,7 +121,8 @@ def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdi
     return CODES[verdict]
 
 
-def _graph(options: argparse.Namespace) -> Snapshot:
+def graph_of(options: argparse.Namespace) -> Snapshot:
+    """The graph of ``--snapshot``, else the one that runs now; raises RosUnusable."""
     if options.snapshot:
         return read_snapshot(options.snapshot)
     # Not only until the planned nodes are there: a twin or a leak may come after them.
@@ -127,7 +130,8 @@ def _graph(options: argparse.Namespace) -> Snapshot:
 
 
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
-    last = follow(plan, watch(Request(options.timeout or inf), live.environ(options.domain)))
+    graphs = watch(Request(options.timeout or inf), live.environ(options.domain))
+    last = follow(lambda graph: (plan, check(plan, graph)), graphs)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

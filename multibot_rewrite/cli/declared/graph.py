@@ -1,4 +1,4 @@
-"""The commands about the live graph: check, learn, snapshot."""
+"""The commands about the live graph: check, doctor, learn, snapshot."""
 
 from __future__ import annotations
 
@@ -28,6 +28,13 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
+GRAPH_FILE = value(
+    "--snapshot",
+    metavar="FILE",
+    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the live graph",
+    type=values.path,
+)
+WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 CHECK = Command(
     "check",
     "check",
@@ -44,20 +51,14 @@ CHECK = Command(
             "input",
             (
                 argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
-                value(
-                    "--snapshot",
-                    metavar="FILE",
-                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
-                    " the live graph",
-                    type=values.path,
-                ),
+                GRAPH_FILE,
                 DISTRO,
                 TRUST,
             ),
         ),
         output_group(
             FINDINGS_OUTPUT,
-            switch("--watch", about="show every change until Ctrl-C or --timeout"),
+            WATCH,
         ),
         PICTURES,
         LIVE,
@@ -66,6 +67,39 @@ CHECK = Command(
     ),
     f"{LIVE_CODES}. With --watch it is the worst that was seen; what was missing before everything"
     " was there once does not count",
+    fail_on=ERROR,
+    findings_first=True,
+)
+DOCTOR = Command(
+    "doctor",
+    "doctor",
+    "%(prog)s [options]",
+    "Say what is wrong with the robots that run now; needs no plan.",
+    (
+        Example("multibot doctor", "the graph that runs now"),
+        Example("multibot doctor --watch", "show every change until Ctrl-C"),
+        Example("multibot doctor --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot doctor --suggest first/", "begin a fleet file and a plan with it"),
+    ),
+    (
+        OptionGroup("input", (GRAPH_FILE,)),
+        output_group(
+            FINDINGS_OUTPUT,
+            WATCH,
+            value(
+                "--suggest",
+                metavar="FOLDER",
+                about="write a first fleet file, plan and description of what is seen there",
+                type=values.path,
+            ),
+        ),
+        PICTURES,
+        LIVE,
+        FINDINGS,
+        GENERAL,
+    ),
+    f"{LIVE_CODES.replace('as planned', 'nothing wrong seen')}. With --watch it is the worst that was"
+    " seen",
     fail_on=ERROR,
     findings_first=True,
 )
@@ -98,13 +132,7 @@ LEARN = Command(
                     about="the robot's namespace, which its nodes are in",
                     type=values.full_name,
                 ),
-                value(
-                    "--snapshot",
-                    metavar="FILE",
-                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
-                    " the live graph",
-                    type=values.path,
-                ),
+                GRAPH_FILE,
                 DISTRO,
             ),
         ),

@@ -1,0 +1,100 @@
+"""``multibot doctor``: what is wrong with the robots that run now? No plan, no file."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from math import inf
+
+from multibot_rewrite.cli import live, pictures
+from multibot_rewrite.cli.check import CODES, graph_of
+from multibot_rewrite.cli.output import note, say
+from multibot_rewrite.cli.process import PROGRAM
+from multibot_rewrite.cli.report import (
+    TEXT,
+    About,
+    by_themselves,
+    check_report,
+    chosen,
+    report_first,
+)
+from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.watch import follow
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.check import doubts
+from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
+from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.live.child import RosUnusable, watch
+from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
+
+WORDS = {
+    Verdict.PLANNED: "nothing wrong seen",
+    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
+    Verdict.WRONG: "something is wrong",
+}
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look, report, sum up; returns the exit code."""
+    _check_use(options)
+    try:
+        return _watch(options) if options.watch else _once(options, diagnose(graph_of(options)))
+    except RosUnusable as error:
+        say(str(error), PROGRAM)
+        return live.NO_ROS
+
+
+def _check_use(options: argparse.Namespace) -> None:
+    if options.watch and options.snapshot:
+        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    if options.watch and (options.select or options.ignore or options.format != TEXT):
+        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, list(filter(None, [options.snapshot])))
+
+
+def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
+    findings = chosen(options, seen.findings)
+    failed = _report(options, seen, findings)
+    for line in survey(seen):
+        note(options, line)
+    caveats = doubts(seen.graph)
+    for caveat in caveats:
+        say(f"incomplete: {caveat.message}", PROGRAM)
+    pictures.deliver(options, seen_plan(seen), seen.graph, findings)
+    inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+
+
+def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
+    looked_at = [options.snapshot] if options.snapshot else []
+    return report_first(options, findings, About(looked_at, by_themselves(seen.owners.robots)))
+
+
+def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int:
+    note(options, f"{plural(findings, 'finding')}: {WORDS[verdict]}")
+    return CODES[verdict]
+
+
+def _watch(options: argparse.Namespace) -> int:
+    graphs = watch(Request(options.timeout or inf), live.environ(options.domain))
+    last = follow(_look, graphs, WORDS)
+    if last is None:
+        note(options, "ended before anything was seen")
+        return live.INCONCLUSIVE
+    if options.output:
+        _report(options, diagnose(last.graph), last.findings)
+    pictures.deliver(options, seen_plan(diagnose(last.graph)), last.graph, last.findings)
+    return _sum_up(options, len(last.findings), final(last))
+
+
+def _look(graph: Snapshot) -> tuple[Expectation, Sequence[Finding]]:
+    seen = diagnose(graph)
+    return seen_plan(seen), seen.findings
