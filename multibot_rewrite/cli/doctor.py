@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Sequence
 from math import inf
 
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.check import CODES, graph_of
-from multibot_rewrite.cli.output import note, say
+from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
     TEXT,
@@ -18,12 +19,13 @@ from multibot_rewrite.cli.report import (
     chosen,
     report_first,
 )
-from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable, watch
 from multibot_rewrite.graph.live.request import Request
@@ -31,6 +33,8 @@ from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import release_here
+from multibot_rewrite.remap.stacks import built_in
 
 WORDS = {
     Verdict.PLANNED: "nothing wrong seen",
@@ -58,6 +62,16 @@ def _check_use(options: argparse.Namespace) -> None:
     pictures.check(options)
     if options.output:
         check_target(options.output, list(filter(None, [options.snapshot])))
+    if options.suggest:
+        _check_suggest(options)
+
+
+def _check_suggest(options: argparse.Namespace) -> None:
+    for name in FILES:
+        path = os.path.join(options.suggest, name)
+        check_folder(path)
+        if os.path.lexists(path):
+            raise UsageError(f"{path} is there already; name another folder with --suggest")
 
 
 def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
@@ -68,9 +82,20 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
     caveats = doubts(seen.graph)
     for caveat in caveats:
         say(f"incomplete: {caveat.message}", PROGRAM)
-    pictures.deliver(options, seen_plan(seen), seen.graph, findings)
+    _write(options, seen, findings)
     inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
     return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+
+
+def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:
+    """The pictures and the files that the options ask for."""
+    if any(vars(options)[name] for name in pictures.DRAWN):
+        pictures.deliver(options, seen_plan(seen), seen.graph, findings)
+    if options.suggest:
+        files = suggestion(seen, built_in(release_here(None)))
+        paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
+        write_files(options, [(path, text.encode()) for path, text in paths.items()])
+        note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
 
 
 def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
@@ -91,7 +116,7 @@ def _watch(options: argparse.Namespace) -> int:
         return live.INCONCLUSIVE
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
-    pictures.deliver(options, seen_plan(diagnose(last.graph)), last.graph, last.findings)
+    _write(options, diagnose(last.graph), last.findings)
     return _sum_up(options, len(last.findings), final(last))
 
 

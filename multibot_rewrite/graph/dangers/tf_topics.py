@@ -112,6 +112,9 @@ def tf_tree_in_pieces(seen: Seen) -> Iterator[Finding]:
     bases = ("base_link", "base_footprint")
     for tree in seen.trees:
         above: dict[str, str] = {edge.child: edge.parent for edge in tree.edges}
+        if len({(edge.child, edge.parent) for edge in tree.edges}) > len(above):
+            # A frame with two parents is a finding of its own.
+            continue
         frames = unique(it for edge in tree.edges for it in (edge.parent, edge.child))
         plain = {it: seen.owners.plain_frames.get(it, it) for it in frames}
         for odom in (it for it in frames if plain[it] == "odom"):
@@ -121,13 +124,13 @@ def tf_tree_in_pieces(seen: Seen) -> Iterator[Finding]:
                 for it in frames
                 if plain[it] in bases and seen.owners.frames.get(it, "") == robot
             ]
-            roots = {_root(it, above) for it in own}
-            if not own or _root(odom, above) in roots:
+            roots = {root_of(it, above) for it in own}
+            if not own or root_of(odom, above) in roots:
                 continue
             found = next(iter(roots))
             message = (
                 f"{odom} and {own[0]} are not connected on {tree.topic}: one hangs below"
-                f" {_root(odom, above)}, the other below {found}"
+                f" {root_of(odom, above)}, the other below {found}"
             )
             cause = f"nobody sends {odom} -> {found}: is odometry started, are its frames the same?"
             yield tf_tree_in_pieces.finding(
@@ -136,7 +139,8 @@ def tf_tree_in_pieces(seen: Seen) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _root(frame: str, above: Mapping[str, str]) -> str:
+def root_of(frame: str, above: Mapping[str, str]) -> str:
+    """The frame above all that are above it; in a circle any of them."""
     for _ in above:
         if frame not in above:
             return frame

@@ -51,7 +51,7 @@ def frame_with_two_parents(seen: Seen) -> Iterator[Finding]:
             message = f"frame {child} has {len(parents)} parents on {tree.topic}: {both}"
             robot = seen.owners.frames.get(child, "") or only(robots_of(seen, tree.senders))
             yield frame_with_two_parents.finding(
-                message, _who_sends(seen, tree), robot=robot, names=(child, *sorted(parents))
+                message, _who_sends(seen, tree, child), robot=robot, names=(child, *sorted(parents))
             )
 
 
@@ -62,16 +62,17 @@ def _parents(tree: Tree) -> dict[str, set[str]]:
     return found
 
 
-def _who_sends(seen: Seen, tree: Tree) -> str:
-    """The nodes on a tf topic, by robot where there are several."""
+def _who_sends(seen: Seen, tree: Tree, frame: str) -> str:
+    """The nodes that may have sent it: those of the frame's robot first."""
     robots = robots_of(seen, tree.senders)
+    owner = _robot(seen, frame)
+    nodes = sorted(tree.senders, key=lambda it: seen.robot(it) != owner)
+    sent = f"two of the nodes that send on {tree.topic}: {shorten(nodes, SEVERAL)}" if nodes else ""
+    if len(robots) > 1 and not owner:
+        return f"{and_then(robots)} need frames of their own, or tf topics of their own; {sent}"
     if len(robots) > 1:
-        return (
-            f"{and_then(robots)} all send on {tree.topic}: give each robot its own frames or its own"
-            f" tf topic. Senders: {shorten(tree.senders, SEVERAL)}"
-        )
-    sent = shorten(sorted(tree.senders), SEVERAL)
-    return f"two of the nodes that send on {tree.topic} send it: {sent}" if sent else "two senders"
+        return f"{sent}; a node of another robot that has the names of {owner}?"
+    return sent or "two nodes send it: stop one"
 
 
 @danger_rule(
@@ -167,7 +168,9 @@ def tf_cycle(seen: Seen) -> Iterator[Finding]:
             message = f"the transforms on {tree.topic} go round in a circle: {way}"
             robots = unique(filter(None, (seen.owners.frames.get(it, "") for it in circle)))
             robot = only(robots) or only(robots_of(seen, tree.senders))
-            yield tf_cycle.finding(message, _who_sends(seen, tree), robot=robot, names=circle)
+            yield tf_cycle.finding(
+                message, _who_sends(seen, tree, circle[0]), robot=robot, names=circle
+            )
 
 
 def _circles(parents: Mapping[str, Iterable[str]]) -> Iterator[tuple[str, ...]]:
