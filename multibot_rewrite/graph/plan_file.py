@@ -15,6 +15,7 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
     vacuous,
 )
+from multibot_rewrite.graph.plan_gaps import gap_row, read_gaps
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import KINDS, ROLES
@@ -26,13 +27,15 @@ HEAD = """\
 # optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
 # patterns of nodes that may come and go, beside the usual tools. sources: the plugin that starts a
 # node. from: the file or stack that names a node. distro: the ROS 2 release that the nodes are of.
-# spelled: what stands for a robot in its frames, where that is not its name.
+# spelled: what stands for a robot in its frames, where that is not its name. open: what is read and
+# not sent, claimed and not exported, by the robots' files; check reports it with the graph.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
 BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways"}
-OPTIONAL_KEYS = ("distro", "ignored_nodes", *BY_NODE)
+OPEN = "open"
+OPTIONAL_KEYS = ("distro", "ignored_nodes", *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -68,6 +71,8 @@ def to_yaml(plan: Expectation) -> str:
         texts = getattr(plan, field)
         parts += [f"{key}:\n"] * bool(texts)
         parts += [f"  {quote(node)}: {quote(text)}\n" for node, text in texts]
+    parts += [f"{OPEN}:\n"] * bool(plan.gaps)
+    parts += (gap_row(it, quote) for it in plan.gaps)
     return "".join(parts)
 
 
@@ -131,6 +136,7 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         origins,
         _release(top.get("distro", ""), file),
         ways,
+        tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
     )
     nothing = vacuous(plan)
     if nothing:
