@@ -10,12 +10,16 @@ from multibot_rewrite.model import InputError
 KEYS = ("code", "level", "at", "message", "hint")
 
 
-def gap_row(gap: Finding, quote: Callable[[str], str]) -> str:
+def gap_value(gap: Finding) -> dict[str, str]:
     """A finding as a row; ``at`` is the place in a file, empty for none."""
     at = f"{gap.file}:{gap.line}" if gap.file else ""
-    values = (gap.code, gap.level, at, gap.message, gap.hint)
-    pairs = ", ".join(f"{key}: {quote(value)}" for key, value in zip(KEYS, values, strict=True))
-    return f"- {{{pairs}}}\n"
+    return dict(zip(KEYS, (gap.code, gap.level, at, gap.message, gap.hint), strict=True))
+
+
+def gap_row(gap: Finding, quote: Callable[[str], str]) -> str:
+    """The same as a line of YAML."""
+    pairs = (f"{key}: {quote(value)}" for key, value in gap_value(gap).items())
+    return f"- {{{', '.join(pairs)}}}\n"
 
 
 def read_gaps(value: object, place: str) -> Iterator[Finding]:

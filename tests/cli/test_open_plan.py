@@ -10,6 +10,7 @@ from graph_cases import as_planned
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.plan_file import to_json as to_json_plan
 from multibot_rewrite.graph.snapshot import to_json
 from multibot_rewrite.model import InputError
 
@@ -26,9 +27,10 @@ class Folder:
         for name, text in {**FILES, "ekf.yaml": ekf}.items():
             (folder / name).write_text(text)
         self.fleet, self.plan = str(folder / "fleet.yaml"), str(folder / "plan.yaml")
-        self.graph = str(folder / "graph.json")
+        self.graph, self.json = str(folder / "graph.json"), str(folder / "plan.json")
         assert main(["plan", self.fleet, "-o", self.plan]) == 0
         plan = from_yaml(Path(self.plan).read_bytes(), "plan.yaml")
+        Path(self.json).write_text(to_json_plan(plan))
         Path(self.graph).write_bytes(to_json(as_planned(plan)))
 
     def check(self, plan: str, *words: str) -> int:
@@ -53,7 +55,7 @@ def test_a_table_is_made_with_what_is_open(
     assert main([*words, "--strict"]) == 1
 
 
-@pytest.mark.parametrize("of", ["plan", "fleet"])
+@pytest.mark.parametrize("of", ["plan", "json", "fleet"])
 def test_a_graph_as_planned_of_a_plan_that_does_not_close(
     of: str, open_: Folder, capsys: pytest.CaptureFixture[str]
 ) -> None:
