@@ -18,7 +18,7 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable
-from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
@@ -34,9 +34,9 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     plan = _plan(options)
     try:
-        return (
-            _watch(options, plan) if options.watch else conclude(options, plan, live.graph(options))
-        )
+        if options.watch:
+            return _watch(options, plan)
+        return conclude(options, plan, live.graph(options))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -58,8 +58,8 @@ def _plan(options: argparse.Namespace) -> Expectation:
 
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
-    if not is_fleet(data):
-        return _of_release(options, from_yaml(data, path))
+    if is_json(data) or not is_fleet(data):
+        return _of_release(options, read_plan(data, path))
     from multibot_rewrite.fleets.fleet import expected
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes

@@ -198,10 +198,8 @@ def _snapshot(router: Router, seen: _Seen, seconds: float, caveats: Iterable[Cav
 
 def _not_tokens(keys: tuple[str, ...]) -> Iterator[Caveat]:
     if keys:
-        text = (
-            f"{len(keys)} liveliness tokens are not as rmw_zenoh writes them: {shorten(keys, FEW)}"
-        )
-        yield Caveat("strange-token", False, f"{text}; they are left out")
+        text = f"{plural(len(keys), 'token')} left out, not as rmw_zenoh writes them"
+        yield Caveat("strange-token", False, f"{text}: {shorten(keys, FEW)}")
 
 
 def _twins(names: Iterable[str]) -> Iterator[Caveat]:
