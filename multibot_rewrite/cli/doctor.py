@@ -5,10 +5,9 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
-from math import inf
 
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.check import CODES, graph_of
+from multibot_rewrite.cli.check import CODES
 from multibot_rewrite.cli.output import note, say, write_files
 from multibot_rewrite.cli.process import PROGRAM
 from multibot_rewrite.cli.report import (
@@ -27,8 +26,7 @@ from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.live.child import RosUnusable, watch
-from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
@@ -47,21 +45,20 @@ def run(options: argparse.Namespace) -> int:
     """Look, report, sum up; returns the exit code."""
     _check_use(options)
     try:
-        return _watch(options) if options.watch else _once(options, diagnose(graph_of(options)))
+        return _watch(options) if options.watch else _once(options, diagnose(live.graph(options)))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
 
 def _check_use(options: argparse.Namespace) -> None:
-    if options.watch and options.snapshot:
-        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
-        check_target(options.output, list(filter(None, [options.snapshot])))
+        check_target(options.output, options.snapshot)
     if options.suggest:
         _check_suggest(options)
 
@@ -99,8 +96,8 @@ def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Find
 
 
 def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
-    looked_at = [options.snapshot] if options.snapshot else []
-    return report_first(options, findings, About(looked_at, by_themselves(seen.owners.robots)))
+    about = About(options.snapshot, by_themselves(seen.owners.robots))
+    return report_first(options, findings, about)
 
 
 def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int:
@@ -109,8 +106,7 @@ def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int
 
 
 def _watch(options: argparse.Namespace) -> int:
-    graphs = watch(Request(options.timeout or inf), live.environ(options.domain))
-    last = follow(_look, graphs, WORDS)
+    last = follow(_look, live.watched(options), WORDS)
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

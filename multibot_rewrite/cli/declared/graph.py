@@ -12,11 +12,14 @@ from multibot_rewrite.cli.declared.shared import (
     LIVE_CODES,
     PICTURES,
     RESULT_OUTPUT,
+    SOURCE,
     TRUST,
+    ZENOH,
 )
 from multibot_rewrite.cli.options import (
     Command,
     Example,
+    Option,
     OptionGroup,
     argument,
     choice,
@@ -28,13 +31,19 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
-GRAPH_FILE = value(
-    "--snapshot",
-    metavar="FILE",
-    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the live graph",
-    type=values.path,
-)
 WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
+MERGE = Option(
+    ("--merge",),
+    "no look: join snapshots that were taken on several machines",
+    {
+        "metavar": "FILE",
+        "dest": "snapshot",
+        "nargs": "+",
+        "action": "extend",
+        "type": values.path,
+        "default": [],
+    },
+)
 CHECK = Command(
     "check",
     "check",
@@ -44,6 +53,9 @@ CHECK = Command(
         Example("multibot check plan.yaml", "the graph that runs now"),
         Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
         Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example(
+            "multibot check plan.yaml --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"
+        ),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
     ),
     (
@@ -51,7 +63,6 @@ CHECK = Command(
             "input",
             (
                 argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
-                GRAPH_FILE,
                 DISTRO,
                 TRUST,
             ),
@@ -61,7 +72,7 @@ CHECK = Command(
             WATCH,
         ),
         PICTURES,
-        LIVE,
+        SOURCE,
         FINDINGS,
         GENERAL,
     ),
@@ -79,10 +90,10 @@ DOCTOR = Command(
         Example("multibot doctor", "the graph that runs now"),
         Example("multibot doctor --watch", "show every change until Ctrl-C"),
         Example("multibot doctor --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot doctor --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
         Example("multibot doctor --suggest first/", "begin a fleet file and a plan with it"),
     ),
     (
-        OptionGroup("input", (GRAPH_FILE,)),
         output_group(
             FINDINGS_OUTPUT,
             WATCH,
@@ -94,7 +105,7 @@ DOCTOR = Command(
             ),
         ),
         PICTURES,
-        LIVE,
+        SOURCE,
         FINDINGS,
         GENERAL,
     ),
@@ -132,7 +143,6 @@ LEARN = Command(
                     about="the robot's namespace, which its nodes are in",
                     type=values.full_name,
                 ),
-                GRAPH_FILE,
                 DISTRO,
             ),
         ),
@@ -153,7 +163,7 @@ LEARN = Command(
                 " ends in .nodl.yaml, else nodes; with nodl, -o may be a folder for several nodes",
             ),
         ),
-        LIVE,
+        SOURCE,
         GENERAL,
     ),
     "0 done; 2 wrong use, unreadable input, or a node that is not there or there twice; 3 the view"
@@ -171,6 +181,10 @@ SNAPSHOT = Command(
             "multibot snapshot -o graph.json --expect /robot1/amcl", "JSON, for multibot check"
         ),
         Example("multibot snapshot --form rosgraph -o graph.yaml", "for other tools"),
+        Example("multibot snapshot --zenoh tcp/localhost:7447", "what a Zenoh router knows"),
+        Example(
+            "multibot snapshot --merge robot1.json robot2.json -o all.json", "from two machines"
+        ),
     ),
     (
         output_group(
@@ -183,7 +197,7 @@ SNAPSHOT = Command(
                 " topic echo prints it): json, rosgraph",
             ),
         ),
-        LIVE._replace(
+        SOURCE._replace(
             options=(
                 several(
                     "--expect", "NODE", "stop when these nodes are there", [], values.full_names
@@ -191,6 +205,8 @@ SNAPSHOT = Command(
                 several(
                     "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
                 ),
+                MERGE,
+                ZENOH,
                 *LIVE.options,
             )
         ),
