@@ -57,12 +57,16 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L2, "planner_server", "/robot1/planner_server"),
         (L2, "/planner_server", "/robot1/planner_server"),
         (L1, "other", "/robot1/other"),
-        (L4, "planner_server", "/planner_server_robot1"),
+        (L4, "planner_server", "/robot1/planner_server"),
+        (L4, "smoother_server", "/smoother_server_robot1"),
+        (L4, "front/local_costmap/local_costmap", "/robot1/front/local_costmap/local_costmap"),
         (L4, "/other", "/other_robot1"),
         (L2, "/**", "/**"),
         (L4, "/**", "/**"),
         (L2, "/**/planner_server", "/**/planner_server"),
-        (L4, "/**/planner_server", "/**/planner_server_robot1"),
+        (L4, "/**/planner_server", "/**/planner_server"),
+        (L4, "/**/local_costmap", "/**/local_costmap"),
+        (L4, "/**/smoother_server", "/**/smoother_server_robot1"),
         (L2, "front/driver", "/robot1/front/driver"),
         (L4, "front/driver", "/front/driver_robot1"),
         (L2, "<robot_namespace>/amcl_x", "<robot_namespace>/amcl_x"),
@@ -80,13 +84,16 @@ def test_a_section_is_put_under_the_nodes_full_name(
     ("policy", "first", "second"),
     [
         (L2, "/robot1/local_costmap", "local_costmap"),
-        (L4, "/local_costmap", "local_costmap_robot1"),
+        (L4, "/robot1/local_costmap", "local_costmap"),
+        (L4, "/front", "front_robot1"),
     ],
 )
 def test_nested_sections_change_at_their_first_key_or_at_their_last(
     policy: tuple[str, str], first: str, second: str
 ) -> None:
-    source = "local_costmap:\n  local_costmap:\n    ros__parameters:\n      robot_base_frame: map\n"
+    """A costmap keeps its name: its code sets it (nav2_costmap_2d costmap_2d_ros.cpp)."""
+    key = "front" if "front" in first else "local_costmap"
+    source = f"{key}:\n  {key}:\n    ros__parameters:\n      robot_base_frame: map\n"
     lines = made(source, policy)[0].splitlines()
     assert lines[:2] == [f"{first}:", f"  {second}:"]
 
@@ -307,7 +314,7 @@ def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
         (L1, "humble", "/robot1/scan"),
         (L2, "kilted", "scan"),
         (L4, "jazzy", "/scan/robot1"),
-        (L4, "kilted", "scan/robot1"),
+        (L4, "kilted", "/scan/robot1"),
     ],
 )
 def test_topics_of_costmap_layers_leave_the_costmaps_namespace(
