@@ -7,7 +7,7 @@ by resolving every name with its rules as rcl does (``rosnames``), not by trusti
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
@@ -16,6 +16,7 @@ from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,
     TOPIC,
+    Endpoint,
     EndpointName,
     Home,
     NodeFacts,
@@ -171,28 +172,53 @@ def node_table(robot: str, node: NodeFacts, naming: Naming, others: Places = NOW
         above, _, own = node.name.strip("/").rpartition("/")
         return NodeTable("", node.name, f"/{above}", own, ())
     namespace, name = placed(robot, node.name, naming, node.apart)
-    root = _root(namespace, robot, node, naming)
+    place = _Place(robot, naming, namespace, _root(namespace, robot, node, naming), others)
     rules: dict[str, NodeRule] = {}
     for endpoint in (it for it in node.endpoints if not it.fixed):
-        meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
-        for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
-            moved = wanted if wanted != source else ""
-            target = _below(wanted, naming, others)
-            target = target or target_of(wanted, kind, robot, naming) or moved
-            if not target and root and naming.topics != NAMESPACE and wanted[0] not in "~/":
-                target = wanted
-            if target:
-                target = f"{root}{target}" if not target.startswith("/") else target
-                why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
-                for asked in asked_for(source, endpoint, namespace):
-                    match = expand(asked, namespace, name)
-                    rules.setdefault(match, NodeRule(robot, node.name, asked, target, "", why))
+        for source, target, moved in _targets(endpoint, place):
+            why = f"{SAME}; the stack calls it {moved}" if moved else SAME
+            match = expand(source, namespace, name)
+            rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
     home = Home(node.host, node.container, node.plugin, apart=node.apart)
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()), home)
 
 
+class _Place(NamedTuple):
+    """Where a node runs; ``root`` is what a relative target needs before it, since it would stay in the
+    node's own namespace."""
+
+    robot: str
+    naming: Naming
+    namespace: str
+    root: str
+    others: Places
+
+
+def _targets(endpoint: Endpoint, place: _Place) -> Iterator[tuple[str, str, str]]:
+    """The names of an endpoint that need a rule, its target, and what the stack calls them if that is
+    another name."""
+    robot, naming, namespace, root, others = place
+    meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
+    for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
+        moved = wanted if wanted != source else ""
+        target = _below(wanted, naming, others)
+        target = target or target_of(wanted, kind, robot, naming) or moved
+        target = target or _shared(wanted, place)
+        if target:
+            yield source, f"{'' if target[0] == '/' else root}{target}", moved
+        # What a node joins with the namespace above is no name of its own namespace.
+        if target and naming.topics != NAMESPACE:
+            for joined in asked_for(source, endpoint, namespace)[1:]:
+                yield joined, f"/{target.lstrip('/')}", moved
+
+
+def _shared(name: str, place: _Place) -> str:
+    """A name that all robots share, for a node that would look for it in its robot's namespace."""
+    inside = place.root and place.naming.topics != NAMESPACE
+    return name if inside and name[0] not in "~/" else ""
+
+
 def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
-    """What a relative target needs before it, since it would stay in the node's own namespace."""
     if naming.topics == NAMESPACE:
         return f"/{robot}/" if namespace.count("/") > 1 else ""
     above = node.name.strip("/").rpartition("/")[0]

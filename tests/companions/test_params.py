@@ -359,6 +359,35 @@ def test_the_mask_topic_is_resolved_by_whoever_reads_it() -> None:
     assert value("costmap_filter_info_server", line) == "mask_topic: /robot1/keepout_mask"
 
 
+@pytest.mark.parametrize("distro", ["jazzy", "kilted", "lyrical"])
+def test_a_costmap_reads_the_mask_topic_in_the_namespace_of_its_server(distro: str) -> None:
+    """Layout postfix: layer.cpp joins a relative name with the namespace above the costmap."""
+    source = section("costmap_filter_info_server", "mask_topic: keepout_mask")
+    assert "mask_topic: /keepout_mask/robot1" in made(source, L4, distro)[0]
+
+
+@pytest.mark.parametrize(
+    ("line", "new"),
+    [
+        ("odom_topic: wheel_odom", "odom_topic: /wheel_odom/robot1"),
+        ("odom_topic: /wheel_odom", "odom_topic: /wheel_odom/robot1"),
+    ],
+)
+def test_topics_of_a_server_in_its_robots_namespace_are_full_names(line: str, new: str) -> None:
+    assert new in made(section("controller_server", line), L4)[0]
+    assert (
+        "odom_topic: wheel_odom/robot1"
+        in made(section("bt_navigator", "odom_topic: wheel_odom"), L4)[0]
+    )
+
+
+def test_a_lifecycle_manager_asks_by_the_name_that_is_the_id_of_the_bond() -> None:
+    """lifecycle_manager.cpp makes a Bond with the name, the node with its get_name()."""
+    line = "node_names: [controller_server, smoother_server]"
+    text, _ = made(section("lifecycle_manager_navigation", line), L4)
+    assert "node_names: [controller_server, smoother_server_robot1]" in text
+
+
 def test_a_topic_that_a_rule_moves_is_not_moved_twice() -> None:
     """In L4 the table's rules move the default names, and all that nodes make of them."""
     assert value("amcl", "scan_topic: scan", L4) == "scan_topic: scan"

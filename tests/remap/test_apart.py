@@ -117,3 +117,17 @@ def test_a_rehearsal_places_a_costmap_as_its_code_does() -> None:
     own = next(it for it in stubs if it.name == "local_costmap" and "robot1" in it.arguments[2])
     assert own.arguments[:3] == ("--ros-args", "-r", "__ns:=/robot1/local_costmap")
     assert not any("__node" in word for word in own.arguments)
+
+
+@pytest.mark.parametrize(
+    ("release", "rule"),
+    [("jazzy", None), ("kilted", "/speed_limit/robot1"), ("lyrical", "/speed_limit/robot1")],
+)
+def test_a_name_that_is_joined_with_the_namespace_above(release: str, rule: str | None) -> None:
+    """SpeedFilter: from Kilted on it publishes where the controller_server listens."""
+    table = made(release)
+    rules = {it.source: it.target for it in found(table, "global_costmap/global_costmap").rules}
+    assert rules.get("/robot1/speed_limit") == rule
+    assert rules["speed_limit"] == "/global_costmap/speed_limit/robot1"
+    server = {it.source: it.target for it in found(table, "controller_server").rules}
+    assert server["speed_limit"] == "/speed_limit/robot1"

@@ -59,7 +59,8 @@ def spell_topic(
     """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
     if not is_plain(value) or value.startswith("~") or check_topic_name(value):
         return TopicText(value)
-    meant = _in_full(node, value, reach) if _is_outside(context, node, facts) else value
+    outside = _is_outside(context, node, reach, facts)
+    meant = _in_full(node, value, reach) if outside else value
     text = _spelled(context, kind, meant, reach == IN_FULL)
     made_absolute = reach == IN_FULL and not value.startswith("/")
     ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
@@ -70,8 +71,13 @@ def spell_topic(
     )
 
 
-def _is_outside(context: Context, node: str, facts: Facts) -> bool:
-    """Is the node in another namespace than the layout's, so that only a full name is right there?"""
+def _is_outside(context: Context, node: str, reach: str, facts: Facts) -> bool:
+    """Is a name resolved in another namespace than the layout's, so that only a full name is right?
+
+    A name that goes to a costmap is (``FROM_PARENT``), and those of nodes that stand apart.
+    """
+    if reach == FROM_PARENT:
+        return context.topics.naming.topics != NAMESPACE
     apart = facts[node].apart if node in facts else is_apart(node, context.distro)
     return apart and context.topics.naming.topics != NAMESPACE
 
