@@ -48,7 +48,8 @@ class RobotSpec(NamedTuple):
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
-    is its line in ``file``.
+    is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
+    something, by path.
     """
 
     name: str
@@ -65,6 +66,7 @@ class RobotSpec(NamedTuple):
     file: str
     line: int
     launch: tuple[LaunchOrder, ...] = ()
+    filled: tuple[tuple[str, str], ...] = ()
 
     @property
     def words(self) -> tuple[str, str, str]:
