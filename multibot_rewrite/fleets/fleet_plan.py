@@ -53,8 +53,8 @@ def plan_fleet(
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
         specs = {node_sources(it): it for it in reversed(file.robots)}
-        evidence = {key: robot_nodes(spec, file) for key, spec in specs.items()}
-        fleet = _fleet(file, robots, naming, evidence, notes)
+        evidence = {key: robot_nodes(spec, file, notes[spec.name]) for key, spec in specs.items()}
+        fleet = _fleet(file, robots, naming, evidence)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 
@@ -71,13 +71,12 @@ def _fleet(
     robots: Sequence[RewrittenRobot],
     naming: Naming,
     evidence: Mapping[NodeSources, RobotEvidence],
-    left: Sequence[Finding],
 ) -> Fleet:
     groups: dict[NodeSources, list[RewrittenRobot]] = {}
     for robot in robots:
         groups.setdefault(node_sources(robot.spec), []).append(robot)
     fleets: list[Fleet] = []
-    notes = list(left)
+    notes: list[Finding] = []
     for key, group in groups.items():
         found = evidence[key]
         fleets.append(assemble([it.member for it in group], found.nodes, naming, file.distro))

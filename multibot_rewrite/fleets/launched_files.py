@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.sections import raw_sections
@@ -59,10 +59,11 @@ class _Named(NamedTuple):
 
 
 class LaunchedFiles(NamedTuple):
-    """A fleet with the parameter files of its launch files, and those that are left out."""
+    """A fleet with the parameter files of its launch files, and for each robot by its name notes of
+    those that are left out."""
 
     file: FleetFile
-    findings: tuple[Finding, ...]
+    notes: Mapping[str, Sequence[Finding]]
 
 
 def with_launched_files(file: FleetFile) -> LaunchedFiles:
@@ -74,8 +75,8 @@ def with_launched_files(file: FleetFile) -> LaunchedFiles:
     first = {it.launch: it for it in reversed(file.robots) if it.launch}
     named = {launch: tuple(_named(spec)) for launch, spec in first.items()}
     found = [_with(it, named.get(it.launch, ())) for it in file.robots]
-    notes = dict.fromkeys(note for _, notes in found for note in notes)
-    return LaunchedFiles(file._replace(robots=tuple(it for it, _ in found)), tuple(notes))
+    robots = tuple(it for it, _ in found)
+    return LaunchedFiles(file._replace(robots=robots), {it.name: notes for it, notes in found})
 
 
 def _named(spec: RobotSpec) -> Iterator[_Named]:

@@ -38,15 +38,19 @@ class RobotEvidence(NamedTuple):
     spawned: Mapping[str, Spawned]
 
 
-def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotEvidence:
-    """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
+def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> RobotEvidence:
+    """The nodes of a robot; ``notes`` are findings about its files.
+
+    Raises InputError for a parameter file that cannot be read.
+    """
     parameters = load_known_nodes(file.parameters, file.distro)
     own = tuple(given_nodes(params_of(spec).values(), parameters))
     known, stack = _known(own, file), stack_nodes(spec, file)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
-    return RobotEvidence(given, known, *nodes_with(launched, stack, given, known), spawned)
+    nodes, findings = nodes_with(launched, stack, given, known)
+    return RobotEvidence(given, known, nodes, (*notes, *findings), spawned)
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from test_launched import AMCL, AT, launched, runs, started
+from launched_nodes import AMCL, AT, launched, runs, started
 
 from multibot_rewrite.evidence.launch_records import LaunchedNode, ParameterText
 from multibot_rewrite.evidence.spawners import controller_files, spawned_in
