@@ -260,8 +260,9 @@ def test_all_fences_are_there(scene: Scene) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("fence", ALONE)
-@pytest.mark.parametrize("name", sorted(set(SAID) - LARGE))
+@pytest.mark.parametrize("name", sorted(set(SAID) - LARGE - (ENDLESS - {"sleep"})))
 def test_each_fence_holds_without_limits(scene: Scene, name: str, fence: str) -> None:
+    """An endless file is ended by its parent then, whatever it does: one of them is enough."""
     if not have(fence):
         pytest.skip(f"this kernel has no {fence}")
     if fence == LANDLOCK and name in BESIDE_LANDLOCK:
