@@ -116,6 +116,7 @@ HOMES: tuple[Home, ...] = (
             "graph.rules.leaks",
             "graph.rules.type_and_qos",
             "graph.rules.publishers",
+            "graph.rules.demands",
         ),
         GRAPH_INTRO,
     ),

@@ -43,7 +43,7 @@ def test_a_fleet_as_planned_has_no_findings(tmp_path: Path, layout: str) -> None
     names = [robot.name for robot in plan.robots]
     assert names == ["fleet_a/robot1", "fleet_b/robot1", "guard"]
     assert check(plan, healthy(plan)) == []
-    scans = {it.name for it in plan.endpoints if it.code_name == "/scan" or it.code_name == "scan"}
+    scans = {it.name for it in plan.endpoints if it.code_name in {"/scan", "scan"}}
     assert scans == {"/fleet_a/robot1/scan", "/fleet_b/robot1/scan", "/guard/scan"}
 
 
