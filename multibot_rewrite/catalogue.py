@@ -105,7 +105,13 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF8",
         "what a robot's files say of its nodes",
-        ("evidence.nodes", "evidence.launched", "fleets.closing", "fleets.closing_topics"),
+        (
+            "evidence.nodes",
+            "evidence.launched",
+            "fleets.shared_nodes",
+            "fleets.closing",
+            "fleets.closing_topics",
+        ),
     ),
     Home(
         "MG1",

@@ -81,7 +81,8 @@ class RobotSpec(NamedTuple):
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary. ``installed`` is where the results are when they are used, empty for where
+    parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
+    ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
     file: str
@@ -95,6 +96,7 @@ class FleetFile(NamedTuple):
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
+    shared_nodes: tuple[str, ...] = ()
 
 
 class _Read(NamedTuple):
@@ -135,6 +137,7 @@ def read_fleet(path: str, distro: str, environment: Mapping[str, str]) -> FleetF
         vocabulary,
         robots,
         tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
+        tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
     )
 
 

@@ -30,6 +30,7 @@ from multibot_rewrite.remap.ways import MANAGER
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 SAME = "all robots would share this name otherwise"
+TOGETHER = "all robots share this name; each would have its own otherwise"
 NOTHING: Mapping[str, Pairs] = {}
 
 
@@ -60,7 +61,10 @@ def _build(
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's table differs only in the robot's name.
     others = frozenset(node.name for node in nodes if not node.shared)
-    own = [(node, node_table(PROBE, node, naming, others)) for node in nodes if not node.shared]
+    once = frozenset(node.name for node, _ in shared)
+    own = [
+        (node, node_table(PROBE, node, naming, others, once)) for node in nodes if not node.shared
+    ]
     meant = list(names_of(own))
     apart = {robot: _without_stand_ins(pairs, nodes) for robot, pairs in plugins.items()}
     names = {
@@ -142,11 +146,16 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
 
 
 def node_table(
-    robot: str, node: NodeFacts, naming: Naming, others: frozenset[str] = frozenset()
+    robot: str,
+    node: NodeFacts,
+    naming: Naming,
+    others: frozenset[str] = frozenset(),
+    once: frozenset[str] = frozenset(),
 ) -> NodeTable:
     """Namespace, name and rules of one robot's node; a node for all robots stays as it is.
 
-    ``others`` are the robot's nodes: a name below one of them is renamed with it.
+    ``others`` are the robot's nodes: a name below one of them is renamed with it; ``once`` are those
+    for all robots: a name below one of them is theirs.
     """
     if node.shared:
         above, _, own = node.name.strip("/").rpartition("/")
@@ -159,11 +168,17 @@ def node_table(
         meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
         for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
             moved = wanted if wanted != source else ""
-            target = _below(wanted, robot, naming, others)
-            target = target or target_of(wanted, kind, robot, naming) or moved
+            if wanted.partition("/")[0] in once:
+                target = f"/{wanted}" if naming.topics == NAMESPACE else moved
+            else:
+                target = _below(wanted, robot, naming, others)
+                target = target or target_of(wanted, kind, robot, naming) or moved
             if target:
-                target = f"{root}{target}" if root and naming.topics == NAMESPACE else target
                 why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
+                if target.startswith("/"):
+                    why = TOGETHER
+                elif root and naming.topics == NAMESPACE:
+                    target = f"{root}{target}"
                 match = expand(source, namespace, name)
                 rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
     home = Home(node.host, node.container, node.plugin)
