@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import errno
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from functools import cache
 from itertools import accumulate
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -31,7 +31,7 @@ _CONVERTED = ("int", "float", "bool", "timestamp")
 # A block list or mapping is indented more than the one around it, or the one around that.
 _INDENTED = rf"[ \t\-?:]{{{MAX_DEPTH // 2}}}"
 _STEPS = {ord("["): 1, ord("{"): 1, ord("]"): -1, ord("}"): -1}
-_NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys())
+_NO_BRACKETS = bytes(set(range(256)) - _STEPS.keys() - {ord('"')})
 
 
 def read_bytes(path: str, limit: int = MAX_BYTES) -> bytes:
@@ -67,12 +67,16 @@ def load_yaml(text: str) -> Any:
     return yaml.load(text, Loader=_loader())
 
 
-def load_json(data: bytes | str) -> Any:
-    """The value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError."""
+def load_json(data: bytes | str, made: Callable[[dict[str, Any]], object] | None = None) -> Any:
+    """The value of a JSON text; raises json.JSONDecodeError, UnicodeDecodeError.
+
+    ``made`` makes something else of each object, the innermost first.
+    """
     import json
 
+    raw = data if isinstance(data, bytes) else data.encode("utf-8", "surrogatepass")
     text = data if isinstance(data, str) else data.decode("utf-8-sig")
-    if _json_depth(text.encode("utf-8", "surrogatepass")) > MAX_DEPTH:
+    if _json_depth(raw) > MAX_DEPTH:
         raise json.JSONDecodeError(f"it is nested deeper than {MAX_DEPTH} levels", text, 0)
 
     def whole(digits: str) -> int:
@@ -81,7 +85,7 @@ def load_json(data: bytes | str) -> Any:
             raise json.JSONDecodeError(_digits(digits), text, text.index(digits))
         return int(digits)
 
-    return json.loads(text, parse_int=whole)
+    return json.loads(text, parse_int=whole, object_hook=made)
 
 
 def _digits(number: str) -> str:
@@ -90,10 +94,12 @@ def _digits(number: str) -> str:
 
 def _json_depth(data: bytes) -> int:
     """How deeply brackets are nested, those in strings aside."""
-    plain = re.sub(rb"\\.", b"", data, flags=re.DOTALL)
-    outside = b"".join(plain.split(b'"')[::2])
-    brackets = outside.translate(None, _NO_BRACKETS)
-    return max(accumulate(map(_STEPS.__getitem__, brackets)), default=0)
+    plain = re.sub(rb"\\.", b"", data, flags=re.DOTALL) if b"\\" in data else data
+    # Without what is between two quotes, whether they are of one string or of two: what is left of
+    # many megabytes is little, and a bracket is inside a string or outside as before.
+    left = plain.translate(None, _NO_BRACKETS).replace(b'""', b"")
+    outside = b"".join(left.split(b'"')[::2])
+    return max(accumulate(map(_STEPS.__getitem__, outside)), default=0)
 
 
 @cache

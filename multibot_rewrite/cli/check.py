@@ -20,7 +20,7 @@ from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
 from multibot_rewrite.graph.live.request import Request
-from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.graph.watching import Verdict, final
@@ -60,8 +60,8 @@ def _plan(options: argparse.Namespace) -> Expectation:
 
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
-    if not is_fleet(data):
-        return _of_release(options, from_yaml(data, path))
+    if is_json(data) or not is_fleet(data):
+        return _of_release(options, read_plan(data, path))
     from multibot_rewrite.fleets.fleet import expected
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
     from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes

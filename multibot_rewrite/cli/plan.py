@@ -8,7 +8,7 @@ from multibot_rewrite.cli import fleet
 from multibot_rewrite.cli.output import deliver, goes_to_file
 from multibot_rewrite.cli.process import DONE, STOPPED
 from multibot_rewrite.fleets.fleet import expected
-from multibot_rewrite.graph.plan_file import to_yaml
+from multibot_rewrite.graph.plan_file import to_json, to_yaml
 
 
 def run(options: argparse.Namespace) -> int:
@@ -16,5 +16,6 @@ def run(options: argparse.Namespace) -> int:
     fleet.check_use(options, printed=not goes_to_file(options))
     made = fleet.build(options)
     failed = fleet.report_table(options, made)
-    deliver(options, to_yaml(expected(made)).encode())
+    write = to_json if (options.output or "").endswith(".json") else to_yaml
+    deliver(options, write(expected(made)).encode())
     return STOPPED if failed else DONE

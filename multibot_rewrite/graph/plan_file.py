@@ -1,14 +1,21 @@
-"""The plan of a fleet as a YAML file, which people read and edit."""
+"""The plan of a fleet as a file: YAML, which people edit, or JSON, which is read faster.
+
+Both have the same keys and values, and both are read with the same checks.
+"""
 
 from __future__ import annotations
 
+import json
 import re
+from codecs import BOM_UTF8
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
+from sys import intern
 from typing import Any
 
-from multibot_rewrite.bounded import load_yaml
+from multibot_rewrite.bounded import load_json, load_yaml
+from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
@@ -50,11 +57,8 @@ _WORDS = frozenset(["~", "null", "true", "false", "yes", "no", "on", "off", "y",
 
 
 def to_yaml(plan: Expectation) -> str:
-    """The file's text."""
-    rows: dict[str, list[list[str]]] = defaultdict(list)
-    for end in plan.endpoints:
-        types = OR.join((end.type, *end.also))
-        rows[end.node].append([end.role, end.kind, end.name, types, end.code_name])
+    """The text of a YAML file."""
+    rows = _rows_by_node(plan)
     quote = cache(_quoted)
     parts = [HEAD, *[f"distro: {plan.release}\n"] * bool(plan.release)]
     for key in (*KEYS[:-1], "ignored_nodes"):
@@ -69,6 +73,39 @@ def to_yaml(plan: Expectation) -> str:
         parts += [f"{key}:\n"] * bool(texts)
         parts += [f"  {quote(node)}: {quote(text)}\n" for node, text in texts]
     return "".join(parts)
+
+
+def _rows_by_node(plan: Expectation) -> dict[str, list[list[str]]]:
+    rows: dict[str, list[list[str]]] = defaultdict(list)
+    for end in plan.endpoints:
+        types = OR.join((end.type, *end.also))
+        rows[end.node].append([end.role, end.kind, end.name, types, end.code_name])
+    return rows
+
+
+def to_json(plan: Expectation) -> str:
+    """The text of a JSON file, a robot a line."""
+    rows = _rows_by_node(plan)
+    top: dict[str, object] = {key: getattr(plan, key) for key in (*KEYS[:-1], "ignored_nodes")}
+    top |= {"distro": plan.release} if plan.release else {}
+    by_node = {key: dict(getattr(plan, field)) for key, field in BY_NODE.items()}
+    top |= {key: texts for key, texts in by_node.items() if texts}
+    parts = [f"{_json(key)}: {_json(value)}" for key, value in top.items()]
+    robots = ",\n".join(
+        f"  {_json(it.name)}: {_json(_robot_value(it, rows))}" for it in plan.robots
+    )
+    return "{\n " + ",\n ".join([*parts, f'"robots": {{\n{robots}\n }}']) + "\n}\n"
+
+
+def _robot_value(robot: PlannedRobot, rows: Mapping[str, list[list[str]]]) -> dict[str, object]:
+    fields = {key: getattr(robot, field) for key, field in OPTIONAL_ROBOT_KEYS.items()}
+    given = {key: value for key, value in fields.items() if value}
+    nodes = {node: rows.get(node, []) for node in robot.nodes}
+    return {"tf": robot.tf, "frames": robot.frames, **given, "nodes": nodes}
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _robot(robot: PlannedRobot, rows: Mapping[str, list[list[str]]], quote: Quote) -> Iterator[str]:
@@ -97,12 +134,35 @@ def _quoted(value: str) -> str:
     return str(yaml.dump(value, default_style='"', width=10**9)).rstrip("\n")
 
 
+def read_plan(data: bytes, file: str) -> Expectation:
+    """Read what ``to_yaml`` or ``to_json`` wrote; raises InputError with file, place and what to write
+    there."""
+    with gc_paused():
+        return from_json(data, file) if is_json(data) else from_yaml(data, file)
+
+
+def is_json(data: bytes) -> bool:
+    """Whether a plan is JSON; a YAML file begins with a comment or a key."""
+    return data.removeprefix(BOM_UTF8)[:1000].lstrip().startswith(b"{")
+
+
+def from_json(data: bytes, file: str) -> Expectation:
+    """Read what ``to_json`` wrote; raises InputError."""
+    try:
+        return from_value(load_json(data), file)
+    except json.JSONDecodeError as error:
+        place = f"{file}:{error.lineno}:{error.colno}"
+        raise InputError(f"{place}: not valid JSON: {error.msg}; {_REMEDY}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"{file}: not valid JSON: {error}; {_REMEDY}") from None
+
+
 def from_yaml(data: bytes, file: str) -> Expectation:
-    """Read what ``to_yaml`` wrote; raises InputError with file, place and what to write there."""
+    """Read what ``to_yaml`` wrote; raises InputError."""
     import yaml
 
     try:
-        value = load_yaml(data.decode("utf-8-sig"))
+        return from_value(load_yaml(data.decode("utf-8-sig")), file)
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
         place = f"{file}:{mark.line + 1}:{mark.column + 1}" if mark else file
@@ -110,6 +170,10 @@ def from_yaml(data: bytes, file: str) -> Expectation:
         raise InputError(f"{place}: not valid YAML: {reason}; {_REMEDY}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"{file}: not valid YAML: {error}; {_REMEDY}") from None
+
+
+def from_value(value: object, file: str) -> Expectation:
+    """The plan that a value of YAML or JSON holds; raises InputError."""
     top = _mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
     nodes, topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[1:4])
     robots: list[PlannedRobot] = []
@@ -153,11 +217,9 @@ def _read_robot(name: str, given: object, file: str) -> tuple[PlannedRobot, list
     frames, others, optional = (
         _texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys
     )
-    endpoints = [
-        _read_endpoint(node, row, f"{file}: {place}.nodes.{node}[{at}]")
-        for node, rows in nodes.items()
-        for at, row in enumerate(_rows(rows, f"{file}: {place}.nodes.{node}"))
-    ]
+    endpoints: list[PlannedEndpoint] = []
+    for node, given_rows in nodes.items():
+        endpoints += _read_endpoints(node, given_rows, f"{file}: {place}.nodes.{node}")
     tf = _full_name(robot["tf"], f"{file}: {place}.tf")
     names = tuple(_full_name(node, f"{file}: {place}.nodes") for node in nodes)
     frame_tag = robot.get("spelled", "")
@@ -168,14 +230,12 @@ def _read_robot(name: str, given: object, file: str) -> tuple[PlannedRobot, list
 
 def _full_name(value: object, place: str) -> str:
     if not isinstance(value, str) or not value.startswith("/"):
-        raise InputError(f"{place}: {value!r} is not a full name; write it with a / in front")
-    return value
+        raise InputError(f"{place}: {_not_full(value)}")
+    return intern(value)
 
 
-def _rows(value: object, place: str) -> Sequence[object]:
-    if value is not None and not isinstance(value, list):
-        raise InputError(f"{place} is not a list; write [] for a node without planned endpoints")
-    return value or []
+def _not_full(value: object) -> str:
+    return f"{value!r} is not a full name; write it with a / in front"
 
 
 def _by_node(value: object, file: str, key: str) -> Iterator[tuple[str, str]]:
@@ -205,12 +265,25 @@ def _texts(value: object, place: str) -> tuple[str, ...]:
     return tuple(value)
 
 
-def _read_endpoint(node: str, row: object, place: str) -> PlannedEndpoint:
-    if not isinstance(row, list) or len(row) != FIELDS or not all(isinstance(x, str) for x in row):
-        raise InputError(f"{place}: write [role, kind, name, type, name in the node's code]")
-    role, kind, name, type_, code_name = row
+def _read_endpoints(node: str, rows: object, place: str) -> Iterator[PlannedEndpoint]:
+    if rows is not None and not isinstance(rows, list):
+        raise InputError(f"{place} is not a list; write [] for a node without planned endpoints")
+    for at, row in enumerate(rows or ()):
+        wrong = _wrong_row(row)
+        if wrong:
+            raise InputError(f"{place}[{at}]: {wrong}")
+        # Many nodes have the same names, types and words.
+        role, kind, name, types, code_name = map(intern, row)
+        type_, *also = types.split(OR) if OR in types else (types,)
+        yield PlannedEndpoint(node, kind, role, name, type_, code_name, tuple(also))
+
+
+def _wrong_row(row: object) -> str:
+    """What is wrong with a row of the plan; empty for an endpoint."""
+    if not isinstance(row, list) or len(row) != FIELDS or {*map(type, row)} != {str}:
+        return "write [role, kind, name, type, name in the node's code]"
+    role, kind, name, _, _ = row
     if role not in ROLES or kind not in KINDS:
         allowed = f"a role ({', '.join(ROLES)}) and a kind ({', '.join(KINDS)})"
-        raise InputError(f"{place}: {role!r}, {kind!r}: write {allowed}")
-    type_, *also = type_.split(OR)
-    return PlannedEndpoint(node, kind, role, _full_name(name, place), type_, code_name, tuple(also))
+        return f"{role!r}, {kind!r}: write {allowed}"
+    return "" if name.startswith("/") else _not_full(name)

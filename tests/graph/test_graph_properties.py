@@ -16,7 +16,8 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
     expect,
 )
-from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
+from multibot_rewrite.graph.plan_file import read_plan, to_yaml
+from multibot_rewrite.graph.plan_file import to_json as plan_to_json
 from multibot_rewrite.graph.snapshot import (
     GraphEndpoint,
     GraphFrame,
@@ -177,7 +178,8 @@ def test_a_frame_with_another_parent_is_found(fleet: Fleet, data: st.DataObject)
 @settings(max_examples=50, deadline=None)
 @given(fleets())
 def test_plan_and_graph_go_through_files_unchanged(fleet: Fleet) -> None:
-    assert from_yaml(to_yaml(fleet.plan).encode(), "plan") == fleet.plan
+    for text in (to_yaml(fleet.plan), plan_to_json(fleet.plan)):
+        assert read_plan(text.encode(), "plan") == fleet.plan
     assert from_json(to_json(fleet.graph), "graph") == fleet.graph
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -11,7 +12,7 @@ from graph_cases import environment, moved, without_node
 from paths import FIXTURES
 
 from multibot_rewrite.cli.multibot import main
-from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
+from multibot_rewrite.graph.plan_file import from_yaml, read_plan, to_yaml
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, to_json
 from multibot_rewrite.model import InputError
 
@@ -55,6 +56,39 @@ def test_a_plan_is_read_back_as_it_was_written(plan: Path) -> None:
     assert [robot.name for robot in wanted.robots] == ["robot1", "robot2"]
     assert len(wanted.endpoints) > 200
     assert "base_link/robot1" in wanted.robots[0].frames
+
+
+def test_a_plan_in_json_is_the_same_plan(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    written = plan.with_name("plan.json")
+    assert main(["plan", *FLEET, "-o", str(written)]) == 0
+    kept = json.loads(written.read_text())
+    assert set(kept["robots"]) == {"robot1", "robot2"}
+    assert read_plan(written.read_bytes(), "plan") == from_yaml(plan.read_bytes(), "plan")
+    assert held(written, as_planned(plan), capsys)[:2] == (0, "")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("{", "{{", "plan.json:1:2: not valid JSON: "),
+        ('"layout"', '"layoot"', "plan.json: the plan: key 'layout' is missing"),
+        ('["publishes"', '["sends"', "robots.robot1.nodes."),
+        ('"/robot1/tf"', '"tf"', "'tf' is not a full name; write it with a / in front"),
+        ('"robots": {', '"robots": [{', "not valid JSON"),
+        ("ros", "ros\xff", "not valid JSON"),
+    ],
+)
+def test_a_wrong_plan_in_json_is_one_line(
+    plan: Path, old: str, new: str, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written = plan.with_name("plan.json")
+    assert main(["plan", *FLEET, "-o", str(written)]) == 0
+    text = written.read_text()
+    assert old in text
+    written.write_bytes(text.replace(old, new, 1).encode("latin-1"))
+    code, _, err = held(written, as_planned(plan), capsys)
+    assert (code, err.count("\n")) == (2, 1)
+    assert words in err
 
 
 def test_a_fleet_as_planned(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -119,6 +119,13 @@ def test_the_file_is_plain_json_with_null_for_no_limit() -> None:
     assert to_json(SNAPSHOT).count(b'{"name": "/robot1/amcl"') == 2
 
 
+def test_equal_texts_and_profiles_are_in_memory_once() -> None:
+    ends = tuple(end(f"/a{at}", "/x", qos=QOS) for at in range(3))
+    found = from_json(to_json(SNAPSHOT._replace(endpoints=ends)), "graph.json").endpoints
+    assert found == ends
+    assert len({id(it.name) for it in found}) == len({id(it.qos) for it in found}) == 1
+
+
 def changed(*path: str | int, to: Any = ...) -> bytes:
     """The snapshot's JSON with the value at ``path`` replaced, or taken out."""
     value = json.loads(to_json(SNAPSHOT))
@@ -130,6 +137,10 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
     else:
         inner[path[-1]] = to
     return json.dumps(value).encode()
+
+
+# The keys of a node, wherever it stands.
+NODE_OBJECT = {"name": "/a", "process": ""}
 
 
 @pytest.mark.parametrize(
@@ -161,6 +172,9 @@ def changed(*path: str | int, to: Any = ...) -> bytes:
         (changed("endpoints", 0, "qos", "deadline", to=math.nan), "deadline: expected a number"),
         (changed("frames", 0, "static", to=1), "frames[0].static: expected true or false, not 1"),
         (changed("frames", 0, "publishers", 0, to=1), "frames[0].publishers[0]: expected text"),
+        (changed("endpoints", 0, to=NODE_OBJECT), "g.json: endpoints[0].kind: missing"),
+        (changed("frames", 0, to=NODE_OBJECT), "g.json: frames[0].child: missing"),
+        (changed("environment", to=NODE_OBJECT), "g.json: environment.domain: missing"),
         (changed("environment", to=None), "g.json: environment: expected an object"),
         (changed("environment", "settled", to="yes"), "expected one of expected, quiet, timeout"),
         (changed("environment", "caveats", 0, "code"), "environment.caveats[0].code: missing"),

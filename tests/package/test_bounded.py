@@ -11,12 +11,15 @@ from pathlib import Path
 
 import pytest
 import yaml
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import multibot_rewrite
 from multibot_rewrite import bounded
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.fleets.manifest import read_manifest
+from multibot_rewrite.graph.plan_file import from_json as from_json_plan
 from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.snapshot import from_json
 from multibot_rewrite.lint.config.baseline import read_baseline
@@ -126,12 +129,30 @@ JSON_FAULTS = {
 }
 
 
+@settings(deadline=None)
+@given(
+    st.recursive(
+        st.text("ab[]{}\\\"'\n", max_size=9),
+        lambda inner: st.lists(inner) | st.dictionaries(st.text('[]{}"\\', max_size=3), inner),
+    )
+)
+def test_the_depth_of_json_is_that_of_its_lists_and_objects(value: object) -> None:
+    def depth(it: object) -> int:
+        if not isinstance(it, list | dict):
+            return 0
+        return 1 + max(map(depth, it.values() if isinstance(it, dict) else it), default=0)
+
+    text = json.dumps(value)
+    assert bounded._json_depth(text.encode()) == depth(value)
+
+
 def _baseline(text: str) -> object:
     Path("f").write_text(text)
     return read_baseline("f")
 
 
 JSON_READERS: dict[str, Reader] = {
+    "plan": lambda text: from_json_plan(text.encode(), "f"),
     "snapshot": lambda text: from_json(text.encode(), "f"),
     "baseline": _baseline,
     "manifest": lambda text: read_manifest(text.encode(), "f"),

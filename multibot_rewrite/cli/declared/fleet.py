@@ -111,7 +111,18 @@ PLAN = Command(
         Example("multibot plan fleet.yaml -o plan.yaml"),
         Example("multibot plan rover.urdf robot1 robot2 --stack nav2 -o plan.yaml"),
     ),
-    (_DESCRIPTION, output_group(RESULT_OUTPUT), NAMING, FINDINGS, GENERAL),
+    (
+        _DESCRIPTION,
+        output_group(
+            output(
+                "write the plan there, not to standard output: YAML to read and edit, or, if FILE ends"
+                " in .json, JSON, which is read ten times faster"
+            )
+        ),
+        NAMING,
+        FINDINGS,
+        GENERAL,
+    ),
     _TABLE_CODES,
     more=_FLEET_FILE + _BESIDE,
     fail_on=ERROR,
