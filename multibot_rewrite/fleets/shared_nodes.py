@@ -23,19 +23,22 @@ NOT_MANAGED = declare(
     fix="Remove it from node_names of the robots' managers, and start it with a lifecycle manager of "
     "its own.",
     bad="""\
-shared_nodes: map_server
+shared_nodes: [map_server]
 shared_topics: [/map, /clock, /rosout, /parameter_events, /diagnostics]
 layout: both
 stack: nav2
-description: rover.urdf
-robots: [{name: a}, {name: b}]
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
 """,
     good="""\
 layout: both
 stack: nav2
-description: rover.urdf
-robots: [{name: a}, {name: b}]
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
 """,
+    line=1,
     formats=("fleet",),
 )
 

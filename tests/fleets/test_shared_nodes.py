@@ -77,5 +77,7 @@ def test_a_client_of_a_shared_node_calls_the_one_there_is(tmp_path: Path) -> Non
 
 
 def test_a_name_that_no_robot_runs_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"shared_nodes: no robot has a node 'map_servr'.*map_server"):
+    with pytest.raises(
+        InputError, match=r"shared_nodes: no robot has a node 'map_servr'.*map_server"
+    ):
         planned(tmp_path, "both", "map_servr")

@@ -100,7 +100,10 @@ def _used_instead(view: View, planned: PlannedEndpoint) -> str:
         ownership.without_robot(name, ownership.robot(name) or robot): name for name in unplanned
     }
     wanted = ownership.without_robot(planned.name, robot)
-    return plain.get(wanted, "") or plain.get(similar(wanted, plain), "")
+    near = plain.get(wanted, "") or plain.get(similar(wanted, plain), "")
+    if near or planned.node in view.robot_of:
+        return near
+    return similar(planned.name, unplanned)
 
 
 def _moved_down(view: View, planned: PlannedEndpoint) -> list[str]:
