@@ -26,6 +26,8 @@ HEAD = """\
 # spelled: what stands for a robot in its frames, where that is not its name. More can be said of a
 # topic, `topics: {/robot1/cmd_vel: {senders: [/robot1/twist_mux], one_sender: true,
 # qos: {durability: transient_local}}}`, and of nodes of which one runs, `one_of: [[/a, /b]]`.
+# open: what is read and not sent, claimed and not exported, by the robots' files; check reports it
+# with the graph.
 """
 Quote = Callable[[str], str]
 # Text that YAML reads back unchanged without quotes, in brackets too.
@@ -41,7 +43,7 @@ def to_yaml(plan: Expectation) -> str:
 def _block(value: Mapping[str, object], indent: str, quote: Quote) -> Iterator[str]:
     """A key a line; rows a line each, so that people find them."""
     for key, item in value.items():
-        rows = isinstance(item, list | tuple) and item and isinstance(item[0], list | tuple)
+        rows = isinstance(item, list | tuple) and item and not isinstance(item[0], str)
         if not (rows or (item and isinstance(item, dict))):
             yield f"{indent}{quote(key)}: {_plain(item, quote)}\n"
             continue
@@ -49,7 +51,7 @@ def _block(value: Mapping[str, object], indent: str, quote: Quote) -> Iterator[s
         if isinstance(item, dict):
             yield from _block(item, f"{indent}  ", quote)
         elif isinstance(item, list | tuple):
-            yield from (f"{indent}- {_flow(row, quote)}\n" for row in item)
+            yield from (f"{indent}- {_plain(row, quote)}\n" for row in item)
 
 
 def _plain(value: object, quote: Quote) -> str:
@@ -57,7 +59,9 @@ def _plain(value: object, quote: Quote) -> str:
         return quote(value)
     if isinstance(value, list | tuple):
         return _flow(value, quote)
-    return "{}" if isinstance(value, dict) else str(value).lower()
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key}: {_plain(it, quote)}' for key, it in value.items())}}}"
+    return str(value).lower()
 
 
 def to_json(plan: Expectation) -> str:

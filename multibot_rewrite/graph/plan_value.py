@@ -14,6 +14,7 @@ from multibot_rewrite.graph.expectation import (
     PlannedTopic,
     vacuous,
 )
+from multibot_rewrite.graph.plan_gaps import gap_value, read_gaps
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import KINDS, ROLES
@@ -26,7 +27,8 @@ TOPIC_KEYS = ("senders", "one_sender", "qos")
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
 BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways"}
-OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", *BY_NODE)
+OPEN = "open"
+OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -51,6 +53,7 @@ def value_of(plan: Expectation) -> dict[str, object]:
         "topics": {it.name: _topic_value(it) for it in plan.topics},
         "one_of": plan.one_of,
         **{key: dict(getattr(plan, field)) for key, field in BY_NODE.items()},
+        OPEN: [gap_value(it) for it in plan.gaps],
     }
     return {
         **({"distro": plan.release} if plan.release else {}),
@@ -101,6 +104,7 @@ def from_value(value: object, file: str) -> Expectation:
         ways,
         tuple(_read_topics(top.get("topics", {}), file)),
         tuple(_read_groups(top.get("one_of", []), file)),
+        tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
     )
     nothing = vacuous(plan)
     if nothing:
