@@ -15,6 +15,7 @@ from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.output_file import params_of
+from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -50,7 +51,8 @@ def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> R
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     nodes, findings = nodes_with(launched, stack, given, known)
-    return RobotEvidence(given, known, nodes, (*notes, *findings), spawned)
+    marked, shared = apart(nodes, file)
+    return RobotEvidence(given, known, marked, (*notes, *findings, *shared), spawned)
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:
