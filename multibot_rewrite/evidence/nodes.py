@@ -74,7 +74,7 @@ arm:
 
 
 NO_TYPE = declare(
-    "MF803",
+    "MF825",
     "spawned-controller-without-type",
     NOTE,
     what="A launch file spawns a controller, and no file says its type: the plan has its name, and "
