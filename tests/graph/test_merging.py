@@ -4,50 +4,22 @@ from __future__ import annotations
 
 from itertools import permutations
 from pathlib import Path
-from typing import Any
 
 import pytest
 from graph_cases import as_planned, environment, read_plan
 from live_commands import write_plan
+from looks import ONE, QOS, TWO, end, look, node
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.merging import Look, merged
 from multibot_rewrite.graph.snapshot import (
     Caveat,
-    GraphEndpoint,
     GraphFrame,
-    GraphNode,
-    Qos,
     Snapshot,
     from_json,
     to_json,
 )
 from multibot_rewrite.model import UsageError
-
-INF = float("inf")
-QOS = Qos("KEEP_LAST", 1, "RELIABLE", "VOLATILE", INF, INF, "AUTOMATIC", INF)
-ONE, TWO = "010f1111aaaaaaaaaaaaaaaa", "010f2222bbbbbbbbbbbbbbbb"
-TEXT = "std_msgs/msg/String"
-
-
-def node(robot: str, process: str = "") -> GraphNode:
-    return GraphNode(f"/{robot}/drive", process)
-
-
-def end(robot: str, name: str, process: str = "", **more: Any) -> GraphEndpoint:
-    made = GraphEndpoint("topic", "publishes", name, TEXT, "", f"/{robot}/drive", None, process)
-    return made._replace(**more)
-
-
-def look(*nodes: GraphNode, ends: tuple[GraphEndpoint, ...] = (), **around: Any) -> Snapshot:
-    known = {it.node for it in ends}
-    more = tuple(
-        end(it.name.split("/")[1], f"{it.name}/x", it.process)
-        for it in nodes
-        if it.name not in known
-    )
-    where = environment()._replace(**around)
-    return Snapshot(nodes, (*ends, *more), (), where)
 
 
 def join(*looks: Snapshot) -> Snapshot:

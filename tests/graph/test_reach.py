@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from graph_cases import environment
 from live_commands import write_plan
-from test_merging import ONE, TWO, end, look, node
+from looks import ONE, TWO, end, look, node
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
