@@ -147,7 +147,7 @@ def _sum_up(
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
-    last = follow(plan, live.watched(options))
+    last = follow(lambda graph: (plan, check(plan, graph)), live.watched(options))
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

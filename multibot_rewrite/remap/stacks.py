@@ -54,6 +54,26 @@ def user_stack(path: str, release: str) -> NodeLibrary:
     return in_release(extend(every_release(), text, path), release)
 
 
+def is_apart(node: str, release: str) -> bool:
+    """Does this node keep its name in every layout (``NodeFacts.apart``), as far as built-in nodes say?
+
+    What is in the namespace of such a node, as the helpers of costmaps, goes with it.
+    """
+    above = node.rpartition("/")[0]
+    known = apart_nodes(release)
+    return any(_ends(node, it) or _ends(above, it.rpartition("/")[0]) for it in known)
+
+
+def _ends(node: str, with_: str) -> bool:
+    return bool(with_) and f"/{node}".endswith(f"/{with_}")
+
+
+@lru_cache
+def apart_nodes(release: str) -> frozenset[str]:
+    """The built-in nodes that keep their names in every layout."""
+    return frozenset(it.name for it in built_in(release).nodes.values() if it.apart)
+
+
 @lru_cache
 def every_release() -> NodeLibrary:
     """The nodes and stacks that this package knows, of all releases."""

@@ -71,6 +71,11 @@ MR105 names rules that do not arrive.
 | of a plugin in the description | the plugin's tag | `<ros><remapping>` |
 | controller of ros2_control | see below | `SPAWNERS`, `robot.spawner()`, `commands.md` |
 
+Nav2's code sets the name of a costmap (`local_costmap`) and puts it below the namespace of its server;
+no rule changes that. So in layout postfix these servers are in their robot's namespace and keep their
+names (`/robot1/controller_server`, `/robot1/local_costmap/local_costmap`); their topics are renamed as
+all others. If the code of your own node sets its name, give it `apart: true`, and its maker, too.
+
 A costmap of a component has the rules of the component from Nav2 1.5 on, those of the container before.
 On Humble gz_ros2_control starts ROS with the rules of the first robot's plugin, and all its nodes in
 that Gazebo have them; later only nodes without rules of their own.
@@ -132,6 +137,7 @@ def _reach(node: NodeFacts) -> Iterator[str]:
 def _node(node: NodeFacts, library: NodeLibrary) -> str:
     facts = [f"package {node.package}"] * bool(node.package)
     facts += [f"in the process of {node.host}"] * bool(node.host)
+    facts += ["keeps its name, in its robot's namespace, in every layout"] * node.apart
     facts += (
         ["one for all robots"] * node.shared + _in(node.releases) + [node.note] * bool(node.note)
     )

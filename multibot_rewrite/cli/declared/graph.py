@@ -1,4 +1,4 @@
-"""The commands about the live graph: check, learn, snapshot."""
+"""The commands about the live graph: check, doctor, learn, snapshot."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
+WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 MERGE = Option(
     ("--merge",),
     "no look: join snapshots that were taken on several machines",
@@ -68,7 +69,7 @@ CHECK = Command(
         ),
         output_group(
             FINDINGS_OUTPUT,
-            switch("--watch", about="show every change until Ctrl-C or --timeout"),
+            WATCH,
         ),
         PICTURES,
         SOURCE,
@@ -77,6 +78,39 @@ CHECK = Command(
     ),
     f"{LIVE_CODES}. With --watch it is the worst that was seen; what was missing before everything"
     " was there once does not count",
+    fail_on=ERROR,
+    findings_first=True,
+)
+DOCTOR = Command(
+    "doctor",
+    "doctor",
+    "%(prog)s [options]",
+    "Say what is wrong with the robots that run now; needs no plan.",
+    (
+        Example("multibot doctor", "the graph that runs now"),
+        Example("multibot doctor --watch", "show every change until Ctrl-C"),
+        Example("multibot doctor --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot doctor --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
+        Example("multibot doctor --suggest first/", "begin a fleet file and a plan with it"),
+    ),
+    (
+        output_group(
+            FINDINGS_OUTPUT,
+            WATCH,
+            value(
+                "--suggest",
+                metavar="FOLDER",
+                about="write a first fleet file, plan and description of what is seen there",
+                type=values.path,
+            ),
+        ),
+        PICTURES,
+        SOURCE,
+        FINDINGS,
+        GENERAL,
+    ),
+    f"{LIVE_CODES.replace('as planned', 'nothing wrong seen')}. With --watch it is the worst that was"
+    " seen",
     fail_on=ERROR,
     findings_first=True,
 )
