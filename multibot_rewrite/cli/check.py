@@ -14,7 +14,7 @@ from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import WORDS, follow
-from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
@@ -103,7 +103,8 @@ def conclude(
         say(f"incomplete: {caveat.message}", PROGRAM)
     codes = {it.code for it in findings}
     pictures.deliver(options, plan, graph, [it for it in found if it.code in codes])
-    verdict = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    unsure = caveats or any(it.level == INCONCLUSIVE for it in of_graph)
+    verdict = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
     _sum_up(options, plan, findings, verdict, gaps)
     return STOPPED if failed else CODES[verdict]
