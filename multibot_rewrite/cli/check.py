@@ -5,24 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
-from math import inf
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.output import note, say
+from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import WORDS, follow
-from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
-from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
-from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -37,21 +35,22 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     plan = _plan(options)
     try:
-        return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
+        if options.watch:
+            return _watch(options, plan)
+        return conclude(options, plan, live.graph(options))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
 
 def _check_use(options: argparse.Namespace) -> None:
-    if options.watch and options.snapshot:
-        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
-        check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
+        check_target(options.output, [options.plan, *options.snapshot])
 
 
 def _plan(options: argparse.Namespace) -> Expectation:
@@ -61,15 +60,15 @@ def _plan(options: argparse.Namespace) -> Expectation:
     if is_json(data) or not is_fleet(data):
         return _of_release(options, read_plan(data, path))
     from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
+    from multibot_rewrite.fleets.closed_plan import closed_plan
     from multibot_rewrite.fleets.fleet import expected
     from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
-    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
     file = read_fleet(path, options.distro or "", os.environ)
     if options.output:
         check_target(options.output, input_files(file))
-    made = with_start_pose_nodes(plan_fleet(file, trust=options.trust))
+    made = closed_plan(plan_fleet(file, trust=options.trust))
     note_interfaces(options, made.facts)
     check_unread(options, made)
     return expected(made)
@@ -95,7 +94,8 @@ def conclude(
     ``before`` are findings from before there was a graph.
     """
     found = check(plan, graph)
-    findings = [*before, *chosen(options, found)]
+    of_graph, gaps = [*before, *chosen(options, found)], _gaps(options, plan)
+    findings = [*of_graph, *gaps]
     about = About([plan_name(options)], robot_words(plan), plan.release)
     failed = report_first(options, findings, about)
     caveats = doubts(graph)
@@ -103,8 +103,23 @@ def conclude(
         say(f"incomplete: {caveat.message}", PROGRAM)
     codes = {it.code for it in findings}
     pictures.deliver(options, plan, graph, [it for it in found if it.code in codes])
-    inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
-    return _sum_up(options, plan, len(findings), Verdict.WRONG if failed else inconclusive)
+    verdict = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
+    _sum_up(options, plan, findings, verdict, gaps)
+    return STOPPED if failed else CODES[verdict]
+
+
+def _gaps(options: argparse.Namespace, plan: Expectation) -> list[Finding]:
+    """What is open in the plan. Notes, as of what a driver that nobody names may send, are only counted
+    where they are asked for."""
+    found = chosen(options, plan.gaps)
+    if options.fail_on == NOTE or options.verbose:
+        return found
+    serious = [it for it in found if it.level != NOTE]
+    if len(serious) < len(found):
+        left = plural(len(found) - len(serious), "note")
+        note(options, f"note: {left} about topics that no known node sends; --verbose shows them")
+    return serious
 
 
 def plan_name(options: argparse.Namespace) -> str:
@@ -113,26 +128,32 @@ def plan_name(options: argparse.Namespace) -> str:
     return str(given.get("plan") or given["input"])
 
 
-def _sum_up(options: argparse.Namespace, plan: Expectation, findings: int, verdict: Verdict) -> int:
-    counted = f"{plural(len(plan.robots), 'robot')}, {plural(findings, 'finding')}"
-    note(options, f"{counted}: {WORDS[verdict]}{facts_of_release(plan.release)}")
-    return CODES[verdict]
-
-
-def _graph(options: argparse.Namespace) -> Snapshot:
-    if options.snapshot:
-        return read_snapshot(options.snapshot)
-    # Not only until the planned nodes are there: a twin or a leak may come after them.
-    return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
+def _sum_up(
+    options: argparse.Namespace,
+    plan: Expectation,
+    findings: Sequence[Finding],
+    verdict: Verdict,
+    gaps: Sequence[Finding],
+) -> None:
+    """A graph may be as planned, and the plan not close."""
+    counted = f"{plural(len(plan.robots), 'robot')}, {plural(len(findings), 'finding')}"
+    is_open = any(it.level != NOTE for it in gaps)
+    word = "but" if verdict == Verdict.PLANNED else "and"
+    but = f", {word} the plan does not close" if is_open else ""
+    note(options, f"{counted}: {WORDS[verdict]}{but}{facts_of_release(plan.release)}")
 
 
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
-    last = follow(plan, watch(Request(options.timeout or inf), live.environ(options.domain)))
+    gaps = _gaps(options, plan)
+    print_lines(map(str, gaps))
+    last = follow(lambda graph: (plan, check(plan, graph)), live.watched(options))
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
+    findings = [*last.findings, *gaps]
     if options.output:
-        findings = list(last.findings)
         report_first(options, findings, About([options.plan], robot_words(plan), plan.release))
     pictures.deliver(options, plan, last.graph, last.findings)
-    return _sum_up(options, plan, len(last.findings), final(last))
+    verdict = final(last)
+    _sum_up(options, plan, findings, verdict, gaps)
+    return STOPPED if any(it.level == ERROR for it in gaps) else CODES[verdict]

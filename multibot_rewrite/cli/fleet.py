@@ -71,12 +71,12 @@ def note_interfaces(options: argparse.Namespace, facts: Iterable[NodeFacts]) -> 
 
 
 def _from_file(options: argparse.Namespace) -> Fleet:
+    from multibot_rewrite.fleets.closed_plan import closed_plan
     from multibot_rewrite.fleets.fleet_file import (  # one description needs none of it
         input_files,
         read_fleet,
     )
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
-    from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 
     given = given_options(options, OF_FLEET_FILE)
     if given:
@@ -84,7 +84,7 @@ def _from_file(options: argparse.Namespace) -> Fleet:
     file = read_fleet(options.input, options.distro or "", os.environ)
     if options.output:
         check_target(options.output, input_files(file))
-    return with_start_pose_nodes(plan_fleet(file, trust=options.trust))
+    return closed_plan(plan_fleet(file, trust=options.trust))
 
 
 def _from_words(options: argparse.Namespace) -> Fleet:
@@ -126,5 +126,6 @@ def findings(options: argparse.Namespace, made: Fleet) -> list[Finding]:
 
 
 def report_table(options: argparse.Namespace, made: Fleet) -> bool:
-    """Report what is wrong with the table; does it fail the command?"""
-    return report_beside(options, findings(options, made), about(options, made))
+    """Report what is wrong with the table and open in the robots; does it fail the command?"""
+    found = (*findings(options, made), *chosen(options, made.gaps))
+    return report_beside(options, found, about(options, made))

@@ -14,7 +14,7 @@ from multibot_rewrite.model import UsageError
 
 NAMES = ("report", "mermaid", "dot")
 # What a command may have read.
-_INPUTS = ("plan", "snapshot", "input")
+_INPUTS = ("plan", "input")
 
 
 def check(options: argparse.Namespace) -> None:
@@ -43,6 +43,7 @@ def _wanted(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
     """Which pictures go where."""
     given = vars(options)
     inputs = [given[name] for name in _INPUTS if given.get(name)]
+    inputs += given.get("snapshot", ())
     for name in NAMES:
         target = given.get(name)
         if target is None:

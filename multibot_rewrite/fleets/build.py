@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cache
 from typing import NamedTuple
 
@@ -12,16 +12,16 @@ from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
-from multibot_rewrite.fleets.closing import closing
+from multibot_rewrite.fleets.closed_plan import gaps_of, texts_of
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.controller_files import with_own_controllers
 from multibot_rewrite.fleets.fleet import Fleet, expected
+from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
-from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
@@ -56,19 +56,19 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
             *companion_files(plan),
             *rviz_files(configs),
             *bridge_outputs(plan),
-            *_tables(plan, fleet),
             *commands_file(each, rviz_commands(configs), plan.file.distro),
         ]
         files = sorted(it for it in made if isinstance(it, OutputFile))
-        _check_paths_differ(files)
         findings = [it for it in made if isinstance(it, Finding)]
         for robot in plan.robots:
             findings += without_started(robot.findings, fleet.table, [robot.member.robot])
-        texts = [
-            OutputText(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files
-        ]
-        findings += consistency(plan, fleet, texts, findings)
-        findings += closing(plan, fleet, texts)
+        for found in plan.evidence.values():
+            findings += found.findings
+        texts = texts_of(files)
+        gaps = gaps_of(plan, fleet, texts, findings)
+        findings += (*consistency(plan, fleet, texts, findings), *gaps)
+        files = sorted((*files, *_tables(plan, fleet._replace(gaps=gaps))))
+        _check_paths_differ(files)
         return Outputs(tuple(files), tuple(_once(plan, findings)))
 
 
@@ -129,7 +129,7 @@ def _expanded_name(path: str) -> str:
     return name if "." in name else f"{name}.urdf"
 
 
-def _tables(plan: FleetPlan, fleet: Fleet) -> FilesAndFindings:
+def _tables(plan: FleetPlan, fleet: Fleet) -> Iterator[OutputFile]:
     table = fleet.table
     # Relative to the fleet file: the same from every working directory.
     folder = os.path.dirname(os.path.abspath(plan.file.file))
@@ -137,7 +137,8 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> FilesAndFindings:
         {node: _from(folder, text) for node, text in by_node.items()}
         for by_node in (fleet.sources, fleet.origins)
     )
-    planned = expected(fleet._replace(sources=sources, origins=origins))
+    gaps = tuple(_portable(plan, folder, it) for it in fleet.gaps)
+    planned = expected(fleet._replace(sources=sources, origins=origins, gaps=gaps))
     yield OutputFile(PLAN, to_yaml(planned).encode())
     yield OutputFile(TABLE, _remappings(table).encode())
     yield OutputFile(TABLE_PYTHON, launch(table).encode())
@@ -146,6 +147,16 @@ def _tables(plan: FleetPlan, fleet: Fleet) -> FilesAndFindings:
 def _from(folder: str, text: str) -> str:
     """A place (``file:line``) as seen from a folder; other texts as they are."""
     return os.path.relpath(text, folder) if ":" in text else text
+
+
+def _portable(plan: FleetPlan, folder: str, gap: Finding) -> Finding:
+    """A finding with its files as seen from a folder."""
+    message, hint = gap.message, gap.hint
+    for path in input_files(plan.file):
+        own = os.path.relpath(path, folder)
+        message, hint = message.replace(f"{path}:", f"{own}:"), hint.replace(f"{path}:", f"{own}:")
+    file = os.path.relpath(gap.file, folder) if gap.file else ""
+    return gap._replace(message=message, hint=hint, file=file)
 
 
 def _remappings(table: Table) -> str:

@@ -20,6 +20,7 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
+from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
 from multibot_rewrite.graph.transforms import edges_in
 
 _ARM = """\
@@ -161,6 +162,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
 
     ``fleet`` has all nodes that are started, ``texts`` are the files that were made.
     """
+    yield from tf_conflicts(plan, fleet, texts)
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
     for group in group_robots(plan):
         robot = group.robots[0]
@@ -170,7 +172,6 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         made = [*interface_gaps(before.given, library, before.exports)]
         now = [*interface_gaps(after.given, library, after.exports)]
         yield from _interfaces(robot, made, now)
-        yield from evidence.findings
         yield from _frames(robot, frame_gaps(before.given, library, before.sent))
         yield from _trees(robot, tree_gaps(edges_in(robot.member.source.root), before.senders))
         yield from topic_findings(robot, before, after)

@@ -23,7 +23,6 @@ from multibot_rewrite.fleets.output_values import (
 )
 from multibot_rewrite.fleets.prefix_parameters import prefix_lines
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
-from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
 from multibot_rewrite.fleets.value_checks import (
     PREFIXES,
     TOKEN,
@@ -50,9 +49,11 @@ def consistency(
     started; lines that have a finding in ``known`` are left out."""
     robots = _robot_names(plan, fleet)
     lines = {(it.file, it.line) for it in known}
-    of_fleet = (*_of_two_robots(plan, fleet), *tf_conflicts(plan, fleet, files))
     in_files = (*_in_files(plan, robots, files), *_in_common(robots, files))
-    return (*of_fleet, *_counted(it for it in in_files if (it.file, it.line) not in lines))
+    return (
+        *_of_two_robots(plan, fleet),
+        *_counted(it for it in in_files if (it.file, it.line) not in lines),
+    )
 
 
 def _counted(findings: Iterable[Finding]) -> Iterator[Finding]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import LaunchOrder
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
@@ -36,7 +37,8 @@ class Fleet(NamedTuple):
     each robot's nodes publish. ``facts`` are the nodes of the stacks, ``sources`` the place in the
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
-    differs from their namespace, with it. ``read`` are the files that were read for descriptions."""
+    differs from their namespace, with it. ``read`` are the files that were read for descriptions,
+    ``gaps`` what is open in the robots."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -47,6 +49,7 @@ class Fleet(NamedTuple):
     origins: dict[str, str]
     tags: dict[str, str]
     read: tuple[str, ...]
+    gaps: tuple[Finding, ...] = ()
 
 
 def make_fleet(
@@ -220,4 +223,4 @@ def expected(fleet: Fleet) -> Expectation:
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
-    return plan._replace(release=fleet.table.release)
+    return plan._replace(release=fleet.table.release, gaps=fleet.gaps)

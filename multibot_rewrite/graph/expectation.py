@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER, deliveries
@@ -62,7 +63,8 @@ class Expectation(NamedTuple):
     ``sources`` has for a node ``file:line`` of the plugin that starts it, ``origins`` for any other
     node the file (``file:line``) or stack (``stack nav2``) that names it. ``release`` is that whose
     facts it rests on, empty if that is not known. ``ways`` has for a node that takes its rules from
-    its spawner or at its loading which of the two (``remap.ways``).
+    its spawner or at its loading which of the two (``remap.ways``). ``gaps`` are findings about what
+    is open in the robots as they are planned: a name that is read and not sent, for example.
     """
 
     layout: str
@@ -76,6 +78,7 @@ class Expectation(NamedTuple):
     origins: tuple[tuple[str, str], ...] = ()
     release: str = ""
     ways: tuple[tuple[str, str], ...] = ()
+    gaps: tuple[Finding, ...] = ()
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:

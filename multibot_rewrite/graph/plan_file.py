@@ -22,6 +22,7 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
     vacuous,
 )
+from multibot_rewrite.graph.plan_gaps import gap_row, gap_value, read_gaps
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import KINDS, ROLES
@@ -33,13 +34,15 @@ HEAD = """\
 # optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
 # patterns of nodes that may come and go, beside the usual tools. sources: the plugin that starts a
 # node. from: the file or stack that names a node. distro: the ROS 2 release that the nodes are of.
-# spelled: what stands for a robot in its frames, where that is not its name.
+# spelled: what stands for a robot in its frames, where that is not its name. open: what is read and
+# not sent, claimed and not exported, by the robots' files; check reports it with the graph.
 """
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
 BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways"}
-OPTIONAL_KEYS = ("distro", "ignored_nodes", *BY_NODE)
+OPEN = "open"
+OPTIONAL_KEYS = ("distro", "ignored_nodes", *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -72,6 +75,8 @@ def to_yaml(plan: Expectation) -> str:
         texts = getattr(plan, field)
         parts += [f"{key}:\n"] * bool(texts)
         parts += [f"  {quote(node)}: {quote(text)}\n" for node, text in texts]
+    parts += [f"{OPEN}:\n"] * bool(plan.gaps)
+    parts += (gap_row(it, quote) for it in plan.gaps)
     return "".join(parts)
 
 
@@ -90,6 +95,7 @@ def to_json(plan: Expectation) -> str:
     top |= {"distro": plan.release} if plan.release else {}
     by_node = {key: dict(getattr(plan, field)) for key, field in BY_NODE.items()}
     top |= {key: texts for key, texts in by_node.items() if texts}
+    top |= {OPEN: [gap_value(it) for it in plan.gaps]} if plan.gaps else {}
     parts = [f"{_json(key)}: {_json(value)}" for key, value in top.items()]
     robots = ",\n".join(
         f"  {_json(it.name)}: {_json(_robot_value(it, rows))}" for it in plan.robots
@@ -195,6 +201,7 @@ def from_value(value: object, file: str) -> Expectation:
         origins,
         _release(top.get("distro", ""), file),
         ways,
+        tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
     )
     nothing = vacuous(plan)
     if nothing:

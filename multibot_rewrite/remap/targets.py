@@ -19,11 +19,11 @@ ACTION_PARTS = (
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 
 
-def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
-    """The namespace and name that a robot's node runs under."""
+def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[str, str]:
+    """The namespace and name that a robot's node runs under; ``apart`` as in ``NodeFacts``."""
     # A costmap is a node in its own namespace, whatever its robot.
     above, _, name = node.strip("/").rpartition("/")
-    if naming.topics == NAMESPACE:
+    if apart or naming.topics == NAMESPACE:
         return "/" + "/".join(filter(None, [robot, above])), name
     return f"/{above}", spelled(naming, robot, "node", name)
 

@@ -1,11 +1,11 @@
-"""A robot that closes, and breaks of it: each is found by a build, with both lines where there are two.
+"""A robot that closes, and breaks of it: a build and a plan find each, with both lines.
 
 What each break does at run time is said here, from the sources of the nodes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 import pytest
@@ -13,6 +13,7 @@ from closed_robot import FILES
 
 from multibot_rewrite.findings.finding import NOTE, Finding
 from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.closed_plan import closed_plan
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
@@ -21,19 +22,28 @@ LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 BESIDE = ("MF125", "MF7", "MB", "MR")
 
 
-def found(folder: Path, files: dict[str, str], layout: str = "frames-per-robot") -> list[Finding]:
+def found(
+    folder: Path, files: dict[str, str], layout: str = "frames-per-robot"
+) -> tuple[list[Finding], list[Finding]]:
+    """What a build says, and what a plan says."""
     for name, text in files.items():
         (folder / name).write_text(text)
     fleet = folder / "fleet.yaml"
     fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
     plan = plan_fleet(read_fleet(str(fleet), "", {}))
-    every = {*plan.fleet.table.problems, *make_outputs(plan).findings}
+    problems = plan.fleet.table.problems
+    built = {*problems, *make_outputs(plan).findings}
+    planned = {*problems, *closed_plan(plan).gaps}
+    return _gaps(built), _gaps(planned)
+
+
+def _gaps(every: Iterable[Finding]) -> list[Finding]:
     return [it for it in every if it.level != NOTE and not it.code.startswith(BESIDE)]
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_a_robot_that_closes(layout: str, tmp_path: Path) -> None:
-    assert found(tmp_path, FILES, layout) == []
+    assert found(tmp_path, FILES, layout) == ([], [])
 
 
 BREAKS = [
@@ -167,13 +177,13 @@ def test_a_break_is_found_with_its_lines(
     file: str, old: str, new: str, code: str, line: int, other: str, tmp_path: Path
 ) -> None:
     assert old in FILES[file]
-    broken: Sequence[Finding] = found(tmp_path, {**FILES, file: FILES[file].replace(old, new)})
+    both = found(tmp_path, {**FILES, file: FILES[file].replace(old, new)})
     if not code:
-        assert not broken
+        assert both == ([], [])
         return
-    (first, *_) = sorted(
-        (it for it in broken if it.code == code), key=lambda it: (it.line, it.message)
-    ) or [None]
-    assert first, broken
-    assert first.line == line
-    assert other in first.hint
+    for broken in both:
+        alike = (it for it in broken if it.code == code)
+        first = min(alike, key=lambda it: (it.line, it.message), default=None)
+        assert first, broken
+        assert first.line == line
+        assert other in first.hint

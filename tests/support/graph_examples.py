@@ -22,6 +22,8 @@ from collections.abc import Iterable, Iterator
 
 from graph_cases import environment, qos
 
+from multibot_rewrite.graph.dangers.seen import Owners
+from multibot_rewrite.graph.doctor.robots import GuessedRobot, owners_of, with_frames
 from multibot_rewrite.graph.expectation import ALWAYS, Expectation, PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Qos, Snapshot
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
@@ -54,6 +56,16 @@ def read_example(text: str) -> tuple[Expectation, Snapshot]:
     for line in (*planned, *running):
         assert _is_known(line), f"not in the language of examples: {line}"
     return read_plan(planned), read_graph(running)
+
+
+def read_danger(text: str) -> tuple[Snapshot, Owners]:
+    """The graph of an example without a plan, and whose its names are."""
+    plan, graph = read_example(text)
+    assert not plan.endpoints, "a danger needs no plan: begin its lines with running:"
+    robots = sorted({*ROBOT.findall(text)})
+    frames = [name for frame in graph.frames for name in (frame.child, frame.parent)]
+    guessed = (with_frames(GuessedRobot(it, f"/{it}"), frames) for it in robots)
+    return graph, owners_of(graph, tuple(guessed))
 
 
 def _is_known(line: str) -> bool:

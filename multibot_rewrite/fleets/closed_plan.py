@@ -1,0 +1,55 @@
+"""The fleet of a fleet file with what is open in its robots: plan, remap, rehearse and check say it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
+from multibot_rewrite.fleets.closing import closing
+from multibot_rewrite.fleets.companion_files import companion_files
+from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.output_file import OutputFile
+from multibot_rewrite.fleets.output_values import OutputText
+from multibot_rewrite.fleets.robot_groups import group_robots
+from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
+from multibot_rewrite.gc_pause import gc_paused
+
+# Rules about a file that names what the robot does not have.
+NAMES_NOTHING = frozenset(["MF111", "MF112", "MF127", "MF301", "MF401", "MF452", "MF507"])
+
+
+def closed_plan(plan: FleetPlan) -> Fleet:
+    """The fleet with all nodes that are started, and its ``gaps``.
+
+    Raises InputError for a companion that cannot be read or rewritten.
+    """
+    with gc_paused():
+        fleet, few = with_start_pose_nodes(plan), _one_of_each(plan)
+        made = [*companion_files(few), *bridge_outputs(few)]
+        texts = texts_of(it for it in made if isinstance(it, OutputFile))
+        gaps = gaps_of(plan, fleet, texts, [it for it in made if isinstance(it, Finding)])
+        return fleet._replace(gaps=gaps)
+
+
+def texts_of(files: Iterable[OutputFile]) -> list[OutputText]:
+    """Files of a build as texts."""
+    return [OutputText(it.path, it.data.decode("utf-8", "replace"), it.sources) for it in files]
+
+
+def gaps_of(
+    plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText], of_files: Iterable[Finding]
+) -> tuple[Finding, ...]:
+    """What is open in the robots of a fleet, by place; ``of_files`` is what was found as ``texts`` were
+    made."""
+    named = (it for it in of_files if it.code in NAMES_NOTHING)
+    found = {*named, *closing(plan, fleet, texts)}
+    return tuple(sorted(found, key=lambda it: (it.file, it.line, it.column, it.code, it.message)))
+
+
+def _one_of_each(plan: FleetPlan) -> FleetPlan:
+    """A plan of one robot for each that differs in more than its names: the others close as it does."""
+    robots = tuple(it.robots[0] for it in group_robots(plan))
+    own = {it.spec.namespace: plan.fleet.inventories[it.spec.namespace] for it in robots}
+    return plan._replace(robots=robots, fleet=plan.fleet._replace(inventories=own))

@@ -1,0 +1,140 @@
+"""What is open in a robot: plan, remap and check say the same, and a verdict does not hide it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from closed_robot import FILES
+from graph_cases import as_planned
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.graph.plan_file import from_yaml
+from multibot_rewrite.graph.plan_file import to_json as to_json_plan
+from multibot_rewrite.graph.snapshot import to_json
+from multibot_rewrite.model import InputError
+
+CLOSED = FILES["ekf.yaml"]
+OPEN = CLOSED.replace("imu0: imu/data", "imu0: imu_0/data")
+SAID = "MF812 /ekf_filter_node of robot1 reads /imu_0/data, which nothing sends (did you mean /imu/data"
+ODOMETRY = "odom0: base_controller/odom"
+
+
+class Folder:
+    """A fleet file, the plan made of it, and a graph that is as planned."""
+
+    def __init__(self, folder: Path, ekf: str) -> None:
+        for name, text in {**FILES, "ekf.yaml": ekf}.items():
+            (folder / name).write_text(text)
+        self.fleet, self.plan = str(folder / "fleet.yaml"), str(folder / "plan.yaml")
+        self.graph, self.json = str(folder / "graph.json"), str(folder / "plan.json")
+        assert main(["plan", self.fleet, "-o", self.plan]) == 0
+        plan = from_yaml(Path(self.plan).read_bytes(), "plan.yaml")
+        Path(self.json).write_text(to_json_plan(plan))
+        Path(self.graph).write_bytes(to_json(as_planned(plan)))
+
+    def check(self, plan: str, *words: str) -> int:
+        return main(["check", plan, "--snapshot", self.graph, *words])
+
+
+@pytest.fixture
+def open_(tmp_path: Path) -> Folder:
+    return Folder(tmp_path, OPEN)
+
+
+@pytest.mark.parametrize("command", ["plan", "remap"])
+def test_a_table_is_made_with_what_is_open(
+    command: str, open_: Folder, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    words = [command, open_.fleet, "-o", str(tmp_path / "made"), "--select", "MF812"]
+    assert main(words) == 0
+    said = capsys.readouterr().err
+    assert said.count("MF812") == 1
+    assert f"{tmp_path}/ekf.yaml:4:1: warning: {SAID} ({tmp_path}/bridge.yaml:1)?)" in said
+    assert main([*words, "--strict"]) == 1
+
+
+@pytest.mark.parametrize("of", ["plan", "json", "fleet"])
+def test_a_graph_as_planned_of_a_plan_that_does_not_close(
+    of: str, open_: Folder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert open_.check(vars(open_)[of]) == 0
+    out, err = capsys.readouterr()
+    assert SAID in out
+    assert "2 robots, 1 finding: as planned, but the plan does not close" in err
+    assert open_.check(vars(open_)[of], "--strict") == 1
+    assert open_.check(vars(open_)[of], "--strict", "--ignore", "MF812") == 0
+    assert "0 findings: as planned (" in capsys.readouterr().err
+
+
+def test_a_graph_that_is_not_as_planned_either(
+    open_: Folder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan = from_yaml(Path(open_.plan).read_bytes(), "plan.yaml")
+    fewer = as_planned(plan)
+    Path(open_.graph).write_bytes(to_json(fewer._replace(nodes=fewer.nodes[1:])))
+    assert open_.check(open_.plan) == 1
+    assert "not as planned, and the plan does not close" in capsys.readouterr().err
+
+
+def test_a_build_writes_the_same_plan_with_paths_from_the_fleet_file(
+    open_: Folder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir("/")
+    assert main(["build", open_.fleet, "-o", str(tmp_path / "out")]) == 0
+    (gap,) = from_yaml((tmp_path / "out" / "plan.yaml").read_bytes(), "plan.yaml").gaps
+    assert (gap.code, gap.level, gap.file, gap.line) == ("MF812", "warning", "ekf.yaml", 4)
+    assert gap.hint == "did you mean /imu/data (bridge.yaml:1)?"
+
+
+def test_what_was_open_before_is_counted_where_it_is_asked_for(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Nobody knows what sends a second odometry, and no other topic is meant: a driver may.
+    folder = Folder(tmp_path, f"{CLOSED}    twist0: visual/twist\n")
+    assert "MF814 no known node of robot1 sends /visual/twist" in capsys.readouterr().err
+    assert folder.check(folder.plan) == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert "0 findings: as planned (" in err
+    assert "note: 1 note about topics that no known node sends; --verbose shows them" in err
+    assert folder.check(folder.plan, "--fail-on", "note") == 1
+    out, err = capsys.readouterr()
+    assert "note: MF814 no known node of robot1 sends /visual/twist" in out
+    assert "1 finding: as planned (" in err
+
+
+def test_a_plan_without_open_ends_says_nothing_of_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = Folder(tmp_path, CLOSED)
+    assert "\nopen:" not in Path(folder.plan).read_text()
+    assert folder.check(folder.plan, "--fail-on", "note") == 0
+    assert "0 findings: as planned (" in capsys.readouterr().err
+
+
+ROW = 'code: MF812, level: warning, at: "ekf.yaml:4", message: x, hint: ""'
+
+
+@pytest.mark.parametrize(
+    ("rows", "told"),
+    [
+        ("{}", "open is not a list; leave it out for a plan without open ends"),
+        ("[MF812]", "open[0]: write a mapping of code, level, at, message, hint"),
+        ("[{code: MF812}]", "open[0]: write a mapping of code, level, at, message, hint"),
+        (f"[{{{ROW}, more: x}}]", "open[0]: write a mapping of code, level, at, message, hint"),
+        (f"[{{{ROW.replace('x,', '[],')}}}]", "open[0]: write texts"),
+        (f"[{{{ROW.replace('warning', 'bad')}}}]", "'bad' is not one of error, warning, note"),
+        (f"[{{{ROW.replace('ekf.yaml:4', 'ekf.yaml')}}}]", "at: write file:line, or nothing"),
+        (f"[{{{ROW.replace('ekf.yaml:4', ':4')}}}]", "at: write file:line, or nothing"),
+        (f"[{{{ROW.replace(':4', ':²')}}}]", "at: write file:line, or nothing"),
+    ],
+)
+def test_rows_that_cannot_be_meant(rows: str, told: str, tmp_path: Path) -> None:
+    text = Path(Folder(tmp_path, CLOSED).plan).read_text()
+    with pytest.raises(InputError) as error:
+        from_yaml(f"{text}open: {rows}\n".encode(), "plan.yaml")
+    assert str(error.value).startswith("plan.yaml: open")
+    assert told in str(error.value)
