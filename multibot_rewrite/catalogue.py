@@ -109,7 +109,14 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF8",
         "what a robot's files say of its nodes",
-        ("evidence.nodes", "evidence.launched", "fleets.closing", "fleets.closing_topics"),
+        (
+            "evidence.nodes",
+            "evidence.launched",
+            "fleets.launched_files",
+            "fleets.shared_nodes",
+            "fleets.closing",
+            "fleets.closing_topics",
+        ),
     ),
     Home(
         "MG1",
@@ -120,6 +127,7 @@ HOMES: tuple[Home, ...] = (
             "graph.rules.leaks",
             "graph.rules.type_and_qos",
             "graph.rules.publishers",
+            "graph.rules.demands",
         ),
         GRAPH_INTRO,
     ),
