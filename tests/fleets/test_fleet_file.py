@@ -24,10 +24,10 @@ from multibot_rewrite.fleets.fleet_file import (
     FleetFile,
     Pose,
     RobotSpec,
-    is_fleet,
     read_fleet,
     schema,
 )
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.model import InputError
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
