@@ -12,7 +12,13 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
-from multibot_rewrite.graph.expectation import Expectation, expect, named_frames, vacuous
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedEndpoint,
+    expect,
+    named_frames,
+    vacuous,
+)
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
@@ -224,3 +230,13 @@ def expected(fleet: Fleet) -> Expectation:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan._replace(release=fleet.table.release, gaps=fleet.gaps)
+
+
+def possible(fleet: Fleet) -> tuple[PlannedEndpoint, ...]:
+    """Every endpoint that its nodes may have, by parameter too."""
+    return tuple(
+        PlannedEndpoint(it.node, end.kind, end.role, it.name, end.type, end.name)
+        for it in fleet.table.names
+        for end in [it.endpoint]
+        if end.role
+    )

@@ -10,6 +10,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     topic NAME from NODES [QOS ...]     who may publish a topic, and what they offer
     topic NAME from one node            only one node at a time publishes it
     one of NODES                        one of these nodes runs
+    enclave PATH of NODE                the enclave of SROS2 that a running node is in
     transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
@@ -45,6 +46,7 @@ FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
 TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
+ENCLAVE = re.compile(r"enclave (/\S+) of (/\S+)")
 ONE_OF = re.compile(r"one of (.+)")
 ROBOT = re.compile(r"robot\d+")
 PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
@@ -80,7 +82,9 @@ def read_danger(text: str) -> tuple[Snapshot, Owners]:
 
 
 def _is_known(line: str) -> bool:
-    return any(it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, ONE_OF))
+    return any(
+        it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, ONE_OF, ENCLAVE)
+    )
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -136,8 +140,9 @@ def read_graph(lines: list[str]) -> Snapshot:
     ends = [words for words in _words(NODE, lines) if words[1]]
     alone = [node for node, role, *_ in _words(NODE, lines) if not role]
     nodes = [*alone, *dict.fromkeys(node for node, *_ in ends if node not in alone)]
+    enclaves = {node: path for path, node in _words(ENCLAVE, lines)}
     return Snapshot(
-        tuple(GraphNode(node, "") for node in nodes),
+        tuple(GraphNode(node, "", enclaves.get(node, "")) for node in nodes),
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
