@@ -89,7 +89,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF5",
         "bridges",
-        ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),
+        (
+            "fleets.bridge_checks",
+            "fleets.bridge_merge",
+            "fleets.bridge_outputs",
+            "fleets.bridge_types",
+        ),
     ),
     Home(
         "MF6",
@@ -105,7 +110,14 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF8",
         "what a robot's files say of its nodes",
-        ("evidence.nodes", "evidence.launched", "fleets.closing", "fleets.closing_topics"),
+        (
+            "evidence.nodes",
+            "evidence.launched",
+            "fleets.closing",
+            "fleets.closing_bridges",
+            "fleets.closing_controllers",
+            "fleets.closing_topics",
+        ),
     ),
     Home(
         "MG1",
