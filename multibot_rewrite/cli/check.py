@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
-from math import inf
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
@@ -19,11 +18,9 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
-from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
-from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -38,21 +35,22 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     plan = _plan(options)
     try:
-        return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
+        if options.watch:
+            return _watch(options, plan)
+        return conclude(options, plan, live.graph(options))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
 
 def _check_use(options: argparse.Namespace) -> None:
-    if options.watch and options.snapshot:
-        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
-        check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
+        check_target(options.output, [options.plan, *options.snapshot])
 
 
 def _plan(options: argparse.Namespace) -> Expectation:
@@ -145,17 +143,10 @@ def _sum_up(
     note(options, f"{counted}: {WORDS[verdict]}{but}{facts_of_release(plan.release)}")
 
 
-def _graph(options: argparse.Namespace) -> Snapshot:
-    if options.snapshot:
-        return read_snapshot(options.snapshot)
-    # Not only until the planned nodes are there: a twin or a leak may come after them.
-    return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
-
-
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
-    last = follow(plan, watch(Request(options.timeout or inf), live.environ(options.domain)))
+    last = follow(lambda graph: (plan, check(plan, graph)), live.watched(options))
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

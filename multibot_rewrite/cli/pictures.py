@@ -22,7 +22,7 @@ DRAWN: dict[str, Callable[[Scene], bytes]] = {
     "dot": to_dot,
 }
 # What a command may have read.
-_INPUTS = ("plan", "snapshot", "input")
+_INPUTS = ("plan", "input")
 
 
 def check(options: argparse.Namespace) -> None:
@@ -44,6 +44,7 @@ def _wanted(options: argparse.Namespace) -> Iterator[tuple[str, str]]:
     """Which pictures go where."""
     given = vars(options)
     inputs = [given[name] for name in _INPUTS if given.get(name)]
+    inputs += given.get("snapshot", ())
     for name in DRAWN:
         target = given.get(name)
         if target is None:

@@ -42,12 +42,16 @@ def make_context(
 ) -> Context:
     """The context of a description (not rewritten) and the nodes that its robots run; ``own`` as in
     ``CompanionNames``."""
-    nodes = {it.name: f"/{it.name}" if it.shared else full_name(it.name, naming) for it in facts}
+    nodes = {
+        it.name: f"/{it.name}" if it.shared else full_name(it.name, naming, it.apart)
+        for it in facts
+    }
     names = CompanionNames(declared, naming, TAG_SLOT, own)
     return Context(names, names._replace(robot=NAMESPACE_SLOT), nodes, distro)
 
 
-def full_name(node: str, naming: Naming) -> str:
-    """The full name that a robot's node runs under, with a slot for the robot."""
-    namespace, name = placed(NAMESPACE_SLOT, node, naming)
+def full_name(node: str, naming: Naming, apart: bool = False) -> str:
+    """The full name that a robot's node runs under, with a slot for the robot; ``apart`` as in
+    ``NodeFacts``."""
+    namespace, name = placed(NAMESPACE_SLOT, node, naming, apart)
     return f"{namespace.rstrip('/')}/{name}"

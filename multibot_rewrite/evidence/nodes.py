@@ -50,8 +50,8 @@ UNKNOWN_TYPE = declare(
     "MF802",
     "controller-type-not-known",
     WARNING,
-    what="A controller is of a type that is not known, so its topics, frames and interfaces are not "
-    "in the plan.",
+    what="A controller is of a type that is not known, or that the release lacks, so its topics, "
+    "frames and interfaces are not in the plan.",
     why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
     fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
     bad="""\
@@ -98,7 +98,8 @@ def nodes_of(
         node = _added(it, known, either.get(it.name, ""))
         doubtful = not it.manager and (it.place.file in of_stack or sent & {*children_of(node)})
         nodes.append(node._replace(sends=()) if doubtful else node)
-    findings = sorted((*left, *_unknown(given)), key=lambda it: (it.file, it.line))
+    doubtful_types = (*_unknown(given), *_of_another_release(given, known))
+    findings = sorted((*left, *doubtful_types), key=lambda it: (it.file, it.line))
     return RobotNodes(tuple(nodes), tuple(findings))
 
 
@@ -182,6 +183,18 @@ def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
             )
             hint = f"{described}; {taken}{_guess(it)}"
             hint = f"did you mean {it.like}?" if it.like else hint
+            yield UNKNOWN_TYPE.finding(
+                message, hint, file=it.place.file, line=it.place.line, column=1
+            )
+
+
+def _of_another_release(
+    given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+) -> Iterator[Finding]:
+    for it in given:
+        if it.manager and it.known and not it.unknown_type and it.known not in known:
+            message = f"controller {it.name} is of type {it.type}, which this release lacks"
+            hint = "the manager cannot load it; use a type of the release, or name the right distro"
             yield UNKNOWN_TYPE.finding(
                 message, hint, file=it.place.file, line=it.place.line, column=1
             )

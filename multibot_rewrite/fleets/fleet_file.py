@@ -17,7 +17,7 @@ from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, nodl_files, with_paths
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
+from multibot_rewrite.naming import LAYOUTS, NAMESPACE, Naming, Policy, make_naming
 from multibot_rewrite.releases import RELEASES, chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 
@@ -81,7 +81,8 @@ class RobotSpec(NamedTuple):
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary. ``installed`` is where the results are when they are used, empty for where
+    parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
+    ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
     file: str
@@ -95,6 +96,7 @@ class FleetFile(NamedTuple):
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
+    shared_nodes: tuple[str, ...] = ()
 
 
 class _Read(NamedTuple):
@@ -135,6 +137,7 @@ def read_fleet(path: str, distro: str, environment: Mapping[str, str]) -> FleetF
         vocabulary,
         robots,
         tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
+        tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
     )
 
 
@@ -226,7 +229,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         description,
         own.get("srdf", data.get("srdf", "")),
         _arguments(data, own, description, place),
-        own.get("namespace", name).strip("/"),
+        _namespace(own, naming, place),
         _tag(own, naming.affix, place),
         own.get("model", name),
         _pose(own, place),
@@ -304,6 +307,15 @@ def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
 def _argument(value: object) -> str:
     """The text for xacro: YAML's true is xacro's true."""
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _namespace(own: Mapping[str, Any], naming: Naming, place: str) -> str:
+    namespace = str(own.get("namespace", own["name"])).strip("/")
+    if "/" in namespace and naming.topics != NAMESPACE:
+        what = f"{own['name']!r} has the namespace {namespace!r}, but here names get no namespace"
+        hint = "write one word, or take a layout with namespaces"
+        raise InputError(f"{place}: {what}; {hint}")
+    return namespace
 
 
 def _tag(own: Mapping[str, Any], side: str, place: str) -> str:

@@ -21,6 +21,7 @@ from multibot_rewrite.fleets.robot_nodes import (
     node_sources,
     robot_nodes,
 )
+from multibot_rewrite.fleets.shared_nodes import check_shared
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
 
@@ -51,6 +52,7 @@ def plan_fleet(
         robots = rewrite_robots(file.robots, read)
         specs = {node_sources(it): it for it in reversed(file.robots)}
         evidence = {key: robot_nodes(spec, file) for key, spec in specs.items()}
+        check_shared(file, {node.name: node for it in evidence.values() for node in it.nodes})
         fleet = _fleet(file, robots, naming, evidence)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 

@@ -14,6 +14,7 @@ from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.output_file import yaml_of
+from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -44,7 +45,9 @@ def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotEvidence:
     known, stack = _known(own, file), stack_nodes(spec, file)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)
-    return RobotEvidence(given, known, *nodes_with(launched, stack, given, known))
+    nodes, findings = nodes_with(launched, stack, given, known)
+    marked, notes = apart(nodes, file)
+    return RobotEvidence(given, known, marked, (*findings, *notes))
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

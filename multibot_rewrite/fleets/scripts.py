@@ -36,6 +36,7 @@ from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
 from multibot_rewrite.remap.records import TOPIC
+from multibot_rewrite.remap.stacks import is_apart
 from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.remap.yaml_with_lines import unknown
 from multibot_rewrite.sources.read import read_file
@@ -200,7 +201,8 @@ class LoadedRobot:
         return next((dict(it.values) for it in own), {})
 
     def _placed(self, node: str) -> str:
-        namespace, name = placed(self._graph, node, self._robot.topics.naming)
+        apart = is_apart(node, self._fleet.planned.table.release)
+        namespace, name = placed(self._graph, node, self._robot.topics.naming, apart)
         return f"{namespace.rstrip('/')}/{name}"
 
     def _read(self, file: str) -> YamlText:

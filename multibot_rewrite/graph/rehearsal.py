@@ -28,6 +28,7 @@ from multibot_rewrite.remap.records import (
     SUBSCRIBES,
     TOPIC,
     EndpointName,
+    NodeTable,
     Table,
 )
 from multibot_rewrite.remap.started import ros_arguments
@@ -83,18 +84,30 @@ def stub_nodes(
     for name in table.names:
         if not name.endpoint.when:
             names.setdefault(name.node, []).append(name)
+    spaces = {(it.robot, it.node): it.namespace for it in table.nodes}
     for it in running_nodes(table, left_out):
         node, own = it.node, names.get(it.node.full_name, [])
+        space, other = _as_started(node, spaces.get((node.robot, node.home.host)))
         yield (
             node.robot,
             StubNode(
                 node.code_name,
-                tuple(ros_arguments(node.namespace, node.other_name, _rules(it, own))),
+                tuple(ros_arguments(space, other, _rules(it, own))),
                 tuple(ros_arguments(it.process_namespace, "", it.process_rules)),
                 tuple(dict.fromkeys(_stub_endpoint(name, types) for name in own)),
                 tuple(edges.get((node.robot, node.node), ())),
             ),
         )
+
+
+def _as_started(node: NodeTable, host: str | None) -> tuple[str, str]:
+    """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
+
+    Where the code of a host places the node itself (a costmap), it asks nobody for either.
+    """
+    if host is None or not node.home.apart:
+        return node.namespace, node.other_name
+    return f"{host.rstrip('/')}/{node.node.rpartition('/')[0]}", ""
 
 
 def _rules(running: RunningNode, names: Iterable[EndpointName]) -> tuple[Pair, ...]:

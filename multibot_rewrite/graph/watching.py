@@ -54,7 +54,14 @@ def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
 
 def next_state(plan: Expectation, graph: Snapshot, before: WatchState | None) -> WatchState:
     """Compare the graph with the plan, and with the state before."""
-    found = tuple(check(plan, graph))
+    return with_found(plan, graph, check(plan, graph), before)
+
+
+def with_found(
+    plan: Expectation, graph: Snapshot, findings: Iterable[Finding], before: WatchState | None
+) -> WatchState:
+    """The state in which these are the findings."""
+    found = tuple(findings)
     old = before.findings if before else ()
     robots = tuple(progress(plan, graph))
     absent = any(finding.code in ABSENCE for finding in found)

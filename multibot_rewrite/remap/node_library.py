@@ -44,7 +44,7 @@ from multibot_rewrite.rosnames import check_node_name
 NODE_WORDS = (
     *("package", "host", "plugin", "shared", "note", "when"),
     *("with", "frames", "sends", "ids", "claims", "fixed"),
-    "nodl",
+    *("nodl", "apart"),
 )
 SENT_KEYS = ("child", "if")
 CLAIM_KINDS = ("command", "state")
@@ -188,6 +188,7 @@ def _node(name: str, item: YamlItem, parts: Mapping[str, tuple[Endpoint, ...]]) 
         releases=releases_of(keys),
         source=source_of(keys),
         plugin=word_of(keys, "plugin"),
+        apart=flag_of(keys, "apart"),
     )
 
 

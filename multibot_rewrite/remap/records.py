@@ -97,7 +97,8 @@ class NodeFacts(NamedTuple):
     ``source`` as in ``Endpoint``. ``nodl`` are further names of its NoDL document, such as its
     executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
     ``container`` is the node whose process it is loaded into as a component, ``plugin`` the plugin of
-    the simulator that makes it.
+    the simulator that makes it. ``apart`` is true for a node that keeps its name in every layout and
+    runs in its robot's namespace: its code sets its name, or that of a node below it.
     """
 
     name: str
@@ -120,18 +121,20 @@ class NodeFacts(NamedTuple):
     interface: str = ""
     container: str = ""
     plugin: str = ""
+    apart: bool = False
 
 
 class Home(NamedTuple):
     """Where a node runs if not in a process of its own: ``host``, ``container`` and ``plugin`` as in
-    ``NodeFacts``. ``written`` is true for a plugin of a description, ``process_wide`` if its rules
-    hold for its whole process."""
+    ``NodeFacts``, and ``apart``. ``written`` is true for a plugin of a description, ``process_wide``
+    if its rules hold for its whole process."""
 
     host: str = ""
     container: str = ""
     plugin: str = ""
     written: bool = False
     process_wide: bool = False
+    apart: bool = False
 
 
 class NodeRule(NamedTuple):

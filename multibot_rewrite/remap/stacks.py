@@ -1,5 +1,5 @@
-"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``stacks.yaml`` and files
-of users.
+"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``arms.yaml``,
+``stacks.yaml`` and files of users.
 
 ``python -m multibot_rewrite.remap.stacks`` prints their reference page.
 """
@@ -16,7 +16,7 @@ from multibot_rewrite.remap.by_release import in_release
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
 
-BUILT_IN = ("nodes.yaml", "controllers.yaml", "stacks.yaml")
+BUILT_IN = ("nodes.yaml", "controllers.yaml", "arms.yaml", "stacks.yaml")
 
 
 def load_nodes(release: str) -> dict[str, NodeFacts]:
@@ -52,6 +52,26 @@ def user_stack(path: str, release: str) -> NodeLibrary:
     except UnicodeDecodeError:
         raise UsageError(f"{path}: cannot be read: it is not UTF-8; save it as UTF-8") from None
     return in_release(extend(every_release(), text, path), release)
+
+
+def is_apart(node: str, release: str) -> bool:
+    """Does this node keep its name in every layout (``NodeFacts.apart``), as far as built-in nodes say?
+
+    What is in the namespace of such a node, as the helpers of costmaps, goes with it.
+    """
+    above = node.rpartition("/")[0]
+    known = apart_nodes(release)
+    return any(_ends(node, it) or _ends(above, it.rpartition("/")[0]) for it in known)
+
+
+def _ends(node: str, with_: str) -> bool:
+    return bool(with_) and f"/{node}".endswith(f"/{with_}")
+
+
+@lru_cache
+def apart_nodes(release: str) -> frozenset[str]:
+    """The built-in nodes that keep their names in every layout."""
+    return frozenset(it.name for it in built_in(release).nodes.values() if it.apart)
 
 
 @lru_cache

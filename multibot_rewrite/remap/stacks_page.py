@@ -12,8 +12,8 @@ HEAD = """\
 # Nodes and stacks
 
 The topics, services and actions of known nodes, and the stacks of nodes that are started together.
-Generated from `nodes.yaml`, `controllers.yaml` and `stacks.yaml` of `multibot_rewrite/remap/` by
-`python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
+Generated from `nodes.yaml`, `controllers.yaml`, `arms.yaml` and `stacks.yaml` of
+`multibot_rewrite/remap/` by `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
 
 Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;
 the stack `no_robot_state_publisher` leaves it out, for robots whose tf comes from something else.
@@ -70,6 +70,11 @@ MR105 names rules that do not arrive.
 | helper node, as of a tf listener | its process | rules of the process or container |
 | of a plugin in the description | the plugin's tag | `<ros><remapping>` |
 | controller of ros2_control | see below | `SPAWNERS`, `robot.spawner()`, `commands.md` |
+
+Nav2's code sets the name of a costmap (`local_costmap`) and puts it below the namespace of its server;
+no rule changes that. So in layout postfix these servers are in their robot's namespace and keep their
+names (`/robot1/controller_server`, `/robot1/local_costmap/local_costmap`); their topics are renamed as
+all others. If the code of your own node sets its name, give it `apart: true`, and its maker, too.
 
 A costmap of a component has the rules of the component from Nav2 1.5 on, those of the container before.
 On Humble gz_ros2_control starts ROS with the rules of the first robot's plugin, and all its nodes in
@@ -132,6 +137,7 @@ def _reach(node: NodeFacts) -> Iterator[str]:
 def _node(node: NodeFacts, library: NodeLibrary) -> str:
     facts = [f"package {node.package}"] * bool(node.package)
     facts += [f"in the process of {node.host}"] * bool(node.host)
+    facts += ["keeps its name, in its robot's namespace, in every layout"] * node.apart
     facts += (
         ["one for all robots"] * node.shared + _in(node.releases) + [node.note] * bool(node.note)
     )

@@ -7,6 +7,7 @@ by resolving every name with its rules as rcl does (``rosnames``), not by trusti
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
@@ -15,6 +16,7 @@ from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,
     TOPIC,
+    Endpoint,
     EndpointName,
     Home,
     NodeFacts,
@@ -23,14 +25,26 @@ from multibot_rewrite.remap.records import (
     Pairs,
     Table,
 )
-from multibot_rewrite.remap.table_checks import PROBE, collisions, unreachable, useless_rules
+from multibot_rewrite.remap.table_checks import (
+    PROBE,
+    SHARED_NODE,
+    asked_for,
+    collisions,
+    shared_nodes,
+    unreachable,
+    useless_rules,
+)
 from multibot_rewrite.remap.targets import expanded, placed, target_of
 from multibot_rewrite.remap.way_checks import NOT_TAKEN, not_taken
 from multibot_rewrite.remap.ways import MANAGER
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 SAME = "all robots would share this name otherwise"
+TOGETHER = "all robots share this name; each would have its own otherwise"
 NOTHING: Mapping[str, Pairs] = {}
+# The full name of a robot's node, by its name in the stack.
+Places: TypeAlias = Mapping[str, str]
+NOWHERE: Places = {}
 
 
 def build_table(
@@ -59,8 +73,10 @@ def _build(
 ) -> Table:
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's table differs only in the robot's name.
-    others = frozenset(node.name for node in nodes if not node.shared)
-    own = [(node, node_table(PROBE, node, naming, others)) for node in nodes if not node.shared]
+    others, once = places_of(PROBE, nodes, naming), frozenset(node.name for node, _ in shared)
+    own = [
+        (node, node_table(PROBE, node, naming, others, once)) for node in nodes if not node.shared
+    ]
     meant = list(names_of(own))
     apart = {robot: _without_stand_ins(pairs, nodes) for robot, pairs in plugins.items()}
     names = {
@@ -75,10 +91,12 @@ def _build(
     for robot in robots:
         controllers = _given_by_plugins(own, robot, release)
         problems += useless_rules(plugins.get(robot, ()), controllers)
+    twin = _copies(own, PROBE) if len(robots) == 1 else ()
     kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]
     for robot in robots:
         tables += [*_copies(own, robot), *(table for _, table in plugins.get(robot, ()))]
+    problems += shared_nodes((*tables, *twin))
     return Table(naming.layout.name, tuple(tables), tuple(kept), tuple(problems), release)
 
 
@@ -115,8 +133,10 @@ def joined(table: Table, other: Table, naming: Naming) -> Table:
     nodes = tuple(dict.fromkeys((*table.nodes, *other.nodes)))
     made = Table(table.layout, nodes, names, (), table.release)
     # The first robot of all is another one than the first of each.
-    each = (it for it in (*table.problems, *other.problems) if it.code != NOT_TAKEN.code)
-    return made._replace(problems=tuple(dict.fromkeys((*each, *met, *not_taken(made)))))
+    whole = (NOT_TAKEN.code, SHARED_NODE.code)
+    each = (it for it in (*table.problems, *other.problems) if it.code not in whole)
+    found = (*each, *met, *shared_nodes(nodes), *not_taken(made))
+    return made._replace(problems=tuple(dict.fromkeys(found)))
 
 
 def _renamed(names: Iterable[EndpointName], robot: str) -> list[EndpointName]:
@@ -132,7 +152,12 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
     for _, (_, node, namespace, name, rules, home) in pairs:
         own = tuple(
             NodeRule(
-                robot, node, rule.source, rule.target.replace(PROBE, robot), rule.kind, rule.why
+                robot,
+                node,
+                rule.source.replace(PROBE, robot),
+                rule.target.replace(PROBE, robot),
+                rule.kind,
+                rule.why,
             )
             for rule in rules
         )
@@ -142,42 +167,94 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
 
 
 def node_table(
-    robot: str, node: NodeFacts, naming: Naming, others: frozenset[str] = frozenset()
+    robot: str,
+    node: NodeFacts,
+    naming: Naming,
+    others: Places = NOWHERE,
+    once: frozenset[str] = frozenset(),
 ) -> NodeTable:
     """Namespace, name and rules of one robot's node; a node for all robots stays as it is.
 
-    ``others`` are the robot's nodes: a name below one of them is renamed with it.
+    ``others`` are the places of the robot's nodes: a name below one of them is renamed with it.
+    ``once`` are the nodes for all robots: a name below one of them is that node's own.
     """
     if node.shared:
         above, _, own = node.name.strip("/").rpartition("/")
         return NodeTable("", node.name, f"/{above}", own, ())
-    namespace, name = placed(robot, node.name, naming)
-    # In a node's own namespace a relative target would stay below it.
-    root = f"/{robot}/" if namespace.count("/") > 1 else ""
+    namespace, name = placed(robot, node.name, naming, node.apart)
+    place = _Place(robot, naming, namespace, _root(namespace, robot, node, naming), others, once)
     rules: dict[str, NodeRule] = {}
     for endpoint in (it for it in node.endpoints if not it.fixed):
-        meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
-        for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
-            moved = wanted if wanted != source else ""
-            target = _below(wanted, robot, naming, others)
-            target = target or target_of(wanted, kind, robot, naming) or moved
-            if target:
-                target = f"{root}{target}" if root and naming.topics == NAMESPACE else target
-                why = f"{SAME}; the stack calls it {wanted}" if moved else SAME
-                match = expand(source, namespace, name)
-                rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
-    home = Home(node.host, node.container, node.plugin)
+        for source, target, moved in _targets(endpoint, place):
+            why = f"{SAME}; the stack calls it {moved}" if moved else SAME
+            why = TOGETHER if target == f"/{source}" else why
+            match = expand(source, namespace, name)
+            rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
+    home = Home(node.host, node.container, node.plugin, apart=node.apart)
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()), home)
 
 
-def _below(name: str, robot: str, naming: Naming, nodes: frozenset[str]) -> str:
+class _Place(NamedTuple):
+    """Where a node runs; ``root`` is what a relative target needs before it, since it would stay in the
+    node's own namespace."""
+
+    robot: str
+    naming: Naming
+    namespace: str
+    root: str
+    others: Places
+    once: frozenset[str]
+
+
+def _targets(endpoint: Endpoint, place: _Place) -> Iterator[tuple[str, str, str]]:
+    """The names of an endpoint that need a rule, its target, and what the stack calls them if that is
+    another name."""
+    robot, naming, namespace, root, others, once = place
+    meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
+    for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
+        moved = wanted if wanted != source else ""
+        if wanted.partition("/")[0] in once:
+            target = f"/{wanted}" if naming.topics == NAMESPACE else moved
+        else:
+            target = _below(wanted, naming, others)
+            target = target or target_of(wanted, kind, robot, naming) or moved
+            target = target or _shared(wanted, place)
+        if target:
+            yield source, f"{'' if target[0] == '/' else root}{target}", moved
+        # What a node joins with the namespace above is no name of its own namespace.
+        if target and naming.topics != NAMESPACE:
+            for joined in asked_for(source, endpoint, namespace)[1:]:
+                yield joined, f"/{target.lstrip('/')}", moved
+
+
+def _shared(name: str, place: _Place) -> str:
+    """A name that all robots share, for a node that would look for it in its robot's namespace."""
+    inside = place.root and place.naming.topics != NAMESPACE
+    return name if inside and name[0] not in "~/" else ""
+
+
+def _root(namespace: str, robot: str, node: NodeFacts, naming: Naming) -> str:
+    if naming.topics == NAMESPACE:
+        return f"/{robot}/" if namespace.count("/") > 1 else ""
+    above = node.name.strip("/").rpartition("/")[0]
+    return f"/{above}/".replace("//", "/") if node.apart else ""
+
+
+def places_of(robot: str, nodes: Iterable[NodeFacts], naming: Naming) -> Places:
+    """The full names of a robot's nodes, by their names in the stack."""
+    found = {it.name: placed(robot, it.name, naming, it.apart) for it in nodes if not it.shared}
+    return {node: f"{above.rstrip('/')}/{name}" for node, (above, name) in found.items()}
+
+
+def _below(name: str, naming: Naming, others: Places) -> str:
     """The target for a name below another node of the robot, such as a private service of it, if that
     node is renamed; else empty."""
     head, slash, rest = name.strip("/").partition("/")
-    if naming.topics == NAMESPACE or not slash or head not in nodes:
+    place = others.get(head, "")
+    if naming.topics == NAMESPACE or not slash or not place:
         return ""
-    lead = "/" if name.startswith("/") else ""
-    return f"{lead}{placed(robot, head, naming)[1]}/{rest}"
+    relative = not name.startswith("/") and place.count("/") == 1
+    return f"{place.lstrip('/') if relative else place}/{rest}"
 
 
 def parsed(rules: Iterable[NodeRule]) -> tuple[RemapRule, ...]:

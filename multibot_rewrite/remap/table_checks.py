@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
@@ -129,6 +129,51 @@ def collisions(names: dict[str, list[EndpointName]], naming: Naming) -> Iterator
         yield SHARED_NAME.finding(message, hint, **place)
 
 
+SHARED_NODE = declare(
+    "MR106",
+    "robots-share-node",
+    ERROR,
+    what="A node of two robots would have the same full name.",
+    why="Parameters and lifecycle services are found by that name, so a request reaches either robot's "
+    "node, and the graph does not tell whose topics are whose.",
+    fix="Choose other names or another separator. Where the code of a node sets its name, give it "
+    "apart: true in the file of nodes, or choose a layout with namespaces, such as tf-per-robot.",
+    bad="""\
+nodes:
+  # both are /driver_left_robot1: driver_left of robot1, driver of left_robot1
+  driver_left:
+    package: acme_driver
+  driver:
+    package: acme_driver
+""",
+    good="""\
+nodes:
+  rear_driver:
+    package: acme_driver
+  driver:
+    package: acme_driver
+""",
+    line=5,
+    formats=("remap",),
+    options={"robots": ("robot1", "left_robot1"), "layout": "postfix", "affix": "postfix"},
+)
+
+
+def shared_nodes(tables: Iterable[NodeTable]) -> Iterator[Finding]:
+    """Full names that nodes of two robots would have; descriptions have a judge of their own."""
+    first: dict[str, NodeTable] = {}
+    reported = set()
+    for table in (it for it in tables if it.robot and not it.home.written):
+        full = table.full_name
+        other = first.setdefault(full, table)
+        if other.robot == table.robot or full in reported:
+            continue
+        reported.add(full)
+        message = f"two robots would share the node {full}: {other.node} and {table.node}"
+        hint = "choose other names or another separator, or a layout with namespaces"
+        yield SHARED_NODE.finding(message, hint, robot=other.robot, node=table.node)
+
+
 RULE_WITHOUT_NAME = declare(
     "MR103",
     "rule-matches-no-name",
@@ -245,8 +290,19 @@ def _names(node: NodeFacts, table: NodeTable) -> _Names:
     bare = bind(table.name, table.namespace, ())
     # What is known of a controller manager only by its rules proves none of them.
     known = [it for it in node.endpoints if it.role or not table.home.process_wide]
-    asked = {pair for endpoint in known for pair in expanded(endpoint)}
+    asked = {
+        (kind, name)
+        for endpoint in known
+        for kind, source in expanded(endpoint)
+        for name in asked_for(source, endpoint, table.namespace)
+    }
     return _Names(bare, frozenset((kind, resolve_bound(name, kind, bare)) for kind, name in asked))
+
+
+def asked_for(name: str, endpoint: Endpoint, namespace: str) -> tuple[str, ...]:
+    """A name in a node's code, and what its node makes of it in the namespace above its own."""
+    above = namespace.rpartition("/")[0]
+    return (name, f"{above}/{name.lstrip('/')}") if endpoint.above and above else (name,)
 
 
 def _matches(rule: NodeRule, names: _Names) -> bool:

@@ -19,11 +19,11 @@ ACTION_PARTS = (
 TRANSPORTS = ("compressed", "compressedDepth", "theora", "zstd")
 
 
-def placed(robot: str, node: str, naming: Naming) -> tuple[str, str]:
-    """The namespace and name that a robot's node runs under."""
+def placed(robot: str, node: str, naming: Naming, apart: bool = False) -> tuple[str, str]:
+    """The namespace and name that a robot's node runs under; ``apart`` as in ``NodeFacts``."""
     # A costmap is a node in its own namespace, whatever its robot.
     above, _, name = node.strip("/").rpartition("/")
-    if naming.topics == NAMESPACE:
+    if apart or naming.topics == NAMESPACE:
         return "/" + "/".join(filter(None, [robot, above])), name
     return f"/{above}", spelled(naming, robot, "node", name)
 
@@ -48,11 +48,15 @@ def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
 def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
     """The target of the rule for ``name``; empty if no rule is needed.
 
-    With namespaces targets are relative, so the rule is the same for every robot.
+    With namespaces targets are relative, so the rule is the same for every robot; a relative name
+    that all robots share would be each robot's own without a rule.
     """
     bare = name.strip("/")
-    if name.startswith("~") or bare in naming.shared_topics:
+    if name.startswith("~"):
         return ""
+    if bare in naming.shared_topics:
+        below = naming.topics == NAMESPACE and not name.startswith("/")
+        return f"/{bare}" if below else ""
     if naming.topics == NAMESPACE:
         return bare if name.startswith("/") else ""
     base, rest = _family(name)

@@ -57,12 +57,16 @@ def value(node: str, line: str, policy: tuple[str, str] = L2, distro: str = "jaz
         (L2, "planner_server", "/robot1/planner_server"),
         (L2, "/planner_server", "/robot1/planner_server"),
         (L1, "other", "/robot1/other"),
-        (L4, "planner_server", "/planner_server_robot1"),
+        (L4, "planner_server", "/robot1/planner_server"),
+        (L4, "smoother_server", "/smoother_server_robot1"),
+        (L4, "front/local_costmap/local_costmap", "/robot1/front/local_costmap/local_costmap"),
         (L4, "/other", "/other_robot1"),
         (L2, "/**", "/**"),
         (L4, "/**", "/**"),
         (L2, "/**/planner_server", "/**/planner_server"),
-        (L4, "/**/planner_server", "/**/planner_server_robot1"),
+        (L4, "/**/planner_server", "/**/planner_server"),
+        (L4, "/**/local_costmap", "/**/local_costmap"),
+        (L4, "/**/smoother_server", "/**/smoother_server_robot1"),
         (L2, "front/driver", "/robot1/front/driver"),
         (L4, "front/driver", "/front/driver_robot1"),
         (L2, "<robot_namespace>/amcl_x", "<robot_namespace>/amcl_x"),
@@ -80,13 +84,16 @@ def test_a_section_is_put_under_the_nodes_full_name(
     ("policy", "first", "second"),
     [
         (L2, "/robot1/local_costmap", "local_costmap"),
-        (L4, "/local_costmap", "local_costmap_robot1"),
+        (L4, "/robot1/local_costmap", "local_costmap"),
+        (L4, "/front", "front_robot1"),
     ],
 )
 def test_nested_sections_change_at_their_first_key_or_at_their_last(
     policy: tuple[str, str], first: str, second: str
 ) -> None:
-    source = "local_costmap:\n  local_costmap:\n    ros__parameters:\n      robot_base_frame: map\n"
+    """A costmap keeps its name: its code sets it (nav2_costmap_2d costmap_2d_ros.cpp)."""
+    key = "front" if "front" in first else "local_costmap"
+    source = f"{key}:\n  {key}:\n    ros__parameters:\n      robot_base_frame: map\n"
     lines = made(source, policy)[0].splitlines()
     assert lines[:2] == [f"{first}:", f"  {second}:"]
 
@@ -307,7 +314,7 @@ def test_a_quoted_word_is_a_name_and_stays_quoted(word: str) -> None:
         (L1, "humble", "/robot1/scan"),
         (L2, "kilted", "scan"),
         (L4, "jazzy", "/scan/robot1"),
-        (L4, "kilted", "scan/robot1"),
+        (L4, "kilted", "/scan/robot1"),
     ],
 )
 def test_topics_of_costmap_layers_leave_the_costmaps_namespace(
@@ -350,6 +357,35 @@ def test_a_source_without_a_topic_is_reported(
 def test_the_mask_topic_is_resolved_by_whoever_reads_it() -> None:
     line = "mask_topic: keepout_mask"
     assert value("costmap_filter_info_server", line) == "mask_topic: /robot1/keepout_mask"
+
+
+@pytest.mark.parametrize("distro", ["jazzy", "kilted", "lyrical"])
+def test_a_costmap_reads_the_mask_topic_in_the_namespace_of_its_server(distro: str) -> None:
+    """Layout postfix: layer.cpp joins a relative name with the namespace above the costmap."""
+    source = section("costmap_filter_info_server", "mask_topic: keepout_mask")
+    assert "mask_topic: /keepout_mask/robot1" in made(source, L4, distro)[0]
+
+
+@pytest.mark.parametrize(
+    ("line", "new"),
+    [
+        ("odom_topic: wheel_odom", "odom_topic: /wheel_odom/robot1"),
+        ("odom_topic: /wheel_odom", "odom_topic: /wheel_odom/robot1"),
+    ],
+)
+def test_topics_of_a_server_in_its_robots_namespace_are_full_names(line: str, new: str) -> None:
+    assert new in made(section("controller_server", line), L4)[0]
+    assert (
+        "odom_topic: wheel_odom/robot1"
+        in made(section("bt_navigator", "odom_topic: wheel_odom"), L4)[0]
+    )
+
+
+def test_a_lifecycle_manager_asks_by_the_name_that_is_the_id_of_the_bond() -> None:
+    """lifecycle_manager.cpp makes a Bond with the name, the node with its get_name()."""
+    line = "node_names: [controller_server, smoother_server]"
+    text, _ = made(section("lifecycle_manager_navigation", line), L4)
+    assert "node_names: [controller_server, smoother_server_robot1]" in text
 
 
 def test_a_topic_that_a_rule_moves_is_not_moved_twice() -> None:

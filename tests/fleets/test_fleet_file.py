@@ -225,9 +225,13 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: my-robot}\n",
         "2: robots[0].name: 'my-robot' is not valid; write letters, digits and underscores",
     ),
-    "namespace-of-two": (
-        "robots:\n  - {name: a, namespace: b/c}\n",
-        "2: robots[0].namespace: 'b/c' is not valid; write one word",
+    "namespace-doubled-slash": (
+        "robots:\n  - {name: a, namespace: b//c}\n",
+        "2: robots[0].namespace: 'b//c' is not valid; write words of letters",
+    ),
+    "namespace-digit": (
+        "robots:\n  - {name: a, namespace: b/1}\n",
+        "2: robots[0].namespace: 'b/1' is not valid; write words of letters",
     ),
     "model-slash": ("robots:\n  - {name: a, model: a/b}\n", "2: robots[0].model: 'a/b' is not"),
     "model-date": (

@@ -9,6 +9,7 @@ from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.rename_map import is_declared, spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT
 from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, NOT_PLAIN, PREFIX, spelled
+from multibot_rewrite.remap.stacks import is_apart
 
 Speller = Callable[[Context, str], str]
 _WORD = re.compile(r"[\w./-]+")
@@ -84,10 +85,18 @@ def node(context: Context, value: str) -> str:
     place = context.nodes.get(value.strip("/"), "")
     if place and NAMESPACE_SLOT not in place:
         return place if context.topics.naming.topics == NAMESPACE else value
+    # A relative name is also the id of Nav2's bonds, so it stays; the remap rules lead to the node.
+    if _is_apart(context, value.strip("/")) and context.topics.naming.topics != NAMESPACE:
+        return f"/{NAMESPACE_SLOT}{value}" if value.startswith("/") else value
     above, slash, name = value.rpartition("/")
     if slash and not above and context.topics.naming.topics == NAMESPACE and is_plain(value):
         return f"/{NAMESPACE_SLOT}{value}"
     return above + slash + controller(context, name)
+
+
+def _is_apart(context: Context, value: str) -> bool:
+    place = context.nodes.get(value, "")
+    return place.startswith(f"/{NAMESPACE_SLOT}/") if place else is_apart(value, context.distro)
 
 
 def namespace(context: Context, value: str) -> str:

@@ -16,7 +16,7 @@ from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.template import NAMESPACE_SLOT
 from multibot_rewrite.naming import NAMESPACE
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
-from multibot_rewrite.remap.stacks import built_in
+from multibot_rewrite.remap.stacks import built_in, is_apart
 from multibot_rewrite.remap.table import node_table, parsed
 from multibot_rewrite.remap.targets import placed, target_of
 from multibot_rewrite.rosnames import bind, check_topic_name, expand, resolve_bound
@@ -59,7 +59,9 @@ def spell_topic(
     """What a topic or service named by a parameter of ``node`` (the stack's name) becomes."""
     if not is_plain(value) or value.startswith("~") or check_topic_name(value):
         return TopicText(value)
-    text = _spelled(context, kind, value, reach == IN_FULL)
+    outside = _is_outside(context, node, reach, facts)
+    meant = _in_full(node, value, reach) if outside else value
+    text = _spelled(context, kind, meant, reach == IN_FULL)
     made_absolute = reach == IN_FULL and not value.startswith("/")
     ruled = _ruled_node(facts.get(node), value, context) if node in context.nodes else None
     if not ruled:
@@ -67,6 +69,22 @@ def spell_topic(
     return _ruled_text(context, kind, (text, value), reach, ruled)._replace(
         made_absolute=made_absolute
     )
+
+
+def _is_outside(context: Context, node: str, reach: str, facts: Facts) -> bool:
+    """Is a name resolved in another namespace than the layout's, so that only a full name is right?
+
+    A name that goes to a costmap is (``FROM_PARENT``), and those of nodes that stand apart.
+    """
+    if reach == FROM_PARENT:
+        return context.topics.naming.topics != NAMESPACE
+    apart = facts[node].apart if node in facts else is_apart(node, context.distro)
+    return apart and context.topics.naming.topics != NAMESPACE
+
+
+def _in_full(node: str, value: str, reach: str) -> str:
+    """The full name that a value means for a single robot."""
+    return expand(value, f"/{node.rpartition('/')[0]}" if reach == FROM_NODE else "/", "")
 
 
 def _spelled(context: Context, kind: str, value: str, absolute: bool) -> str:
@@ -85,8 +103,8 @@ def _below_node(context: Context, value: str) -> str:
     place = context.nodes.get(head, "")
     if not slash or not place or context.topics.naming.topics == NAMESPACE:
         return ""
-    lead = "/" if value.startswith("/") else ""
-    return f"{lead}{place.strip('/')}/{rest}"
+    relative = not value.startswith("/") and place.count("/") == 1
+    return f"{place.lstrip('/') if relative else place}/{rest}"
 
 
 def _ruled_node(node: NodeFacts | None, value: str, context: Context) -> NodeFacts | None:
@@ -112,10 +130,11 @@ def _ruled_text(
 ) -> TopicText:
     """The new name if it resolves correctly, else the old one if a rule moves that."""
     naming = context.topics.naming
-    table = node_table(NAMESPACE_SLOT, node, naming, frozenset(context.nodes))
+    table = node_table(NAMESPACE_SLOT, node, naming, context.nodes)
     bound = bind(table.name, table.namespace, parsed(table.rules))
     wanted = _wanted(context, kind, texts[1], node)
-    root = placed(NAMESPACE_SLOT, "node", naming)[0] if reach == FROM_PARENT else table.namespace
+    parent = placed(NAMESPACE_SLOT, "node", naming, node.apart)[0]
+    root = parent if reach == FROM_PARENT else table.namespace
     resolved = [resolve_bound(expand(text, root, table.name), kind, bound) for text in texts]
     good = [text for text, full in zip(texts, resolved, strict=True) if full == wanted]
     if not good:

@@ -28,6 +28,7 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import spelled
+from multibot_rewrite.remap.stacks import apart_nodes, is_apart
 
 PARAMETERS = "ros__parameters"
 MANAGER = "controller_manager"
@@ -175,12 +176,19 @@ def _section(
 
 
 def _full(path: str, context: Context) -> str:
-    return full_name(path, context.topics.naming)
+    return full_name(path, context.topics.naming, is_apart(path, context.distro))
+
+
+def _keeps_name(name: str, context: Context) -> bool:
+    """Does a node of this name run under it in every layout?"""
+    places = {it.rpartition("/")[2] for it in apart_nodes(context.distro)}
+    return name in places or context.nodes.get(name, "").endswith(f"{NAMESPACE_SLOT}/{name}")
 
 
 def _full_wild(path: str, name: str, context: Context) -> str:
     """A pattern matches in any namespace; only the node's own name in it can change."""
-    own = name if name in ANY else spelled(context.topics.naming, NAMESPACE_SLOT, "node", name)
+    kept = name in ANY or _keeps_name(name, context)
+    own = name if kept else spelled(context.topics.naming, NAMESPACE_SLOT, "node", name)
     return f"/{path[: len(path) - len(name)]}{own}"
 
 

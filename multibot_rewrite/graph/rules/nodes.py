@@ -45,7 +45,7 @@ def missing_node(view: View) -> Iterator[Finding]:
             message = f"node {node} is in the plan, but not in the graph"
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
     for node in dict.fromkeys(view.plan.shared_nodes):
-        if node not in view.seen:
+        if node not in view.seen and node not in view.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
@@ -55,7 +55,7 @@ def _missing(view: View, robot: PlannedRobot) -> list[str]:
     return [
         node
         for node in robot.nodes
-        if node not in view.seen and (node not in robot.optional or node in view.probable_matches)
+        if node not in view.seen and (node not in view.may_miss or node in view.probable_matches)
     ]
 
 
