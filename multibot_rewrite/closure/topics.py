@@ -8,16 +8,17 @@ from typing import NamedTuple
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import CHOICE, nearest
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
-# What people, planners of missions and tools send, by the last word of the name.
+# What people, planners of missions, scenes and tools send, by the last word of the name.
 OUTSIDE = frozenset(
     """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
     joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
     parameter_events robot_description external_wrench manual_control speed_scaling_input footprint
-    feedback""".split()  # noqa: SIM905
+    feedback set_feedback planning_scene planning_scene_world collision_object attached_collision_object
+    trajectory_execution_event enable_freedrive_mode""".split()  # noqa: SIM905
 )
-TYPE = "type"
+TYPE, STATUS = "type", "/_action/status"
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
 
 
@@ -83,6 +84,8 @@ def closed(ends: Sequence[End], more: Iterable[End] = ()) -> set[tuple[str, ...]
 
 def _needed(ends: Sequence[End], more: Iterable[End], sent: bool) -> Iterator[End]:
     given = {(it.kind, it.name) for it in (*ends, *more) if it.role not in NEEDS}
+    # The server of an action sends its status.
+    given |= {(TOPIC, f"{name}{STATUS}") for kind, name in given if kind == ACTION}
     for it in ends:
         needed = it.role in NEEDS and it.sure and not _is_from_outside(it)
         if needed and ((it.kind, it.name) in given) is sent:

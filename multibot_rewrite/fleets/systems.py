@@ -86,6 +86,9 @@ def system_after(
     owners = {f"{it.namespace.rstrip('/')}/{it.name}": it.node for it in fleet.table.nodes}
     ends = [end for it in bridges for end in bridge_ends(it)]
     ends += [_planned(it, owners) for it in fleet.table.names if it.robot == robot.spec.namespace]
+    # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
+    of_plugins = (end for node in robot.member.reading.nodes for end in _plugin_ends(node))
+    ends += [it for it in of_plugins if not it.role]
     return System(
         tuple(given_nodes(params, known)),
         tuple(exported(written.root, file)),
