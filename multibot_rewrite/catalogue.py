@@ -117,6 +117,7 @@ HOMES: tuple[Home, ...] = (
         (
             "evidence.nodes",
             "evidence.launched",
+            "fleets.launched_files",
             "fleets.shared_nodes",
             "fleets.closing",
             "fleets.closing_bridges",

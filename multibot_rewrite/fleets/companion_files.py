@@ -14,7 +14,13 @@ from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_
 from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
+from multibot_rewrite.fleets.output_file import (
+    FilesAndFindings,
+    OutputFile,
+    params_of,
+    path_for,
+    yaml_of,
+)
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
@@ -47,7 +53,7 @@ def _with_names_of(robot: RewrittenRobot, finding: Finding) -> Finding:
 
 def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     """A ROS parameter file; what the robot's other parameter files set is not inserted in it."""
-    read = {it: yaml_of(it) for it in group.companions["params"]}
+    read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
     nodes = plan.evidence[node_sources(group.robots[0].spec)].nodes
