@@ -93,7 +93,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF5",
         "bridges",
-        ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),
+        (
+            "fleets.bridge_checks",
+            "fleets.bridge_merge",
+            "fleets.bridge_outputs",
+            "fleets.bridge_types",
+        ),
     ),
     Home(
         "MF6",
@@ -112,8 +117,11 @@ HOMES: tuple[Home, ...] = (
         (
             "evidence.nodes",
             "evidence.launched",
+            "fleets.launched_files",
             "fleets.shared_nodes",
             "fleets.closing",
+            "fleets.closing_bridges",
+            "fleets.closing_controllers",
             "fleets.closing_topics",
         ),
     ),

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER, deliveries
-from multibot_rewrite.steps.collect import Inventory
+
+if TYPE_CHECKING:
+    from multibot_rewrite.steps.collect import Inventory
 
 # Topics of every node, which the plan leaves out.
 ALWAYS = ("/rosout", "/parameter_events")
