@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import (
+    ALWAYS,
     EVERYWHERE,
     Expectation,
     PlannedEndpoint,
@@ -96,7 +97,8 @@ def _rights(
     for end in ends:
         if not (space and end.name.startswith(space)):
             (sends if end.role in (PUBLISHES, SERVES) else hears).add(_key(domain, end))
-    tf = [] if space and robot.tf.startswith(space) else [robot.tf, f"{robot.tf}_static"]
+    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
+    tf = () if space and robot.tf.startswith(space) else (robot.tf, static)
     sends |= {f"{domain}{name}/*/*" for name in (*_ANYBODY_SENDS, *tf)}
     hears |= {f"{domain}{name}/*/*" for name in (*EVERYWHERE, *shared, *tf)}
     return Rights(robot.name, _latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
