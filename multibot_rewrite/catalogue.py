@@ -36,6 +36,10 @@ tools (RViz, rqt, ros2 CLI, rosbag2, bridges, teleop, containers, Gazebo's own n
 declared link whose names begin like the link's (`camera_link` has `camera_depth_frame`).
 """
 
+DANGERS_INTRO = """\
+`multibot doctor` finds these in a running system without a plan. All lines of an example begin with
+`running:`; the robots are `robot1`, `robot2`.
+"""
 BUILT_INTRO = """\
 `multibot build` checks all files once more before it writes them. Each kind of mistake is reported once
 for a file, with the number of lines.
@@ -105,7 +109,14 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF8",
         "what a robot's files say of its nodes",
-        ("evidence.nodes", "evidence.launched", "fleets.closing", "fleets.closing_topics"),
+        (
+            "evidence.nodes",
+            "evidence.launched",
+            "fleets.launched_files",
+            "fleets.shared_nodes",
+            "fleets.closing",
+            "fleets.closing_topics",
+        ),
     ),
     Home(
         "MG1",
@@ -116,10 +127,27 @@ HOMES: tuple[Home, ...] = (
             "graph.rules.leaks",
             "graph.rules.type_and_qos",
             "graph.rules.publishers",
+            "graph.rules.demands",
         ),
         GRAPH_INTRO,
     ),
     Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
+    Home(
+        "MG3",
+        "dangers of any system: nodes, names, commands, data",
+        (
+            "graph.dangers.nodes",
+            "graph.dangers.names",
+            "graph.dangers.matching",
+            "graph.dangers.commands",
+            "graph.dangers.sharing",
+        ),
+        DANGERS_INTRO,
+    ),
+    Home(
+        "MG4", "dangers of any system: tf", ("graph.dangers.transforms", "graph.dangers.tf_topics")
+    ),
+    Home("MG5", "dangers of any system: time and states", ("graph.dangers.clocks",)),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 

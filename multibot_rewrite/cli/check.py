@@ -5,25 +5,22 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
-from math import inf
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.fleet import check_unread, note_interfaces
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import WORDS, follow
-from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
-from multibot_rewrite.graph.live.child import RosUnusable, observe, watch
-from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -38,33 +35,34 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     plan = _plan(options)
     try:
-        return _watch(options, plan) if options.watch else conclude(options, plan, _graph(options))
+        if options.watch:
+            return _watch(options, plan)
+        return conclude(options, plan, live.graph(options))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
 
 def _check_use(options: argparse.Namespace) -> None:
-    if options.watch and options.snapshot:
-        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
-        check_target(options.output, list(filter(None, [options.plan, options.snapshot])))
+        check_target(options.output, [options.plan, *options.snapshot])
 
 
 def _plan(options: argparse.Namespace) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
-    from multibot_rewrite.fleets.fleet_file import input_files, is_fleet, read_fleet
-
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if is_json(data) or not is_fleet(data):
         return _of_release(options, read_plan(data, path))
+    from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleets.closed_plan import closed_plan
     from multibot_rewrite.fleets.fleet import expected
+    from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
     file = read_fleet(path, options.distro or "", os.environ)
@@ -105,7 +103,8 @@ def conclude(
         say(f"incomplete: {caveat.message}", PROGRAM)
     codes = {it.code for it in findings}
     pictures.deliver(options, plan, graph, [it for it in found if it.code in codes])
-    verdict = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    unsure = caveats or any(it.level == INCONCLUSIVE for it in of_graph)
+    verdict = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
     _sum_up(options, plan, findings, verdict, gaps)
     return STOPPED if failed else CODES[verdict]
@@ -145,17 +144,10 @@ def _sum_up(
     note(options, f"{counted}: {WORDS[verdict]}{but}{facts_of_release(plan.release)}")
 
 
-def _graph(options: argparse.Namespace) -> Snapshot:
-    if options.snapshot:
-        return read_snapshot(options.snapshot)
-    # Not only until the planned nodes are there: a twin or a leak may come after them.
-    return observe(Request(options.timeout or live.LOOK_SECONDS), live.environ(options.domain))
-
-
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     gaps = _gaps(options, plan)
     print_lines(map(str, gaps))
-    last = follow(plan, watch(Request(options.timeout or inf), live.environ(options.domain)))
+    last = follow(lambda graph: (plan, check(plan, graph)), live.watched(options))
     if last is None:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE

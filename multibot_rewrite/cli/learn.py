@@ -6,7 +6,7 @@ import argparse
 import os
 from collections.abc import Iterator, Sequence
 
-from multibot_rewrite.cli.live import INCONCLUSIVE, LOOK_SECONDS, NO_ROS, environ
+from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import deliver, goes_to_file, note, say, write_files
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.walk import check_target
@@ -15,10 +15,8 @@ from multibot_rewrite.graph.learning.choosing import choose_nodes, helpers_witho
 from multibot_rewrite.graph.learning.learn import LearnedNode, learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml
 from multibot_rewrite.graph.learning.nodl_file import NodlFile, file_name, to_nodl
-from multibot_rewrite.graph.live.child import RosUnusable, observe
-from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.snapshot_file import read_snapshot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release, release_here
@@ -31,11 +29,12 @@ NODES, NODL = "nodes", "nodl"
 
 def run(options: argparse.Namespace) -> int:
     """Look, learn, write, note what is left out; returns the exit code."""
+    _check_use(options)
     try:
-        graph = _graph(options)
+        graph = live.graph(options)
     except RosUnusable as error:
         say(str(error), PROGRAM)
-        return NO_ROS
+        return live.NO_ROS
     doubtful = doubts(graph)
     for caveat in doubtful:
         say(f"incomplete: {caveat.message}", PROGRAM)
@@ -55,18 +54,15 @@ def run(options: argparse.Namespace) -> int:
     shape = "NoDL" if as_nodl else f"stack {options.stack}"
     what = f"{plural(len(learned), 'node')} learned as {shape}"
     note(options, f"{what}{facts_of_release(release)}")
-    return INCONCLUSIVE if doubtful else DONE
+    return live.INCONCLUSIVE if doubtful else DONE
 
 
-def _graph(options: argparse.Namespace) -> Snapshot:
-    if options.snapshot is None:
-        # Until it is quiet: a helper node or a second one of a name may come after the first.
-        return observe(Request(options.timeout or LOOK_SECONDS), environ(options.domain))
-    if options.timeout is not None or options.domain is not None:
+def _check_use(options: argparse.Namespace) -> None:
+    live.check_source(options)
+    if options.snapshot and (options.timeout is not None or options.domain is not None):
         raise UsageError("--timeout and --domain are for the live graph, leave out --snapshot")
-    if options.output:
-        check_target(options.output, [options.snapshot])
-    return read_snapshot(options.snapshot)
+    if options.snapshot and options.output:
+        check_target(options.output, options.snapshot)
 
 
 def _is_nodl(options: argparse.Namespace) -> bool:

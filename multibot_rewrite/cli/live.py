@@ -1,14 +1,62 @@
-"""What the commands that look at the live graph have in common: exit codes and environment."""
+"""Where the commands get a graph from: saved snapshots, a Zenoh router, or the live graph of ROS.
+
+The options are those of ``SOURCE`` in ``declared/shared.py``.
+"""
 
 from __future__ import annotations
 
+import argparse
 import os
+from collections.abc import Generator
+from math import inf
 
 from multibot_rewrite.graph.environment import settings
+from multibot_rewrite.graph.live import child
+from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.snapshot_file import read_snapshots
+from multibot_rewrite.graph.zenoh import observe
+from multibot_rewrite.model import UsageError
 
 INCONCLUSIVE, NO_ROS = 3, 4
 # How long a single look takes at most.
 LOOK_SECONDS = 15.0
+
+
+def check_source(options: argparse.Namespace) -> None:
+    """Raises UsageError where options name two sources, or a saved one is to be watched."""
+    saved = bool(options.snapshot)
+    if saved and getattr(options, "watch", False):
+        raise UsageError("--watch is for the live graph, leave out --snapshot")
+    if saved and options.zenoh:
+        raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
+
+
+def graph(options: argparse.Namespace, request: Request | None = None) -> Snapshot:
+    """The graph that the options name; raises RosUnusable, UsageError, InputError.
+
+    A live one is looked at until it is quiet, unless ``request`` says otherwise: a second node of a
+    name or a leak may come after the planned nodes.
+    """
+    if options.snapshot:
+        return read_snapshots(options.snapshot)
+    asked = request or Request(options.timeout or LOOK_SECONDS)
+    if options.zenoh:
+        return observe.look(asked, _router(options))
+    return child.observe(asked, environ(options.domain))
+
+
+def watched(options: argparse.Namespace) -> Generator[Snapshot, None, None]:
+    """Snapshots of the live graph that the options name, one after each change."""
+    asked = Request(options.timeout or inf, watch=True)
+    if options.zenoh:
+        return observe.watch(asked, _router(options))
+    return child.watch(asked, environ(options.domain))
+
+
+def _router(options: argparse.Namespace) -> observe.Router:
+    """The domain is that of the option, else of ROS_DOMAIN_ID; it is a part of every key."""
+    return observe.Router(options.zenoh, settings(environ(options.domain)).domain)
 
 
 def environ(domain: int | None = None) -> dict[str, str]:

@@ -10,11 +10,19 @@ from multibot_rewrite.cli import live
 from multibot_rewrite.cli.output import STANDARD, deliver, note, say
 from multibot_rewrite.cli.process import DONE, PROGRAM
 from multibot_rewrite.cli.tables import Grid, deliver_report
-from multibot_rewrite.cli.walk import check_folder
-from multibot_rewrite.graph.live.child import RosUnusable, observe
+from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.rosgraph.writing import to_yaml
-from multibot_rewrite.graph.snapshot import QUIET, Caveat, Snapshot, incomplete, to_json
+from multibot_rewrite.graph.snapshot import (
+    QUIET,
+    ZENOH,
+    Caveat,
+    Environment,
+    Snapshot,
+    incomplete,
+    to_json,
+)
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -38,13 +46,12 @@ COLUMNS = (
 
 def run(options: argparse.Namespace) -> int:
     """Look, write what is seen and what may be missing; returns the exit code."""
-    if options.output not in (None, STANDARD):
-        check_folder(options.output)
+    _check_use(options)
     request = Request(
         options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
     )
     try:
-        snapshot = observe(request, live.environ(options.domain))
+        snapshot = live.graph(options, request)
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -56,6 +63,13 @@ def run(options: argparse.Namespace) -> int:
     for caveat in snapshot.environment.caveats:
         _remark(options, caveat)
     return live.INCONCLUSIVE if incomplete(snapshot) else DONE
+
+
+def _check_use(options: argparse.Namespace) -> None:
+    live.check_source(options)
+    if options.output not in (None, STANDARD):
+        check_folder(options.output)
+        check_target(options.output, options.snapshot)
 
 
 def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
@@ -96,9 +110,16 @@ def _headline(snapshot: Snapshot) -> str:
     around = snapshot.environment
     nodes, many = len(snapshot.nodes), around.participants
     why = "no change any more" if around.settled == QUIET else around.settled
-    peers = f", peers {' '.join(around.static_peers)}" if around.static_peers else ""
     return (
         f"{plural(nodes, 'node')} in {plural(many, 'participant')}"
         f" after {around.seconds:.1f} s ({why});"
-        f" domain {around.domain}, range {around.range}{peers}, {around.rmw}"
+        f" domain {around.domain}{_reach(around)}, {around.rmw}"
     )
+
+
+def _reach(around: Environment) -> str:
+    """How the look was made: Zenoh has a router in place of a discovery range."""
+    router = f", router {around.discovery_server}" if around.rmw == ZENOH else ""
+    range_ = f", range {around.range}" if around.range else ""
+    peers = f", peers {' '.join(around.static_peers)}" if around.static_peers else ""
+    return f"{router}{range_}{peers}"

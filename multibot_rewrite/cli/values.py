@@ -12,6 +12,8 @@ from multibot_rewrite.nearest import did_you_mean_one_of
 MAX_SECONDS = 3600
 # The highest ROS_DOMAIN_ID that rcl takes.
 MAX_DOMAIN = 232
+# zenoh-protocol endpoint.rs: PROTOCOL/ADDRESS, then metadata behind ? and configuration behind #.
+_ENDPOINT = re.compile(r"(tcp|udp|tls|quic|ws)/[^\s/?#]+:\d{1,5}([?#]\S*)?|unixsock-stream/\S+")
 _WORD = re.compile(r"[A-Za-z0-9_.-]+")
 
 
@@ -40,6 +42,14 @@ def path(text: str) -> str:
     if not text:
         raise argparse.ArgumentTypeError("the name is empty, give the name of a file")
     return text
+
+
+def zenoh_router(text: str) -> str:
+    """An endpoint as Zenoh writes it, or the name of a session configuration."""
+    if text.endswith((".json5", ".json")) or _ENDPOINT.fullmatch(text):
+        return text
+    hint = "write PROTOCOL/HOST:PORT, such as tcp/localhost:7447, or the name of a .json5 file"
+    raise argparse.ArgumentTypeError(f"{text!r} is no Zenoh router; {hint}")
 
 
 def one_of(known: Collection[str]) -> Callable[[str], str]:

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing, contextmanager
+from functools import partial
 
 from multibot_rewrite.cli.output import print_lines
 from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
-from multibot_rewrite.graph.watching import Verdict, WatchState, next_state
+from multibot_rewrite.graph.watching import Verdict, WatchState, with_found
 from multibot_rewrite.plural import plural
 
 WORDS = {
@@ -22,17 +23,24 @@ WORDS = {
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
 Show = Callable[[WatchState], None]
+# The plan of a graph, and what is found in it.
+Look = Callable[[Snapshot], tuple[Expectation, Sequence[Finding]]]
 
 
-def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> WatchState | None:
+def follow(
+    look: Look,
+    snapshots: Generator[Snapshot, None, None],
+    words: Mapping[Verdict, str] = WORDS,
+) -> WatchState | None:
     """Show every change until the snapshots end or the user ends it; the last state."""
     state: WatchState | None = None
     with ExitStack() as stack:
         stack.enter_context(closing(snapshots))
-        show = stack.enter_context(_screen()) if sys.stdout.isatty() else _print_lines
+        screen = sys.stdout.isatty()
+        show = stack.enter_context(_screen(words)) if screen else partial(_print_lines, words)
         try:
             for graph in snapshots:
-                state = next_state(plan, graph, state)
+                state = with_found(*_looked(look, graph), state)
                 show(state)
         except KeyboardInterrupt:
             # The usual way to end it.
@@ -40,28 +48,34 @@ def follow(plan: Expectation, snapshots: Generator[Snapshot, None, None]) -> Wat
     return state
 
 
-def _print_lines(state: WatchState) -> None:
+def _looked(look: Look, graph: Snapshot) -> tuple[Expectation, Snapshot, Sequence[Finding]]:
+    plan, found = look(graph)
+    return plan, graph, found
+
+
+def _print_lines(words: Mapping[Verdict, str], state: WatchState) -> None:
     """What changed, for a log: findings come with + and go with -."""
     at = f"{state.graph.environment.seconds:7.1f} s"
     changes = (("+", state.appeared), ("-", state.solved)) if state.complete else ()
     lines = [f"{at}  {sign} {finding}" for sign, findings in changes for finding in findings]
-    print_lines([*lines, f"{at}  {_headline(state)}"])
+    print_lines([*lines, f"{at}  {_headline(words, state)}"])
 
 
 @contextmanager
-def _screen() -> Iterator[Show]:
+def _screen(words: Mapping[Verdict, str]) -> Iterator[Show]:
     """A screen that is drawn anew at every change."""
     from rich.live import Live
     from rich.text import Text
 
     with Live(auto_refresh=False) as live:
         yield lambda state: live.update(
-            Text.from_ansi(render(_parts(state), live.console.width, colour=True)), refresh=True
+            Text.from_ansi(render(_parts(words, state), live.console.width, colour=True)),
+            refresh=True,
         )
 
 
-def _parts(state: WatchState) -> Iterator[str | Grid]:
-    yield _headline(state)
+def _parts(words: Mapping[Verdict, str], state: WatchState) -> Iterator[str | Grid]:
+    yield _headline(words, state)
     yield ""
     per_robot = {robot.robot: 0 for robot in state.robots}
     for finding in state.findings:
@@ -87,12 +101,12 @@ def _more(count: int, what: str) -> Iterator[str]:
         yield f"and {count - _SHOWN} more {what}"
 
 
-def _headline(state: WatchState) -> str:
+def _headline(words: Mapping[Verdict, str], state: WatchState) -> str:
     """One line: how much is there, and what it comes to."""
     nodes = _of(_sum(it.nodes for it in state.robots))
     names = _of(_sum(it.names for it in state.robots))
     moving = state.graph.environment.settled == CHANGING
-    said = "still changing" if moving else WORDS[state.verdict]
+    said = "still changing" if moving else words[state.verdict]
     found = plural(len(state.findings), "finding")
     return f"{nodes} nodes, {names} names, {found}: {said}"
 

@@ -59,7 +59,9 @@ def lookup(node: NodeFacts, values: Mapping[str, Given]) -> Values:
 def _frame(frame: FrameParameter, values: Mapping[str, Given]) -> FrameParameter:
     given = values.get(frame.parameter)
     if given is None or given.value == "":
-        return frame
+        # <pose_name> stands for the value of another parameter.
+        other = values.get(frame.default.strip("<>")) if "<" in frame.default else None
+        return frame if other is None else frame._replace(default=str(other.value), given=True)
     return frame._replace(default=str(given.value), given=True)
 
 

@@ -11,9 +11,11 @@ from typing import cast
 from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import with_patterns
 from multibot_rewrite.graph.rules import (
+    demands,
     endpoints,
     frame_names,
     leaks,
@@ -25,12 +27,14 @@ from multibot_rewrite.graph.rules import (
 from multibot_rewrite.graph.rules.comparison import View, make_view
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
-_MODULES = (nodes, endpoints, leaks, type_and_qos, publishers, transforms, frame_names)
+_MODULES = (nodes, endpoints, leaks, type_and_qos, publishers, demands, transforms, frame_names)
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 WAITED_FOR = "expected-not-seen"
 # Findings about something missing: an incomplete view cannot prove them.
-ABSENCE = frozenset(it.code for it in RULES.values() if it.options["absence"])
+# With a plan and without one.
+ALL_RULES = {**RULES, **DANGERS}
+ABSENCE = frozenset(it.code for it in ALL_RULES.values() if it.options["absence"])
 
 
 def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
@@ -38,13 +42,18 @@ def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
     with gc_paused():
         view = make_view(plan, with_patterns(plan, graph))
         found = [finding for rule in RULES.values() for finding in _ask(rule, view)]
-    if not doubts(graph):
-        return found
-    return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
+    return inconclusive_where_in_doubt(found, graph)
 
 
 def _ask(rule: Rule, view: View) -> Iterator[Finding]:
     return cast(Callable[[View], Iterator[Finding]], rule.check)(view)
+
+
+def inconclusive_where_in_doubt(found: list[Finding], graph: Snapshot) -> list[Finding]:
+    """The findings; those about something missing are inconclusive in an incomplete view."""
+    if not doubts(graph):
+        return found
+    return [_inconclusive(finding) if finding.code in ABSENCE else finding for finding in found]
 
 
 def doubts(graph: Snapshot) -> tuple[Caveat, ...]:

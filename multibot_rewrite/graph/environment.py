@@ -36,6 +36,8 @@ KNOWN_RMW = (
 )
 # So many participants of a machine are found by unicast: under LOCALHOST, of a peer under SUBNET.
 LOCAL_LIMIT, PEER_LIMIT = 32, 4
+# The caveats of ``unfinished``.
+UNFINISHED = ("nodes-without-endpoints", "node-name-unknown")
 # How the process of a Fast DDS participant starts: the vendor, then four digits for its machine.
 _FAST_DDS = "010f"
 _NUMBER = re.compile(r"\s*\+?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
@@ -159,7 +161,7 @@ def view_caveats(
         text = f"expected nodes not in the graph: {missing}; are they started, are the names right?"
         yield Caveat("expected-not-seen", True, text)
     yield from _cut_off(endpoints, asked)
-    yield from _unfinished(names, endpoints, asked)
+    yield from unfinished(nodes, endpoints, asked.discovery_server)
     twins = [name for name, times in names.items() if times > 1]
     if twins:
         text = (
@@ -185,7 +187,7 @@ def _nothing(asked: DiscoverySettings) -> str:
 
 def _cut_off(endpoints: Iterable[GraphEndpoint], asked: DiscoverySettings) -> Iterator[Caveat]:
     """Where Fast DDS may have found too few participants, without multicast and without a server."""
-    machines = Counter(map(_machine, _processes(endpoints)))
+    machines = Counter(map(machine, _processes(endpoints)))
     if asked.discovery_server or not machines:
         return
     most = max(machines.values())
@@ -206,21 +208,20 @@ def _cut_off(endpoints: Iterable[GraphEndpoint], asked: DiscoverySettings) -> It
         yield Caveat("peer-limit", True, text)
 
 
-def _machine(process: str) -> str:
+def machine(process: str) -> str:
     """What identifies the machine of a process; empty where it is not known."""
     return process[:8] if process.startswith(_FAST_DDS) else ""
 
 
-def _unfinished(
-    names: Collection[str], endpoints: Collection[GraphEndpoint], asked: DiscoverySettings
+def unfinished(
+    nodes: Iterable[GraphNode], endpoints: Collection[GraphEndpoint], discovery_server: str
 ) -> Iterator[Caveat]:
     """Nodes without endpoints, and endpoints without a known node: discovery is not finished."""
-    bare = sorted(set(names) - {endpoint.node for endpoint in endpoints})
+    bare = sorted({node.name for node in nodes} - {endpoint.node for endpoint in endpoints})
     if bare:
-        remedy = "set ROS_SUPER_CLIENT=TRUE" if asked.discovery_server else "look again"
-        nodes = shorten(bare, SEVERAL)
-        text = f"nodes without any endpoint: {nodes}; the view is not complete, {remedy}"
-        yield Caveat("nodes-without-endpoints", True, text)
+        remedy = "set ROS_SUPER_CLIENT=TRUE" if discovery_server else "look again"
+        text = f"nodes without any endpoint: {shorten(bare, SEVERAL)}; the view is not complete,"
+        yield Caveat("nodes-without-endpoints", True, f"{text} {remedy}")
     unknown = sorted({end.name for end in endpoints if UNKNOWN_NODE in end.node})
     if unknown:
         text = f"endpoints whose node is not known yet: {shorten(unknown, SEVERAL)}; look again"

@@ -24,6 +24,8 @@ SCHEMA = 1
 EXPECTED, QUIET, TIMEOUT, CHANGING = "expected", "quiet", "timeout", "changing"
 # The node name in rmw of an endpoint whose participant has not announced its nodes yet.
 UNKNOWN_NODE = "_NODE_NAME_UNKNOWN_"
+# The RMW of a view from a Zenoh router.
+ZENOH = "rmw_zenoh_cpp"
 # How the names of tf2's listener nodes start; the rest is an address.
 LISTENER = "transform_listener_impl_"
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
+from multibot_rewrite.graph.merging import Look, merged
 from multibot_rewrite.graph.rosgraph.reading import from_message, from_yaml, is_message
 from multibot_rewrite.graph.snapshot import Snapshot, from_value, json_value
 from multibot_rewrite.model import InputError
@@ -23,6 +25,11 @@ def read_snapshot(path: str) -> Snapshot:
     if isinstance(value, dict) and is_message(value):
         return from_message(value, path)
     return from_value(value, path)
+
+
+def read_snapshots(paths: Sequence[str]) -> Snapshot:
+    """What any of these files has seen; raises InputError, and UsageError for two domains."""
+    return merged([Look(path, read_snapshot(path)) for path in paths])
 
 
 def _text(data: bytes, path: str) -> str:

@@ -88,7 +88,10 @@ def sent_by(node: NodeFacts, root: str) -> Iterator[Edge]:
     given = {frame.parameter for frame in node.frames if frame.given}
     for parent, child, _ in (it for it in node.sends if holds(it.condition, values.get)):
         base = root and "odom" not in child and child not in given
-        yield Edge(values[parent], root if base else values[child], False)
+        edge = Edge(values[parent], root if base else values[child], False)
+        # A frame that only a file sets.
+        if edge.parent and "<" not in edge.child:
+            yield edge
 
 
 def with_odometry(edges: Edges, robot: str, naming: Naming) -> tuple[Edges, str]:

@@ -1,5 +1,5 @@
-"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``stacks.yaml`` and files
-of users.
+"""Known nodes and stacks of nodes, from ``nodes.yaml``, ``controllers.yaml``, ``arms.yaml``,
+``stacks.yaml`` and files of users.
 
 ``python -m multibot_rewrite.remap.stacks`` prints their reference page.
 """
@@ -16,7 +16,7 @@ from multibot_rewrite.remap.by_release import in_release
 from multibot_rewrite.remap.node_library import NodeLibrary, extend, stack_of
 from multibot_rewrite.remap.records import NodeFacts
 
-BUILT_IN = ("nodes.yaml", "controllers.yaml", "stacks.yaml")
+BUILT_IN = ("nodes.yaml", "controllers.yaml", "arms.yaml", "stacks.yaml")
 
 
 def load_nodes(release: str) -> dict[str, NodeFacts]:

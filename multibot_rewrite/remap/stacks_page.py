@@ -12,8 +12,8 @@ HEAD = """\
 # Nodes and stacks
 
 The topics, services and actions of known nodes, and the stacks of nodes that are started together.
-Generated from `nodes.yaml`, `controllers.yaml` and `stacks.yaml` of `multibot_rewrite/remap/` by
-`python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
+Generated from `nodes.yaml`, `controllers.yaml`, `arms.yaml` and `stacks.yaml` of
+`multibot_rewrite/remap/` by `python -m multibot_rewrite.remap.stacks > docs/stacks.md`.
 
 Select a stack, or a single node, with `--stack`. Every robot runs robot_state_publisher besides;
 the stack `no_robot_state_publisher` leaves it out, for robots whose tf comes from something else.

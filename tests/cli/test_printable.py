@@ -121,6 +121,8 @@ LINES = (
     *(["check", "plan.yaml", "--snapshot", f"{EVIL}.json"],),
     *(["check", f"{EVIL}.yaml", "--snapshot", "graph.json"], ["learn", "--snapshot", "graph.json"]),
     *(["build", "fleet.yaml", "-o", f"{EVIL}out"], ["build", f"{EVIL}.yaml", "-o", "out"]),
+    *(["doctor", "--snapshot", "graph.json"], ["doctor", "--snapshot", f"{EVIL}.json"]),
+    *(["doctor", "--snapshot", "graph.json", "--suggest", f"{EVIL}out"],),
     *(["build", "fleet.yaml", "-o", "out", "--check"],),
     *(["rehearse", FILE, "robot1", "--stack", EVIL], ["snapshot", "--domain", EVIL]),
 )

@@ -37,7 +37,7 @@ COMMAND_LINES: dict[str, tuple[Callable[[Sequence[str]], int], list[str], int]] 
     "vocabulary": (multibot.main, ["vocabulary", "--suggest", PATH], 2),
 }
 # Those that read no description.
-OTHERS = {"explain", "help", "learn", "snapshot"}
+OTHERS = {"doctor", "explain", "help", "learn", "snapshot"}
 
 
 @pytest.fixture

@@ -20,6 +20,7 @@ from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.graph.transforms import sent_by
 from multibot_rewrite.remap.stacks import load_nodes, load_stack
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
@@ -190,3 +191,53 @@ arm:
     assert unknown.code == "MF802"
     assert "seems to claim a/effort, b/effort, c/effort and 1 more" in unknown.hint
     assert {it.name: bool(it.when) for it in nodes.nodes if it.host} == {"own": True, "arm": True}
+
+
+@pytest.mark.parametrize(
+    ("release", "type_"),
+    [
+        ("humble", "battery_state_broadcaster/BatteryStateBroadcaster"),
+        ("humble", "ur_controllers/GravityUpdateController"),
+        ("kilted", "position_controllers/GripperActionController"),
+        ("lyrical", "ur_controllers/ScaledJointTrajectoryController"),
+    ],
+)
+def test_a_type_that_a_release_lacks(release: str, type_: str) -> None:
+    """From the plugin files of the branches of ros2_controllers and ur_controllers."""
+    text = f"controller_manager:\n  ros__parameters:\n    one: {{type: {type_}}}\n"
+    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes(release))
+    (lacking,) = nodes_of((), given, load_nodes(release)).findings
+    assert (lacking.code, lacking.line) == ("MF802", 3)
+    assert "which this release lacks" in lacking.message
+    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    assert nodes_of((), given, load_nodes("jazzy")).findings == ()
+
+
+def frames_of(release: str, text: str) -> list[tuple[str, str, str]]:
+    """Who sends which transform, as parent and child."""
+    given = given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes(release))
+    nodes = nodes_of((), given, load_nodes(release)).nodes
+    return [(node.name, *edge[:2]) for node in nodes for edge in sent_by(node, "")]
+
+
+@pytest.mark.parametrize(
+    ("more", "sent"),
+    [
+        ("tf: {child_frame_id: tool}", [("pose", "base", "tool")]),
+        ("tf: {enable: false, child_frame_id: tool}", []),
+        # An empty child is the name of the pose, whatever the frames of the robot are.
+        ("tf: {child_frame_id: ''}", [("pose", "base", "tcp")]),
+    ],
+)
+def test_the_pose_broadcaster_sends_a_transform(
+    more: str, sent: list[tuple[str, str, str]]
+) -> None:
+    """pose_broadcaster.cpp: frame_id -> tf.child_frame_id, unless tf.enable is false."""
+    text = f"""\
+controller_manager:
+  ros__parameters:
+    pose: {{type: pose_broadcaster/PoseBroadcaster}}
+pose:
+  ros__parameters: {{frame_id: base, pose_name: tcp, {more}}}
+"""
+    assert frames_of("jazzy", text) == sent

@@ -6,21 +6,18 @@ skipped without. What a vendor's own file claims and its own description lacks i
 
 from __future__ import annotations
 
-import os
-import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from vendor_sources import VARIABLE, WITHOUT, install, packages_below, sources_folder
 
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
-FOLDER = os.environ.get("MULTIBOT_SOURCES", "")
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
-_NAME = re.compile(r"<name>\s*([\w-]+)\s*</name>")
 # What the vendors' launch files replace, for one robot without a prefix.
 FILLED = {"$(var tf_prefix)": "", "<namespace>/": "", "<static_covariance_orientation>": "[0.0]"}
 
@@ -93,20 +90,13 @@ ROBOTS = {
 @pytest.fixture(scope="module")
 def sources(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
     """The folder of checkouts, with its packages to be found as installed ones."""
-    if not FOLDER:
-        pytest.skip("no vendors' sources: set MULTIBOT_SOURCES to a folder with their checkouts")
-    prefix = tmp_path_factory.mktemp("prefix")
-    index = prefix / "share/ament_index/resource_index/packages"
-    index.mkdir(parents=True)
-    walked = os.walk(Path(FOLDER).resolve(), followlinks=True)
-    for file in (Path(at) / "package.xml" for at, _, names in walked if "package.xml" in names):
-        name = _NAME.search(file.read_text(encoding="utf-8", errors="replace"))
-        if name and not (prefix / "share" / name[1]).exists():
-            (prefix / "share" / name[1]).symlink_to(file.parent)
-            (index / name[1]).touch()
+    folder = sources_folder()
+    if folder is None:
+        pytest.skip(WITHOUT)
+    environment = install(packages_below(folder), tmp_path_factory.mktemp("sources") / "prefix", {})
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("AMENT_PREFIX_PATH", str(prefix))
-        yield Path(FOLDER).resolve()
+        patch.setenv("AMENT_PREFIX_PATH", environment["AMENT_PREFIX_PATH"])
+        yield folder
 
 
 @pytest.mark.slow
@@ -118,7 +108,7 @@ def test_claimed_interfaces_are_exported(
     it = ROBOTS[robot]
     missing = [path for path in (it.description, it.controllers) if not (sources / path).exists()]
     if missing:
-        pytest.skip(f"{FOLDER} lacks {', '.join(missing)}")
+        pytest.skip(f"{VARIABLE} lacks {', '.join(missing)}")
     text = (sources / it.controllers).read_text(encoding="utf-8")
     for old, new in FILLED.items():
         text = text.replace(old, new)

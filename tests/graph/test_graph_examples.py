@@ -7,6 +7,7 @@ from graph_examples import read_example
 
 from multibot_rewrite import catalogue
 from multibot_rewrite.graph.check import RULES, check
+from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.remap.records import ACTION, CALLS, SERVICE
 
@@ -71,4 +72,4 @@ def test_a_line_of_another_language_is_refused(line: str) -> None:
 
 def test_every_declared_rule_is_asked() -> None:
     declared = {code for code in catalogue.rules() if code.startswith("MG")}
-    assert declared == RULES.keys()
+    assert declared == RULES.keys() | DANGERS.keys()

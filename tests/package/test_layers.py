@@ -35,7 +35,16 @@ FLOORS = (
     ("cli",),
     ("__main__",),
 )
-HEAVY = ("rclpy", "launch", "launch_ros", "yourdfpy", "xacro", "tree_sitter", "tree_sitter_cpp")
+HEAVY = (
+    "rclpy",
+    "zenoh",
+    "launch",
+    "launch_ros",
+    "yourdfpy",
+    "xacro",
+    "tree_sitter",
+    "tree_sitter_cpp",
+)
 # What a start pays for without need; the commands import these where they use them.
 LATE = (*HEAVY, "yaml", "rich", "numpy", "difflib")
 SOURCES = {

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import yaml
-from graph_examples import read_example
+from graph_examples import read_danger, read_example
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.companions.lua import frames_to_edit
@@ -21,6 +21,7 @@ from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.dangers.find import find_dangers
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.naming import Policy
@@ -47,9 +48,9 @@ COMPANIONS = {
     "lua": ("example.lua", "lua"),
     "bridge": ("example.yaml", "bridge"),
 }
-GRAPH, REMAP = "graph", ("remap", "remap-urdf")
+GRAPH, DANGER, REMAP = "graph", "danger", ("remap", "remap-urdf")
 # What is found in these has no line of a file.
-WITHOUT_FILE = (GRAPH, *REMAP)
+WITHOUT_FILE = (GRAPH, DANGER, *REMAP)
 POLICY: Policy = {"layout": "frames-per-robot", "affix": "prefix"}
 FLEET: dict[str, Any] = {
     **POLICY,
@@ -176,6 +177,11 @@ def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     return check(*read_example(example))
 
 
+def danger_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
+    """A graph in the same lines, without a plan."""
+    return find_dangers(*read_danger(example))
+
+
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     **dict.fromkeys((URDF, SRDF, XACRO), lint_example),
     **dict.fromkeys(COMPANIONS, companion_example),
@@ -185,4 +191,5 @@ RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {
     "fleet-urdf": description_example,
     **dict.fromkeys(REMAP, remap_example),
     GRAPH: graph_example,
+    DANGER: danger_example,
 }

@@ -1,4 +1,4 @@
-"""The commands about the live graph: check, learn, snapshot."""
+"""The commands about the live graph: check, doctor, learn, snapshot."""
 
 from __future__ import annotations
 
@@ -12,11 +12,14 @@ from multibot_rewrite.cli.declared.shared import (
     LIVE_CODES,
     PICTURES,
     RESULT_OUTPUT,
+    SOURCE,
     TRUST,
+    ZENOH,
 )
 from multibot_rewrite.cli.options import (
     Command,
     Example,
+    Option,
     OptionGroup,
     argument,
     choice,
@@ -28,6 +31,19 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
+WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
+MERGE = Option(
+    ("--merge",),
+    "no look: join snapshots that were taken on several machines",
+    {
+        "metavar": "FILE",
+        "dest": "snapshot",
+        "nargs": "+",
+        "action": "extend",
+        "type": values.path,
+        "default": [],
+    },
+)
 CHECK = Command(
     "check",
     "check",
@@ -37,6 +53,9 @@ CHECK = Command(
         Example("multibot check plan.yaml", "the graph that runs now"),
         Example("multibot check plan.yaml --watch", "show every change until Ctrl-C"),
         Example("multibot check plan.yaml --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example(
+            "multibot check plan.yaml --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"
+        ),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
     ),
     (
@@ -44,28 +63,54 @@ CHECK = Command(
             "input",
             (
                 argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
-                value(
-                    "--snapshot",
-                    metavar="FILE",
-                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
-                    " the live graph",
-                    type=values.path,
-                ),
                 DISTRO,
                 TRUST,
             ),
         ),
         output_group(
             FINDINGS_OUTPUT,
-            switch("--watch", about="show every change until Ctrl-C or --timeout"),
+            WATCH,
         ),
         PICTURES,
-        LIVE,
+        SOURCE,
         FINDINGS,
         GENERAL,
     ),
     f"{LIVE_CODES}. With --watch it is the worst that was seen; what was missing before everything"
     " was there once does not count",
+    fail_on=ERROR,
+    findings_first=True,
+)
+DOCTOR = Command(
+    "doctor",
+    "doctor",
+    "%(prog)s [options]",
+    "Say what is wrong with the robots that run now; needs no plan.",
+    (
+        Example("multibot doctor", "the graph that runs now"),
+        Example("multibot doctor --watch", "show every change until Ctrl-C"),
+        Example("multibot doctor --snapshot graph.json", "a saved graph; needs no ROS"),
+        Example("multibot doctor --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
+        Example("multibot doctor --suggest first/", "begin a fleet file and a plan with it"),
+    ),
+    (
+        output_group(
+            FINDINGS_OUTPUT,
+            WATCH,
+            value(
+                "--suggest",
+                metavar="FOLDER",
+                about="write a first fleet file, plan and description of what is seen there",
+                type=values.path,
+            ),
+        ),
+        PICTURES,
+        SOURCE,
+        FINDINGS,
+        GENERAL,
+    ),
+    f"{LIVE_CODES.replace('as planned', 'nothing wrong seen')}. With --watch it is the worst that was"
+    " seen",
     fail_on=ERROR,
     findings_first=True,
 )
@@ -98,13 +143,6 @@ LEARN = Command(
                     about="the robot's namespace, which its nodes are in",
                     type=values.full_name,
                 ),
-                value(
-                    "--snapshot",
-                    metavar="FILE",
-                    about="what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of"
-                    " the live graph",
-                    type=values.path,
-                ),
                 DISTRO,
             ),
         ),
@@ -125,7 +163,7 @@ LEARN = Command(
                 " ends in .nodl.yaml, else nodes; with nodl, -o may be a folder for several nodes",
             ),
         ),
-        LIVE,
+        SOURCE,
         GENERAL,
     ),
     "0 done; 2 wrong use, unreadable input, or a node that is not there or there twice; 3 the view"
@@ -143,6 +181,10 @@ SNAPSHOT = Command(
             "multibot snapshot -o graph.json --expect /robot1/amcl", "JSON, for multibot check"
         ),
         Example("multibot snapshot --form rosgraph -o graph.yaml", "for other tools"),
+        Example("multibot snapshot --zenoh tcp/localhost:7447", "what a Zenoh router knows"),
+        Example(
+            "multibot snapshot --merge robot1.json robot2.json -o all.json", "from two machines"
+        ),
     ),
     (
         output_group(
@@ -155,7 +197,7 @@ SNAPSHOT = Command(
                 " topic echo prints it): json, rosgraph",
             ),
         ),
-        LIVE._replace(
+        SOURCE._replace(
             options=(
                 several(
                     "--expect", "NODE", "stop when these nodes are there", [], values.full_names
@@ -163,6 +205,8 @@ SNAPSHOT = Command(
                 several(
                     "--topic", "TOPIC", "look up QoS of these topics, too", [], values.full_names
                 ),
+                MERGE,
+                ZENOH,
                 *LIVE.options,
             )
         ),

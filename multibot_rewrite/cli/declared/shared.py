@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from multibot_rewrite.cli import values
-from multibot_rewrite.cli.options import Option, OptionGroup, choice, output, several, switch, value
+from multibot_rewrite.cli.options import (
+    Option,
+    OptionGroup,
+    choice,
+    output,
+    repeated,
+    several,
+    switch,
+    value,
+)
 from multibot_rewrite.findings.finding import LEVELS
 from multibot_rewrite.findings.formats import FORMATS
 from multibot_rewrite.naming import (
@@ -139,6 +148,21 @@ LIVE = OptionGroup(
         ),
     ),
 )
+# Where a graph comes from; read by ``cli/live.py``.
+ZENOH = value(
+    "--zenoh",
+    metavar="ROUTER",
+    about="ask this Zenoh router, such as tcp/localhost:7447, or the one in a session configuration"
+    " (.json5); needs no ROS",
+    type=values.zenoh_router,
+)
+SAVED = repeated(
+    "--snapshot",
+    "FILE",
+    "what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the live graph;"
+    " written again for each machine that was looked from",
+)
+SOURCE = OptionGroup("where the graph comes from", (SAVED, ZENOH, *LIVE.options))
 
 
 EXPLAIN_OPTION = value(
@@ -148,7 +172,8 @@ FINDINGS_OUTPUT = output("write the findings there, not to standard output")
 
 LIVE_CODES = (
     "0 as planned; 1 findings at the level of --fail-on; 2 wrong use or unreadable input;"
-    " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW is missing or does not start"
+    " 3 inconclusive: the view may be incomplete; 4 rclpy or its RMW, or zenoh, is missing or does not"
+    " start"
 )
 PICTURES = OptionGroup(
     "pictures",

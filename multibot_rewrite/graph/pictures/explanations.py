@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.check import RULES
+from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.pictures.svg import safe
 
 
@@ -18,7 +18,7 @@ def rule_link(code: str) -> str:
 
 def explanations(codes: Iterable[str]) -> Iterator[str]:
     """A section with what the rules find, why that is a problem and how to fix it."""
-    rules = [RULES[code] for code in sorted(set(codes))]
+    rules = [ALL_RULES[code] for code in sorted(set(codes))]
     if rules:
         yield '<section id="rules">\n<h2>What the codes mean</h2>\n'
         yield from map(_explained, rules)

@@ -7,7 +7,7 @@ from itertools import chain
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.graph.check import RULES
+from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 
@@ -16,10 +16,12 @@ UNEXPECTED, CLASH = "unexpected", "clash"
 # The worst first.
 STATES = (LEAK, CROSS_TALK, CLASH, MISSING, UNEXPECTED, OK)
 FAULTY = frozenset({LEAK, CROSS_TALK, CLASH, MISSING})
-STATE_OF_CODE = {it.code: str(it.options["drawn"]) for it in RULES.values() if it.options["drawn"]}
+STATE_OF_CODE = {
+    it.code: str(it.options["drawn"]) for it in ALL_RULES.values() if it.options["drawn"]
+}
 # For all other codes.
 STATE_OF_LEVEL = {ERROR: CLASH, WARNING: UNEXPECTED}
-TF_CODES = "MG2"
+TF_CODES = ("MG2", "MG4")
 # A frame where it is drawn: the tf topic of its tree, and its name.
 FrameKey = tuple[str, str]
 
@@ -85,7 +87,7 @@ def _endpoint_targets(view: View, finding: Finding) -> Targets:
         return Targets(robot.nodes if robot else (), finding.names, ())
     users = dict.fromkeys(end.node for name in finding.names for end in view.by_name.get(name, ()))
     words = _words(finding.message)
-    all_ends = RULES[finding.code].options["all_ends"]
+    all_ends = ALL_RULES[finding.code].options["all_ends"]
     others = [node for node in users if all_ends or node in words]
     return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), finding.names, ())
 

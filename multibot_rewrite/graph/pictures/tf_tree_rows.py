@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from multibot_rewrite.graph.check import RULES
+from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, States
 from multibot_rewrite.graph.rules.comparison import View
@@ -120,7 +120,7 @@ def _rows(
             depth,
             forest.robots[frame],
             CLASH if codes else OK,
-            tuple(RULES[code].name.replace("-", " ") for code in codes),
+            tuple(ALL_RULES[code].name.replace("-", " ") for code in codes),
             forest.static.get((parent, frame), False),
             repeated=frame in seen,
         )

@@ -68,7 +68,8 @@ def name_without_rules(planned: PlannedEndpoint) -> str:
 def names_without_rules(view: View, planned: PlannedEndpoint) -> tuple[str, ...]:
     """The names an endpoint may have where no remap rule and no namespace is applied."""
     in_root = f"/{planned.code_name.strip('/').removeprefix('~/')}"
-    plain = view.ownership.without_robot(planned.name, view.robot_of[planned.node])
+    robot = view.robot_of.get(planned.node) or view.ownership.robot(planned.name)
+    plain = view.ownership.without_robot(planned.name, robot)
     names = (name_without_rules(planned), in_root, plain)
     return tuple(name for name in names if name not in ("", "/", planned.name))
 

@@ -31,3 +31,22 @@ def graph_rule(
     """
     options = {"absence": absence, "drawn": drawn, "all_ends": all_ends}
     return rule(code, name, level, formats=("graph",), options=options, **words)
+
+
+def danger_rule(
+    code: str,
+    name: str,
+    level: str,
+    *,
+    absence: bool = False,
+    drawn: Drawn = "",
+    planned: str = "",
+    **words: str | int,
+) -> Callable[[_Check], Rule]:
+    """Makes a function a rule about any system of several robots: it gets a ``Seen``.
+
+    ``planned`` is the code of the rule that says the same of what is in a plan. Examples have the
+    lines of ``graph_rule`` that begin with ``running:``; a robot is every ``robot1``, ``robot2`` ...
+    """
+    options = {"absence": absence, "drawn": drawn, "all_ends": False, "planned": planned}
+    return rule(code, name, level, formats=("danger",), options=options, **words)

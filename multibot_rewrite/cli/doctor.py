@@ -1,0 +1,121 @@
+"""``multibot doctor``: what is wrong with the robots that run now? No plan, no file."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Sequence
+
+from multibot_rewrite.cli import live, pictures
+from multibot_rewrite.cli.check import CODES
+from multibot_rewrite.cli.output import note, say, write_files
+from multibot_rewrite.cli.process import PROGRAM
+from multibot_rewrite.cli.report import (
+    TEXT,
+    About,
+    by_themselves,
+    check_report,
+    chosen,
+    report_first,
+)
+from multibot_rewrite.cli.walk import check_folder, check_target
+from multibot_rewrite.cli.watch import follow
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.check import doubts
+from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
+from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.live.child import RosUnusable
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
+from multibot_rewrite.releases import release_here
+from multibot_rewrite.remap.stacks import built_in
+
+WORDS = {
+    Verdict.PLANNED: "nothing wrong seen",
+    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
+    Verdict.WRONG: "something is wrong",
+}
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look, report, sum up; returns the exit code."""
+    _check_use(options)
+    try:
+        return _watch(options) if options.watch else _once(options, diagnose(live.graph(options)))
+    except RosUnusable as error:
+        say(str(error), PROGRAM)
+        return live.NO_ROS
+
+
+def _check_use(options: argparse.Namespace) -> None:
+    live.check_source(options)
+    if options.watch and (options.select or options.ignore or options.format != TEXT):
+        raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, options.snapshot)
+    if options.suggest:
+        _check_suggest(options)
+
+
+def _check_suggest(options: argparse.Namespace) -> None:
+    for name in FILES:
+        path = os.path.join(options.suggest, name)
+        check_folder(path)
+        if os.path.lexists(path):
+            raise UsageError(f"{path} is there already; name another folder with --suggest")
+
+
+def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
+    findings = chosen(options, seen.findings)
+    failed = _report(options, seen, findings)
+    for line in survey(seen):
+        note(options, line)
+    caveats = doubts(seen.graph)
+    for caveat in caveats:
+        say(f"incomplete: {caveat.message}", PROGRAM)
+    _write(options, seen, findings)
+    inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+
+
+def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:
+    """The pictures and the files that the options ask for."""
+    if any(vars(options)[name] for name in pictures.NAMES):
+        pictures.deliver(options, seen_plan(seen), seen.graph, findings)
+    if options.suggest:
+        files = suggestion(seen, built_in(release_here(None)))
+        paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
+        write_files(options, [(path, text.encode()) for path, text in paths.items()])
+        note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
+
+
+def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
+    about = About(options.snapshot, by_themselves(seen.owners.robots))
+    return report_first(options, findings, about)
+
+
+def _sum_up(options: argparse.Namespace, findings: int, verdict: Verdict) -> int:
+    note(options, f"{plural(findings, 'finding')}: {WORDS[verdict]}")
+    return CODES[verdict]
+
+
+def _watch(options: argparse.Namespace) -> int:
+    last = follow(_look, live.watched(options), WORDS)
+    if last is None:
+        note(options, "ended before anything was seen")
+        return live.INCONCLUSIVE
+    if options.output:
+        _report(options, diagnose(last.graph), last.findings)
+    _write(options, diagnose(last.graph), last.findings)
+    return _sum_up(options, len(last.findings), final(last))
+
+
+def _look(graph: Snapshot) -> tuple[Expectation, Sequence[Finding]]:
+    seen = diagnose(graph)
+    return seen_plan(seen), seen.findings

@@ -1,0 +1,202 @@
+"""Dangers of commands: who may move a robot, and how many send at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.dangers import words
+from multibot_rewrite.graph.dangers.seen import (
+    Ends,
+    Seen,
+    and_then,
+    at_work,
+    last_word,
+    nodes_of,
+    robots_of,
+)
+from multibot_rewrite.graph.dangers.sharing import own_namespace
+from multibot_rewrite.graph.rules.declaration import danger_rule
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.remap.records import ACTION, TOPIC
+
+PLAYER = "rosbag2_player"
+_OWN_SUBJECT = ("/clock", "/rosout", "/parameter_events")
+
+
+def _commands(seen: Seen) -> Iterator[Ends]:
+    for (kind, name), ends in seen.names.items():
+        if kind == TOPIC and words.moves(seen.plain(name), ends.type):
+            yield ends
+
+
+@danger_rule(
+    "MG310",
+    "command-for-several-robots",
+    ERROR,
+    drawn="leak",
+    planned="MG103",
+    what="Nodes of several robots subscribe to one topic with velocities, trajectories, a goal or a"
+    " start pose.",
+    why="One command moves all of them.",
+    fix="Use relative topics, or a remap rule, so that each robot has its own.",
+    bad="""\
+running: /robot1/driver subscribes /cmd_vel geometry_msgs/msg/Twist
+running: /robot2/driver subscribes /cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/driver subscribes /robot2/cmd_vel geometry_msgs/msg/Twist
+""",
+)
+def command_for_several_robots(seen: Seen) -> Iterator[Finding]:
+    """Whether or not anybody sends at the moment."""
+    for (kind, name), ends in seen.names.items():
+        plain = seen.plain(name)
+        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
+        nodes = nodes_of(at_work(ends.subscribers)) if kind == TOPIC and order else ()
+        robots = robots_of(seen, nodes)
+        if len(robots) > 1:
+            message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
+            cause = own_namespace(seen, name, robots[0])
+            yield command_for_several_robots.finding(message, cause, node=nodes[0], names=(name,))
+
+
+@danger_rule(
+    "MG311",
+    "command-from-another-robot",
+    ERROR,
+    drawn="cross-talk",
+    planned="MG104",
+    what="A robot's node sends commands to another robot: velocities, trajectories, goals, or requests"
+    " to its services.",
+    why="Who drives the one robot moves the other.",
+    fix="Correct the remap rule, namespace or parameter that has the other robot's name.",
+    bad="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/teleop publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot2/teleop publishes /robot2/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=2,
+)
+def command_from_another_robot(seen: Seen) -> Iterator[Finding]:
+    """Tools as well: a joystick of one robot is not for another."""
+    for (kind, name), ends in seen.names.items():
+        owner, plain = seen.robot(name), seen.plain(name)
+        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
+        senders = ends.publishers if kind == TOPIC and order else ends.clients
+        served = kind == TOPIC or ends.servers
+        for node in nodes_of(senders) if owner and served else ():
+            robot = seen.robot(node)
+            if robot in ("", owner) or not _mistaken(seen, node, robot, ends):
+                continue
+            does = "publishes" if kind == TOPIC else "sends goals to" if kind == ACTION else "calls"
+            message = f"{does} {name}, which belongs to {owner}"
+            cause = f"a namespace, remap rule or parameter of {robot} names {owner}"
+            yield command_from_another_robot.finding(
+                message, cause, robot=robot, node=node, names=(name,)
+            )
+
+
+def _mistaken(seen: Seen, node: str, robot: str, ends: Ends) -> bool:
+    """Is it the other robot's name in place of its own? Who has both coordinates the two; a service
+    that its own robot does not have is for others."""
+    own = next(
+        (
+            it
+            for (kind, name), it in seen.names.items()
+            if kind == ends.kind
+            and seen.robot(name) == robot
+            and seen.plain(name) == seen.plain(ends.name)
+        ),
+        None,
+    )
+    if own is None:
+        return ends.kind == TOPIC
+    return node not in nodes_of((*own.publishers, *own.clients))
+
+
+@danger_rule(
+    "MG312",
+    "several-command-senders",
+    WARNING,
+    what="Several nodes send velocities or trajectories to one robot, and nothing chooses between"
+    " them.",
+    why="While two of them send, the robot follows both by turns: it jerks, or drives against the"
+    " safety of the other.",
+    fix="Put twist_mux (or another node that chooses) between the senders and the robot, each sender"
+    " on a topic of its own.",
+    bad="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/teleop publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/behavior_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=3,
+)
+def several_command_senders(seen: Seen) -> Iterator[Finding]:
+    """The nodes of Nav2, and those of MoveIt, send one after another: they are one sender."""
+    for ends in _commands(seen):
+        readers = nodes_of(at_work(ends.subscribers))
+        senders = nodes_of(at_work(ends.publishers))
+        teams = {words.team(node): node for node in reversed(senders)}
+        played = any(last_word(node).startswith(PLAYER) for node in senders)
+        if not readers or len(teams) < 2 or played or all(map(words.chooses, readers)):
+            continue
+        # A sender of another robot is a rule of its own.
+        if len(robots_of(seen, senders)) > 1:
+            continue
+        tool = next((node for node in teams.values() if is_tool(node)), max(teams.values()))
+        others = [node for node in teams.values() if node != tool]
+        message = f"publishes {ends.name} beside {shorten(others)}, and {readers[0]} obeys both"
+        cause = "put twist_mux before the robot's driver, each sender with a topic of its own"
+        robot = seen.robot(ends.name) or seen.robot(readers[0])
+        yield several_command_senders.finding(
+            message, cause, robot=robot, node=tool, names=(ends.name,)
+        )
+
+
+@danger_rule(
+    "MG313",
+    "bag-beside-a-robot",
+    ERROR,
+    what="`ros2 bag play` publishes topics that nodes of the running system publish as well, or obey.",
+    why="Recorded scans, transforms and commands are mixed with those of now: the robot drives by the"
+    " past.",
+    fix="Play the bag in another ROS_DOMAIN_ID, or remap its topics (`ros2 bag play --remap`).",
+    bad="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /rosbag2_player publishes /robot1/scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /rosbag2_player publishes /recorded/scan sensor_msgs/msg/LaserScan
+""",
+    line=2,
+)
+def bag_beside_a_robot(seen: Seen) -> Iterator[Finding]:
+    """A bag that is played to nodes which only read is what bags are for."""
+    mixed: dict[str, list[str]] = {}
+    for ends in (it for (kind, _), it in seen.names.items() if kind == TOPIC):
+        players = [it for it in nodes_of(ends.publishers) if last_word(it).startswith(PLAYER)]
+        others = [it for it in nodes_of(at_work(ends.publishers)) if it not in players]
+        order = words.moves(seen.plain(ends.name), ends.type)
+        obeyed = order and bool(at_work(ends.subscribers))
+        if players and ends.name not in _OWN_SUBJECT and (others or obeyed):
+            mixed.setdefault(players[0], []).append(ends.name)
+    for player, names in mixed.items():
+        message = f"plays {shorten(sorted(names))} into the running system"
+        cause = "play it in another ROS_DOMAIN_ID, or give its topics other names with --remap"
+        robots = robots_of(seen, names)
+        robot = robots[0] if len(robots) == 1 else ""
+        yield bag_beside_a_robot.finding(
+            message, cause, robot=robot, node=player, names=tuple(sorted(names))
+        )

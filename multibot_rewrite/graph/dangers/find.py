@@ -1,0 +1,37 @@
+"""A graph and its robots -> findings: every declared danger in the order of the codes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import cast
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.dangers import (
+    clocks,
+    commands,
+    matching,
+    names,
+    nodes,
+    sharing,
+    tf_topics,
+    transforms,
+)
+from multibot_rewrite.graph.dangers.seen import Owners, Seen, look_at
+from multibot_rewrite.graph.snapshot import Snapshot
+
+_MODULES = (nodes, names, matching, commands, sharing, transforms, tf_topics, clocks)
+_FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
+DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
+
+
+def find_dangers(graph: Snapshot, owners: Owners) -> list[Finding]:
+    """All findings in the order of the rules; empty for a system that is as it should be."""
+    with gc_paused():
+        seen = look_at(graph, owners)
+        return [it for rule in DANGERS.values() for it in _ask(rule, seen)]
+
+
+def _ask(rule: Rule, seen: Seen) -> Iterator[Finding]:
+    return cast(Callable[[Seen], Iterator[Finding]], rule.check)(seen)

@@ -1,0 +1,155 @@
+"""What the rules about dangers look at: a graph, and the robot of each of its names."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fnmatch import translate
+from typing import NamedTuple
+
+from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+
+# They look, or pass on what a person asks for: no part of a robot, and no sender of their own.
+VIEWERS = (
+    "rviz*", "rqt*", "foxglove_*", "rosbridge*", "rosapi*", "rosbag2_recorder*", "tf2_*", "view_frames",
+    "launch_ros_*", "_*_daemon_*", "*_rclcpp_node", "spawner_*",
+)  # fmt: skip
+_VIEWER = re.compile("|".join(map(translate, VIEWERS)))
+# Names that every node has or may have, whatever it does.
+EVERYBODYS = ("/rosout", "/parameter_events", "/diagnostics", "/diagnostics_agg", "/bond", "/clock")
+
+
+class Owners(NamedTuple):
+    """The robots of a graph, and whose each name is.
+
+    ``names`` has the robot of every node, topic, service and action, ``frames`` that of every frame;
+    empty where it is of no robot or of all. ``plain_names`` and ``plain_frames`` are the same without
+    the robot's name.
+    """
+
+    robots: tuple[str, ...]
+    names: Mapping[str, str]
+    frames: Mapping[str, str]
+    plain_names: Mapping[str, str]
+    plain_frames: Mapping[str, str]
+
+
+class Ends(NamedTuple):
+    """The endpoints of one name and kind, by what their nodes do."""
+
+    kind: str
+    name: str
+    publishers: tuple[GraphEndpoint, ...]
+    subscribers: tuple[GraphEndpoint, ...]
+    servers: tuple[GraphEndpoint, ...]
+    clients: tuple[GraphEndpoint, ...]
+
+    @property
+    def type(self) -> str:
+        """The type of the name, where its ends agree on one; else the type of the first end."""
+        ends = (*self.publishers, *self.subscribers, *self.servers, *self.clients)
+        return ends[0].type
+
+
+class Tree(NamedTuple):
+    """The transforms on a tf topic and its tf_static; ``topic`` is the tf topic.
+
+    ``senders`` are the nodes that publish there: a transform does not say which of them sent it.
+    """
+
+    topic: str
+    edges: tuple[GraphFrame, ...]
+    senders: tuple[str, ...]
+    listeners: tuple[str, ...]
+
+
+class Seen(NamedTuple):
+    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones."""
+
+    graph: Snapshot
+    owners: Owners
+    names: Mapping[tuple[str, str], Ends]
+    trees: tuple[Tree, ...]
+
+    def robot(self, name: str) -> str:
+        """The robot of a node or name; empty for none."""
+        return self.owners.names.get(name, "")
+
+    def plain(self, name: str) -> str:
+        """A node or name without its robot's."""
+        return self.owners.plain_names.get(name, name)
+
+
+def look_at(graph: Snapshot, owners: Owners) -> Seen:
+    """The look-ups that the rules share, made once."""
+    names = {(it.kind, it.name): it for it in _ends(graph.endpoints)}
+    return Seen(graph, owners, names, tuple(_trees(graph, names.values())))
+
+
+def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:
+    found: dict[tuple[str, str], dict[str, list[GraphEndpoint]]] = {}
+    for end in endpoints:
+        if "/_" not in end.name:
+            found.setdefault((end.kind, end.name), defaultdict(list))[end.role].append(end)
+    for (kind, name), by_role in found.items():
+        roles = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
+        yield Ends(kind, name, *(tuple(by_role.get(role, ())) for role in roles))
+
+
+def _trees(graph: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
+    topics: dict[str, list[Ends]] = defaultdict(list)
+    edges: dict[str, list[GraphFrame]] = defaultdict(list)
+    for ends in names:
+        if ends.type == "tf2_msgs/msg/TFMessage":
+            topics[tree_topic(ends.name)].append(ends)
+    for frame in graph.frames:
+        edges[tree_topic(frame.topic)].append(frame)
+    for topic in dict.fromkeys((*edges, *topics)):
+        own = topics.get(topic, ())
+        heard = (node for frame in edges.get(topic, ()) for node in frame.publishers)
+        senders = (*(end.node for it in own for end in it.publishers), *heard)
+        listeners = (end.node for it in own for end in it.subscribers)
+        yield Tree(topic, tuple(edges.get(topic, ())), unique(senders), unique(listeners))
+
+
+def unique(names: Iterable[str]) -> tuple[str, ...]:
+    """Each name once, in their order."""
+    return tuple(dict.fromkeys(names))
+
+
+def nodes_of(ends: Iterable[GraphEndpoint]) -> tuple[str, ...]:
+    """The nodes of some endpoints, each once, in the order of their names."""
+    return tuple(sorted({end.node for end in ends}))
+
+
+def is_viewer(node: str) -> bool:
+    """Does the node only look, or pass on what a person asks for?"""
+    return bool(_VIEWER.fullmatch(last_word(node)))
+
+
+def at_work(ends: Iterable[GraphEndpoint]) -> list[GraphEndpoint]:
+    """The endpoints of nodes that do more than look."""
+    return [end for end in ends if not is_viewer(end.node)]
+
+
+def last_word(name: str) -> str:
+    """The last segment of a name."""
+    return name.rpartition("/")[2]
+
+
+def robots_of(seen: Seen, nodes: Iterable[str]) -> tuple[str, ...]:
+    """The robots that some nodes belong to, each once."""
+    return unique(filter(None, map(seen.robot, nodes)))
+
+
+def and_then(words: Sequence[str]) -> str:
+    """``a``, ``a and b``, ``a, b and c``."""
+    return " and ".join(filter(None, (", ".join(words[:-1]), *words[-1:])))
+
+
+def only(robots: Sequence[str]) -> str:
+    """The one robot; empty where there are several, or none."""
+    return robots[0] if len(robots) == 1 else ""

@@ -1,0 +1,78 @@
+"""Which topics move a robot, which say where it is or what it sees: by type and name."""
+
+from __future__ import annotations
+
+import re
+from fnmatch import translate
+
+# They set a robot in motion: of these types always, of the second ones where the name says so.
+_ALWAYS = (
+    "ackermann_msgs/msg/AckermannDrive", "ackermann_msgs/msg/AckermannDriveStamped",
+    "trajectory_msgs/msg/JointTrajectory", "control_msgs/msg/JointJog",
+)  # fmt: skip
+_BY_NAME = (
+    "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped", "std_msgs/msg/Float64MultiArray",
+    "std_msgs/msg/Float64",
+)  # fmt: skip
+_NAMED = re.compile(r"cmd|vel|command|setpoint|speed")
+# Where to go, and where a robot is: a person or program sends it to one robot.
+_POSES = ("geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped")
+_POSE_NAMES = ("goal_pose", "initialpose", "goal", "move_base_simple/goal")
+# What one robot's own body measures: never that of two robots.
+_BODY = (
+    "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState", "sensor_msgs/msg/LaserScan",
+    "sensor_msgs/msg/Imu",
+)  # fmt: skip
+_SENSOR_PACKAGES = ("sensor_msgs/", "nav_msgs/", "trajectory_msgs/", "control_msgs/")
+MAP = "nav_msgs/msg/OccupancyGrid"
+ODOMETRY, JOINTS = "nav_msgs/msg/Odometry", "sensor_msgs/msg/JointState"
+DESCRIPTION = "robot_description"
+# Nodes that send one after another, by an order among themselves: as many as one sender.
+_TEAMS = {
+    "Nav2": (
+        "controller_server", "behavior_server", "recoveries_server", "velocity_smoother",
+        "collision_monitor", "docking_server", "following_server", "bt_navigator", "route_server",
+        "planner_server", "waypoint_follower", "lifecycle_manager*", "*costmap*",
+    ),
+    "MoveIt": ("move_group*", "servo*", "moveit_*"),
+}  # fmt: skip
+_TEAM = {
+    team: re.compile("|".join(translate(f"*{it}*") for it in nodes))
+    for team, nodes in _TEAMS.items()
+}
+# Between several senders and a robot: they choose one.
+_CHOOSES = re.compile(r"mux|prioriti|arbit|selector|switch|twist_manager")
+
+
+def moves(name: str, type_: str) -> bool:
+    """Does the topic set a robot in motion?"""
+    return type_ in _ALWAYS or (type_ in _BY_NAME and bool(_NAMED.search(name.rpartition("/")[2])))
+
+
+def is_pose_order(plain: str, type_: str) -> bool:
+    """Does the topic (without its robot's name) send a robot somewhere, or say where it is?"""
+    return type_ in _POSES and plain.strip("/") in _POSE_NAMES
+
+
+def is_of_a_body(type_: str) -> bool:
+    """Is it what the body of a single robot measures: its joints, its way, its scan?"""
+    return type_ in _BODY
+
+
+def is_of_one_robot(plain: str, type_: str) -> bool:
+    """Would data of two robots be mixed on the topic: sensors, odometry, maps, commands, a
+    description?"""
+    sensors = type_.startswith(_SENSOR_PACKAGES)
+    return sensors or moves(plain, type_) or plain.endswith(DESCRIPTION)
+
+
+def team(node: str) -> str:
+    """The node's name, or that of the nodes that it takes turns with."""
+    last = node.rpartition("/")[2]
+    found = (name for name, pattern in _TEAM.items() if pattern.fullmatch(last))
+    return next(found, node)
+
+
+def chooses(node: str) -> bool:
+    """Does the node choose between several senders, like twist_mux?"""
+    return bool(_CHOOSES.search(node.rpartition("/")[2]))

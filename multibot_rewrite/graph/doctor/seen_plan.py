@@ -1,0 +1,74 @@
+"""What is seen -> a plan that the same graph fulfils: to draw it, and to begin a fleet with. Pure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from multibot_rewrite.graph.dangers.seen import EVERYBODYS, unique
+from multibot_rewrite.graph.doctor.diagnose import Diagnosis
+from multibot_rewrite.graph.doctor.robots import GuessedRobot
+from multibot_rewrite.graph.expectation import (
+    ALWAYS,
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+)
+from multibot_rewrite.graph.rules.tf_trees import tree_topic
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.naming import DEFAULT_LAYOUT, SHARED_FRAMES, TF_TOPICS
+
+# The robot of a graph in which no name has a robot's.
+NAMELESS = GuessedRobot("robot1", "")
+_PARAMETERS = ("rcl_interfaces/", "type_description_interfaces/")
+
+
+def seen_plan(seen: Diagnosis) -> Expectation:
+    """The plan: all nodes but tools, all names but what every node has."""
+    nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
+    robots = seen.robots or (NAMELESS,)
+    planned = tuple(_robot(seen, robot, nodes) for robot in robots)
+    planned = tuple(robot for robot in planned if robot.nodes)
+    owned = {node for robot in planned for node in robot.nodes}
+    shared = tuple(node for node in nodes if node not in owned)
+    names = seen.owners.names
+    topics = unique(end.name for end in seen.graph.endpoints if end.kind == "topic")
+    bare = (it for it in topics if not names.get(it) and "/_" not in it)
+    return Expectation(
+        seen.layout.name if seen.layout else DEFAULT_LAYOUT,
+        planned,
+        shared,
+        tuple(sorted({*bare, *EVERYBODYS})),
+        tuple(sorted(SHARED_FRAMES)),
+        tuple(dict.fromkeys(_endpoints(seen, {*owned, *shared}))),
+    )
+
+
+def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> PlannedRobot:
+    """Frames without a robot's name are those of the robot on whose topic they are."""
+    names, frames = seen.owners.names, seen.owners.frames
+    mine = "" if robot is NAMELESS else robot.name
+    topics = [topic for topic, _ in seen.tf if names.get(topic, "") == mine]
+    shared = f"/{TF_TOPICS[0]}"
+    tf = next(iter(topics), shared)
+    own = {
+        it
+        for edge in seen.graph.frames
+        for it in (edge.child, edge.parent)
+        if frames.get(it) == robot.name
+        or (not frames.get(it) and tree_topic(edge.topic) == tf and (tf != shared or not mine))
+    }
+    return PlannedRobot(
+        robot.name,
+        tuple(node for node in nodes if names.get(node, "") == mine),
+        tuple(sorted(own - set(SHARED_FRAMES))),
+        tf,
+    )
+
+
+def _endpoints(seen: Diagnosis, nodes: Iterable[str]) -> Iterator[PlannedEndpoint]:
+    for end in seen.graph.endpoints:
+        common = end.name in ALWAYS or end.type.startswith(_PARAMETERS) or "/_" in end.name
+        if end.node in nodes and not common:
+            code = seen.owners.plain_names.get(end.name, end.name)
+            own = (end.node, end.kind, end.role, end.name)
+            yield PlannedEndpoint(*own, end.type, code)

@@ -1,0 +1,1 @@
+"""The graph as a Zenoh router knows it; needs no ROS."""

@@ -1,0 +1,284 @@
+"""What vendors' launch files start, against what a plan has: by their own files, and by launch files.
+
+    python tests/support/vendor_systems.py [SYSTEM ...]      print the page
+    python tests/support/vendor_systems.py --write           write docs/vendors.md
+
+MULTIBOT_SOURCES names a folder with checkouts of the repositories that ``vendors/*.yaml`` names, under
+these names. Needs launch and launch_ros. The judge is ``launch_recorder.py``: the real launch with
+programs that do nothing.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+from vendor_sources import WITHOUT, install, packages_below, sources_folder
+
+from multibot_rewrite.fleets.fleet import expected
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from multibot_rewrite.graph.expectation import Expectation
+
+HERE = Path(__file__).parent
+PAGE = HERE.parent.parent / "docs" / "vendors.md"
+RECORDER = HERE / "launch_recorder.py"
+ROBOT, OTHER = "robot1", "robot2"
+HEAD = """\
+# Vendors' robots: the plan and what their launch files start
+
+Made by `MULTIBOT_SOURCES=FOLDER python tests/support/vendor_systems.py --write`, which runs the vendors'
+launch files in the real `launch`, with programs that do nothing. *Named* are those of the started nodes
+that the plan has, *topics* those whose topics, services and actions it has too, *wrong* nodes that must
+run by the plan and that nothing starts. *Files* is the plan by the robot's own files and stacks, *launch*
+has its launch files besides, *before* stacks alone.
+
+| system | nodes | before | files: named | topics | wrong | launch: named | topics | wrong |
+|---|--:|--:|--:|--:|--:|--:|--:|--:|\
+"""
+# Of the spawner: options with a value.
+_VALUED = (
+    *("-c", "--controller-manager", "-p", "--param-file", "-n", "--namespace", "-t"),
+    *("--controller-type", "--controller-manager-timeout", "--switch-timeout"),
+    *("--service-call-timeout", "--controller-ros-args"),
+)
+_PASSING = (
+    *("create", "spawn_entity.py", "gz_spawn_model", "generate_description", "generate_launch"),
+    *("generate_param", "generate_semantic_description", "wait_for_robot_description"),
+)
+
+
+class Vendors(NamedTuple):
+    """The systems, what their nodes are called in their code, and what is only a stand-in."""
+
+    systems: Mapping[str, Mapping[str, Any]]
+    named: Mapping[str, Mapping[str, Any]]
+    empty: Mapping[str, list[str]]
+    sources: Mapping[str, str]
+
+
+class Started(NamedTuple):
+    """A node that runs, by the judge; ``by`` is package and executable, or what starts it."""
+
+    name: str
+    by: str
+    rules: tuple[tuple[str, str], ...] = ()
+    parameters: tuple[str, ...] = ()
+
+
+class Outcome(NamedTuple):
+    """A system: the nodes that its launch files start, its plan without and with them."""
+
+    name: str
+    before: str
+    started: Mapping[str, Started]
+    own: Expectation
+    launched: Expectation
+
+
+def read_vendors() -> Vendors:
+    """All systems of ``vendors/*.yaml``."""
+    parts = [yaml.safe_load(it.read_text()) for it in sorted(HERE.glob("vendors/*.yaml"))]
+    merged: dict[str, dict[str, Any]] = {key: {} for key in Vendors._fields}
+    for part in parts:
+        for key, rows in part.items():
+            merged[key] |= rows or {}
+    return Vendors(**merged)
+
+
+def filled(value: Any, words: Mapping[str, str]) -> Any:
+    """A value with ``{sources}``, ``{work}`` and ``{robot}`` replaced in every text."""
+    if isinstance(value, str):
+        for word, text in words.items():
+            value = value.replace(f"{{{word}}}", text)
+        return value
+    if isinstance(value, dict):
+        return {filled(key, words): filled(it, words) for key, it in value.items()}
+    return [filled(it, words) for it in value] if isinstance(value, list) else value
+
+
+def prepare(system: Mapping[str, Any], words: Mapping[str, str]) -> None:
+    """Write the files of a robot, and run the vendor's generators for it."""
+    for path, text in filled(system.get("files", {}), words).items():
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        Path(path).write_text(text)
+    for command in filled(system.get("prepare", []), words):
+        subprocess.run([sys.executable, *command.split()], check=True, stdout=subprocess.DEVNULL)
+
+
+def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str]) -> list[Started]:
+    """The nodes of one robot, by the real launch."""
+    rows = [row for line in filled(system["launch"], words) for row in _recorded(line)]
+    below = filled(system.get("below", ""), words)
+    nodes = [it for row in rows for it in _nodes(row, vendors.named)]
+    found = [_below(it, below) for it in nodes]
+    also = filled(system.get("simulator", {}), words)
+    return [*found, *(Started(f"/{words['robot']}/{name}", by) for name, by in also.items())]
+
+
+def _recorded(line: str) -> list[dict[str, Any]]:
+    command = [sys.executable, str(RECORDER), *line.split()]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    if "Caught" in done.stderr and "nav2_" not in done.stderr:
+        raise SystemExit(f"{line}\n{done.stderr}")
+    *_, rows = done.stdout.rpartition("\n[")
+    found: list[dict[str, Any]] = json.loads(f"[{rows.lstrip('[')}")
+    return found
+
+
+def _nodes(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
+    """The nodes of a program: it may have several, and a spawner has its controllers."""
+    by = f"{row['package']}/{row['executable']}"
+    if not row["package"] or row["executable"] in _PASSING:
+        return
+    namespace = f"/{row['namespace'].strip('/')}".rstrip("/")
+    if row["executable"] == "spawner":
+        above = _manager(row["own"]).strip("/").rpartition("/")[0]
+        home = f"/{above}" if above else namespace
+        yield from (Started(f"{home}/{it}", by) for it in _positional(row["own"]))
+        return
+    names = named.get(by, {}).get("nodes", [""])
+    own = row["name"] or names[0]
+    if not own:
+        raise SystemExit(f"{by} has no name in its launch file: add it to named, with its source")
+    rules = tuple((old, new) for old, new in row["rules"])
+    for name in (own, *names[1:]):
+        yield Started(f"{namespace}/{name}", by, rules, tuple(row.get("parameters", ())))
+
+
+def _below(it: Started, namespace: str) -> Started:
+    """The node in a namespace; one RViz serves all robots."""
+    alone = not namespace or it.by.startswith("rviz2/")
+    return it if alone else it._replace(name=f"/{namespace}{it.name}")
+
+
+def _manager(words: list[str]) -> str:
+    """The controller manager that a spawner is told; controllers run in its namespace."""
+    given = (word for flag, word in pairwise(words) if flag in ("-c", "--controller-manager"))
+    return next(given, "")
+
+
+def _positional(words: Iterable[str]) -> Iterator[str]:
+    rest = iter(words)
+    for word in rest:
+        if word in _VALUED:
+            next(rest, None)
+        elif not word.startswith("-"):
+            yield word
+
+
+def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Expectation:
+    """The plan of two robots by the vendor's files, with its launch files or without."""
+    work = Path(words["work"])
+    robots = []
+    for robot in (ROBOT, OTHER):
+        mine = {**words, "robot": robot}
+        entry = {"name": robot, **filled(system.get("robot", {}), mine)}
+        robots.append(entry | ({"launch": filled(system["launch"], mine)} if launch else {}))
+    fleet = {"layout": "tf-per-robot", "distro": system["release"], "robots": robots}
+    file = work / "fleet.yaml"
+    file.write_text(yaml.safe_dump({**fleet, **filled(system["fleet"], words)}, sort_keys=False))
+    return expected(plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet)
+
+
+def outcome(name: str, vendors: Vendors, folder: Path, packages: Mapping[str, Path]) -> Outcome:
+    """Run the judge and both plans of a system."""
+    system = vendors.systems[name]
+    with tempfile.TemporaryDirectory() as work:
+        environment = install(packages, Path(work) / "prefix", vendors.empty)
+        before = dict(os.environ)
+        os.environ.update(
+            environment, ROS_DISTRO=system["release"], **system.get("environment", {})
+        )
+        try:
+            words = {"sources": str(folder), "work": work, "robot": ROBOT}
+            for robot in (ROBOT, OTHER):
+                prepare(system, {**words, "robot": robot})
+            nodes = {it.name: it for it in started(system, vendors, words)}
+            plans = [planned(system, words, launch) for launch in (False, True)]
+        finally:
+            os.environ.clear()
+            os.environ.update(before)
+    return Outcome(name, str(system.get("before", "")), nodes, *plans)
+
+
+def nodes_of(plan: Expectation) -> dict[str, bool]:
+    """The nodes of a plan that belong to the first robot or to all, and whether each has to run."""
+    mine = next(it for it in plan.robots if it.name == ROBOT)
+    own = {it: it not in mine.optional for it in mine.nodes}
+    return {**own, **dict.fromkeys(plan.shared_nodes, False)}
+
+
+def wrong(plan: Expectation, there: Mapping[str, Started]) -> list[str]:
+    """Nodes that have to run by the plan, and that nothing starts."""
+    return [it for it, runs in nodes_of(plan).items() if runs and it not in there]
+
+
+def with_topics(plan: Expectation, there: Mapping[str, Started]) -> list[str]:
+    """Nodes that run, and whose topics, services and actions the plan has."""
+    known = {it.node for it in plan.endpoints}
+    return [it for it in nodes_of(plan) if it in there and it in known]
+
+
+def page(outcomes: Iterable[Outcome]) -> str:
+    """The page: a row a system, and a row a node."""
+    found = list(outcomes)
+    return "\n".join([HEAD, *map(_row, found), *(line for it in found for line in _table(it)), ""])
+
+
+def _row(it: Outcome) -> str:
+    there = it.started
+    cells = [it.name, len(there), it.before or "-"]
+    for plan in (it.own, it.launched):
+        named = [name for name in nodes_of(plan) if name in there]
+        cells += [len(named), len(with_topics(plan, there)), len(wrong(plan, there))]
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def _table(it: Outcome) -> Iterator[str]:
+    plans = [(nodes_of(plan), dict(plan.origins)) for plan in (it.own, it.launched)]
+    yield from ("", f"## {it.name}", "")
+    yield "| node | started by | by its files | by its launch files | topics |"
+    yield "|---|---|---|---|---|"
+    for name, node in sorted(it.started.items()):
+        cells = [
+            _short(origins.get(name, "added")) if name in there else "" for there, origins in plans
+        ]
+        topics = "known" if name in with_topics(it.launched, it.started) else ""
+        yield f"| `{name}` | {node.by} | {cells[0]} | {cells[1]} | {topics} |"
+    for word, plan in (("files", it.own), ("launch files", it.launched)):
+        bad = wrong(plan, it.started)
+        yield from [f"\nWrong by its {word}: {', '.join(bad)}."] if bad else []
+
+
+def _short(origin: str) -> str:
+    """A place without the folders above its file."""
+    return origin.rpartition("/")[2]
+
+
+def main(words: list[str]) -> int:
+    """Print the page of some systems, or write that of all."""
+    folder = sources_folder()
+    if folder is None:
+        print(WITHOUT, file=sys.stderr)
+        return 2
+    vendors, packages = read_vendors(), packages_below(folder)
+    names = [it for it in words if not it.startswith("--")] or list(vendors.systems)
+    text = page([outcome(it, vendors, folder, packages) for it in names])
+    if "--write" in words:
+        PAGE.write_text(text)
+    else:
+        print(text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
