@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import shutil
 import subprocess
-import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 import pytest
 from graph_cases import read_plan
 from live_commands import write_plan
+from waiting import wait_until
 from zenoh_robots import (
     STRING,
     STRING_HASH,
@@ -78,13 +78,14 @@ def arrives(sender: Any, listener: Any, name: str, witness: str) -> bool:
         listener.declare_subscriber(it, lambda sample: heard.append(str(sample.key_expr)))
         for it in (name, witness)
     ]
-    end = time.monotonic() + SECONDS
-    while witness not in heard:
-        assert time.monotonic() < end, f"{witness} did not arrive either"
+
+    def sent() -> bool:
+        # In this order: when the witness has arrived, so has what is sent before it.
         for it in (name, witness):
             sender.put(it, b"hello")
-        time.sleep(0.02)
-    time.sleep(0.1)
+        return witness in heard
+
+    wait_until(sent)
     for it in subscriptions:
         it.undeclare()
     return name in heard
