@@ -6,9 +6,11 @@ import re
 
 # What follows ``robots:``, empty lines and comments aside.
 _ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
+_INCLUDE = re.compile(rb"^include:", re.MULTILINE)
 
 
 def is_fleet(data: bytes) -> bool:
-    """Is this a fleet file? Its robots are a list; in a plan they are keys."""
+    """Is this a fleet file? Its robots are a list, or in files that it includes; in a plan they are
+    keys."""
     found = _ROBOTS.search(data)
-    return found is not None and found[1][:1] in (b"-", b"[")
+    return found[1][:1] in (b"-", b"[") if found else bool(_INCLUDE.search(data))
