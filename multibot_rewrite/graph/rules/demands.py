@@ -224,16 +224,19 @@ running: /robot1/ros_gz_bridge subscribes /robot1/cmd_vel geometry_msgs/msg/Twis
     line=2,
 )
 def bridged_topic_missing(view: View) -> Iterator[Finding]:
-    """One finding for a robot."""
+    """One finding for a robot; one for all where nothing is bridged."""
     rows = [(topic, role) for topic in view.plan.topics for role in topic.bridge]
     missing = [(topic, role) for topic, role in rows if not _is_carried(view, topic, role)]
-    nothing = len(missing) == len(rows)
+    if missing and len(missing) == len(rows):
+        running = not all(_absent(view, it.name) for it in view.plan.robots)
+        yield from [_not_carried(view, "", missing, WARNING)] * running
+        return
     by_robot: dict[str, list[tuple[PlannedTopic, str]]] = defaultdict(list)
     for topic, role in missing:
         by_robot[view.ownership.robot(topic.name)].append((topic, role))
     for robot, own in by_robot.items():
         if not (robot and _absent(view, robot)):
-            yield _not_carried(view, robot, own, WARNING if nothing else ERROR)
+            yield _not_carried(view, robot, own, ERROR)
 
 
 def _absent(view: View, robot: str) -> bool:
