@@ -83,6 +83,7 @@ _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # Stands for the name of a file in what a launch file gives itself.
 _OWN = "parameters of a launch file"
 NO_NAME = "the launch file gives it no name"
+_WITHOUT_VALUES = "the node is in the plan without what the file sets"
 
 
 class Programs(NamedTuple):
@@ -127,7 +128,7 @@ def with_launched(
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
-    left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
+    left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
     gone |= {it.known for it in nodes.values() if it.known} - {
@@ -141,7 +142,7 @@ def with_launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
-        not graph.notes,
+        graph.whole,
         tuple(_findings(graph, pairs, left)),
     )
 
@@ -176,6 +177,8 @@ def _pair(
         name=_below(it.namespace, name, words),
         endpoints=tuple(end._replace(remapped="") for end in facts.endpoints),
         known=facts.known or facts.name if base else "",
+        # A node that usually serves all robots, in the namespace of one, is that robot's.
+        shared=facts.shared and not _is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
         origin=_origin(it.place),
@@ -195,6 +198,10 @@ def _base(
     by_word = (node for node in of_package if wanted & {node.name, *node.nodl})
     chosen = known.get(named) if named else None
     return next(of_stack, None) or chosen or next(by_word, None)
+
+
+def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
+    return namespace.strip("/").partition("/")[0] in words
 
 
 def _below(namespace: str, name: str, words: Collection[str]) -> str:
@@ -241,9 +248,9 @@ def _given(
     documents = [_document(it) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
-        name, manager = _stripped(it.name, words), _stripped(it.manager, words)
-        if name in names or manager == pair.facts.name:
-            yield _placed(it, pair.node.place)._replace(name=name, manager=manager)
+        mine = without_robot(it, words)
+        if mine.name in names or mine.manager == pair.facts.name:
+            yield _placed(mine, pair.node.place)
 
 
 def _placed(given: GivenNode, place: Place) -> GivenNode:
@@ -253,6 +260,12 @@ def _placed(given: GivenNode, place: Place) -> GivenNode:
         for name, it in given.values.items()
     }
     return given._replace(values=values, place=place if given.place.file == _OWN else given.place)
+
+
+def without_robot(given: GivenNode, words: Collection[str]) -> GivenNode:
+    """A node of a file that is for one robot, without the namespace of that robot."""
+    name, manager = (_stripped(it, words) for it in (given.name, given.manager))
+    return given._replace(name=name, manager=manager)
 
 
 def _stripped(name: str, words: Collection[str]) -> str:
@@ -285,7 +298,9 @@ def _findings(
     graph: LaunchGraph, pairs: Iterable[_Pair], left: Iterable[NodeFacts]
 ) -> Iterator[Finding]:
     for note in graph.notes:
-        hint = "the nodes that it starts are not in the plan"
+        hint = (
+            _WITHOUT_VALUES if note.parameters else "the nodes that it starts are not in the plan"
+        )
         yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
     for it in pairs:
         if not it.known:

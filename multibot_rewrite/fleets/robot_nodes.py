@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import LaunchOrder
+from multibot_rewrite.evidence.launched import without_robot
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.findings.finding import Finding
@@ -40,7 +41,7 @@ def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotEvidence:
     """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
     parameters = load_known_nodes(file.parameters, file.distro)
     documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    own = tuple(given_nodes(documents, parameters))
+    own = tuple(without_robot(it, spec.words) for it in given_nodes(documents, parameters))
     known, stack = _known(own, file), stack_nodes(spec, file)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)

@@ -109,6 +109,9 @@ def prepare(system: Mapping[str, Any], words: Mapping[str, str]) -> None:
     for path, text in filled(system.get("files", {}), words).items():
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         Path(path).write_text(text)
+    for path, source in filled(system.get("links", {}), words).items():
+        if not Path(path).exists():
+            Path(path).symlink_to(source)
     for command in filled(system.get("prepare", []), words):
         subprocess.run([sys.executable, *command.split()], check=True, stdout=subprocess.DEVNULL)
 
@@ -124,8 +127,10 @@ def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str
 def _recorded(line: str) -> list[dict[str, Any]]:
     command = [sys.executable, str(RECORDER), *line.split()]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    if "Caught" in done.stderr and "nav2_" not in done.stderr:
-        raise SystemExit(f"{line}\n{done.stderr}")
+    # The world that Nav2 makes is looked for at the end; the program that makes it did not run.
+    bad = [it for it in done.stderr.splitlines() if "Caught" in it and "/nav2_" not in it]
+    if bad:
+        raise SystemExit(f"{line}\n{bad[0]}")
     *_, rows = done.stdout.rpartition("\n[")
     found: list[dict[str, Any]] = json.loads(f"[{rows.lstrip('[')}")
     return found
@@ -172,9 +177,11 @@ def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -
     return expected(plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet)
 
 
-def outcome(name: str, vendors: Vendors, folder: Path, packages: Mapping[str, Path]) -> Outcome:
+def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
     """Run the judge and both plans of a system."""
     system = vendors.systems[name]
+    used = (packages_below(folder / it) for it in reversed(system["uses"]))
+    packages = {name: path for found in used for name, path in found.items()}
     with tempfile.TemporaryDirectory() as work:
         environment = install(packages, Path(work) / "prefix", vendors.empty)
         before = dict(os.environ)
@@ -253,9 +260,9 @@ def main(words: list[str]) -> int:
     if folder is None:
         print(WITHOUT, file=sys.stderr)
         return 2
-    vendors, packages = read_vendors(), packages_below(folder)
+    vendors = read_vendors()
     names = [it for it in words if not it.startswith("--")] or list(vendors.systems)
-    text = page([outcome(it, vendors, folder, packages) for it in names])
+    text = page([outcome(it, vendors, folder) for it in names])
     if "--write" in words:
         PAGE.write_text(text)
     else:
