@@ -17,73 +17,22 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.evidence.launch_findings import launch_findings
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
-from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.rosnames import expand
 
-_ROBOTS = """\
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-_AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
-NOT_LAUNCHED = declare(
-    "MF821",
-    "node-not-launched",
-    NOTE,
-    what="A stack has a node that none of the robot's launch files starts; it is left out of the plan.",
-    why="The launch files say what runs. A plan with another node would report it as missing.",
-    fix="Nothing, if the launch files are right. Else start the node, or name its launch file, too.",
-    bad=f"launch: system_model.yaml\nstack: [robot_localization]\n{_ROBOTS}",
-    good=f"launch: system_model.yaml\n{_ROBOTS}",
-    formats=("fleet",),
-    beside={"system_model.yaml": _AMCL},
-)
-NOT_KNOWN = declare(
-    "MF822",
-    "launched-node-not-known",
-    NOTE,
-    what="A launch file starts a node that is not known: the plan has its name, and nothing of its "
-    "topics, services and frames.",
-    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"{_ROBOTS}launch: known.yaml\n",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /d: {pkg: my_driver, exec: d, node_name: d}\n",
-        "known.yaml": _AMCL,
-    },
-)
-NOT_WHOLE = declare(
-    "MF823",
-    "launch-not-whole",
-    WARNING,
-    what="A part of a launch file cannot be read here, or is decided only at run time.",
-    why="The nodes that it starts are not in the plan, unless a stack has them.",
-    fix="Source the workspace that has the package, or give the folder of its sources as root; name a "
-    "stack for what only a run decides.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"launch: known.yaml\n{_ROBOTS}",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /d: {exec: ./start.sh}\n",
-        "known.yaml": _AMCL,
-    },
-)
 _TF = ("/tf", "/tf_static")
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
-# Stands for the name of a file in what a launch file gives itself.
+# The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
 NO_NAME = "the launch file gives it no name"
-_WITHOUT_VALUES = "the node is in the plan without what the file sets"
 
 
 class Programs(NamedTuple):
@@ -95,11 +44,12 @@ class Programs(NamedTuple):
 
 class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, if that is all that runs, and findings."""
+    its name, the controllers that are spawned by theirs, if that is all that runs, and findings."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[GivenNode, ...]
     started: Mapping[str, LaunchedNode]
+    spawned: Mapping[str, Spawned]
     whole: bool
     findings: tuple[Finding, ...]
 
@@ -126,6 +76,8 @@ def with_launched(
     parameters: KnownNodes,
 ) -> Launched:
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
+    spawned, notes = spawned_in(graph.nodes)
+    graph = graph._replace(notes=(*graph.notes, *notes))
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
@@ -137,13 +89,16 @@ def with_launched(
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
-    given = [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    given = list(_controllers(spawned, pairs, words, parameters))
+    given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    unknown = [(it.node, it.facts.name) for it in pairs if not it.known]
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
+        {_stripped(it.full_name.strip("/"), words): it for it in spawned},
         graph.whole,
-        tuple(_findings(graph, pairs, left)),
+        tuple(launch_findings(graph, unknown, left)),
     )
 
 
@@ -152,7 +107,12 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
     origins = {it.name: it.origin for it in launched.nodes}
     for it in nodes:
         if it.name in launched.started:
-            yield _remapped(it, launched.started[it.name], origins[it.name])
+            node = launched.started[it.name]
+            yield _remapped(it, node.remappings, node.namespace)._replace(origin=origins[it.name])
+        elif it.name in launched.spawned:
+            controller = launched.spawned[it.name]
+            above = controller.manager.rpartition("/")[0]
+            yield _remapped(it, controller.rules, above)
         elif it.host in launched.started:
             yield it._replace(origin=origins.get(it.name, it.origin))
         elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
@@ -160,7 +120,8 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
 
 
 def _passes(it: LaunchedNode) -> bool:
-    return not it.package or f"{it.package}/{it.executable}" in programs().passing
+    program = f"{it.package}/{it.executable}"
+    return not it.package or is_spawner(it) or program in programs().passing
 
 
 def _pair(
@@ -236,13 +197,43 @@ def _hosted(
             yield node._replace(origin=origins[node.host])
 
 
+def _controllers(
+    spawned: Sequence[Spawned],
+    pairs: Iterable[_Pair],
+    words: Collection[str],
+    parameters: KnownNodes,
+) -> Iterator[GivenNode]:
+    """What the launch files set for the controllers that they spawn."""
+    own = {_full_name(it.node, it.facts): it.node.parameters for it in pairs}
+    places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
+    for manager, texts in texts_of(spawned, own):
+        above = _stripped(manager.strip("/"), words)
+        documents = [_document(it) for it in texts if _has_sections(it)]
+        found: dict[str, GivenNode] = {}
+        for it in given_nodes(documents, parameters):
+            name = _stripped(it.name, words)
+            if name in places:
+                found[name] = _joined(found.get(name, it), it)
+        for name, it in found.items():
+            yield _placed(it, places[name])._replace(name=name, manager=above)
+
+
+def _joined(one: GivenNode, other: GivenNode) -> GivenNode:
+    """A manager of any namespace declares a controller by another name than the launch starts it."""
+    said = one if one.type else other
+    return said._replace(values={**one.values, **other.values})
+
+
+def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
+    return expand(facts.name.rpartition("/")[2], node.namespace, "")
+
+
 def _given(
     pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
 ) -> Iterator[GivenNode]:
     """What the launch file's parameters set for a node, the nodes in it and its controllers."""
-    own = f"{pair.node.namespace.strip('/')}/{pair.facts.name.rpartition('/')[2]}".lstrip("/")
     # Sections for any node count, too, so each node gets one of its own.
-    first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
+    first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
     # launch_ros gives a component the values of a file without such a key; it names no node.
     files_ = (it for it in pair.node.parameters if _has_sections(it))
     documents = [_document(it) for it in (first, *files_)]
@@ -284,36 +275,15 @@ def _document(it: ParameterText) -> YamlText:
     return read_yaml(it.text.encode(), it.file or _OWN)
 
 
-def _remapped(node: NodeFacts, launched: LaunchedNode, origin: str) -> NodeFacts:
+def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
     """The node with the remap rules of its launch file; those of tf belong to the layout."""
-    rules = dict(reversed([it for it in launched.remappings if it[0] not in _TF]))
-    ends = tuple(
-        it._replace(remapped=rules[it.name]) if rules.get(it.name, it.name) != it.name else it
-        for it in node.endpoints
-    )
-    return node._replace(endpoints=ends, origin=origin)
-
-
-def _findings(
-    graph: LaunchGraph, pairs: Iterable[_Pair], left: Iterable[NodeFacts]
-) -> Iterator[Finding]:
-    for note in graph.notes:
-        hint = (
-            _WITHOUT_VALUES if note.parameters else "the nodes that it starts are not in the plan"
-        )
-        yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
-    for it in pairs:
-        if not it.known:
-            message = f"node {it.facts.name} ({it.node.package} {it.node.executable}) is not known"
-            hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
-            yield NOT_KNOWN.finding(message, hint, **_place(it.node.place))
-    for node in left:
-        if not node.when:
-            message = f"{node.name} of {node.origin} is not launched; it is left out"
-            hint = "leave out the stack, or name the launch file that starts it, too"
-            place = Place(next((it.place.file for it in graph.nodes), ""), 1)
-            yield NOT_LAUNCHED.finding(message, hint, **_place(place))
-
-
-def _place(place: Place) -> dict[str, object]:
-    return {"file": place.file, "line": place.line, "column": 1}
+    above, name = namespace.rstrip("/"), node.name.rpartition("/")[2]
+    targets = {
+        expand(old, above, name): new.removeprefix(f"{above}/") if above else new
+        for old, new in reversed([it for it in rules if it[0] not in _TF])
+    }
+    ends = []
+    for it in node.endpoints:
+        target = targets.get(expand(it.name, above, name), it.name)
+        ends.append(it._replace(remapped=target) if target != it.name else it)
+    return node._replace(endpoints=tuple(ends))
