@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.fleet import check_unread, note_interfaces
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
@@ -16,6 +15,7 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import WORDS, follow
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable
@@ -55,14 +55,14 @@ def _check_use(options: argparse.Namespace) -> None:
 
 def _plan(options: argparse.Namespace) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
-    from multibot_rewrite.fleets.fleet_file import input_files, is_fleet, read_fleet
-
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if is_json(data) or not is_fleet(data):
         return _of_release(options, read_plan(data, path))
+    from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleets.closed_plan import closed_plan
     from multibot_rewrite.fleets.fleet import expected
+    from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
     file = read_fleet(path, options.distro or "", os.environ)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
@@ -28,8 +27,6 @@ POLICY = tuple(Policy.__annotations__)
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
-# What follows ``robots:``, empty lines and comments aside.
-_ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
 
 
 class Pose(NamedTuple):
@@ -150,12 +147,6 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
         yield from filter(None, (robot.description, robot.srdf))
         yield from (path for paths in robot.companions.values() for path in paths)
         yield from (it.file for it in robot.launch)
-
-
-def is_fleet(data: bytes) -> bool:
-    """Is this a fleet file? Its robots are a list; in a plan they are keys."""
-    found = _ROBOTS.search(data)
-    return found is not None and found[1][:1] in (b"-", b"[")
 
 
 def _with_includes(path: str, above: tuple[str, ...]) -> _Read:

@@ -24,10 +24,10 @@ from multibot_rewrite.fleets.fleet_file import (
     FleetFile,
     Pose,
     RobotSpec,
-    is_fleet,
     read_fleet,
     schema,
 )
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.model import InputError
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
@@ -124,6 +124,7 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
         ("layout: L1\nrobots:  # all\n# two\n\n- name: a\n", True),
         ("robots:\n  a:\n    tf: /tf\n", False),
         ("amcl:\n", False),
+        ("include: common.yaml\nlayout: L1\n", True),
     ],
 )
 def test_a_fleet_file_is_distinguished_from_a_plan(text: str, fleet: bool) -> None:
