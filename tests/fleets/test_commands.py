@@ -80,7 +80,9 @@ HARDWARE = """\
 def test_a_robot_that_has_nothing_for_gazebo_is_not_spawned(
     inside: str, spawned: bool, tmp_path: Path
 ) -> None:
-    (tmp_path / "arm.urdf").write_text(f'<robot name="arm"><link name="base_link"/>{inside}</robot>')
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="arm"><link name="base_link"/>{inside}</robot>'
+    )
     (tmp_path / "fleet.yaml").write_text("robots: [{name: robot1, description: arm.urdf}]\n")
     made = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode()
     assert ("ros_gz_sim create" in made) == spawned
