@@ -93,7 +93,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF5",
         "bridges",
-        ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),
+        (
+            "fleets.bridge_checks",
+            "fleets.bridge_merge",
+            "fleets.bridge_outputs",
+            "fleets.bridge_types",
+        ),
     ),
     Home(
         "MF6",
@@ -115,6 +120,8 @@ HOMES: tuple[Home, ...] = (
             "fleets.launched_files",
             "fleets.shared_nodes",
             "fleets.closing",
+            "fleets.closing_bridges",
+            "fleets.closing_controllers",
             "fleets.closing_topics",
         ),
     ),
