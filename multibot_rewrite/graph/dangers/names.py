@@ -13,6 +13,7 @@ from multibot_rewrite.graph.dangers.seen import (
     and_then,
     is_viewer,
     nodes_of,
+    robots_of,
 )
 from multibot_rewrite.graph.rules.causes import in_namespaces_above
 from multibot_rewrite.graph.rules.declaration import danger_rule
@@ -201,7 +202,7 @@ def _served_instead(seen: Seen, end: GraphEndpoint) -> str:
     "MG305",
     "service-of-two-nodes",
     ERROR,
-    what="Several nodes serve a service or action of the same name.",
+    what="Nodes of several robots serve a service of the same name, or several nodes the same action.",
     why="A request is answered by any of them, and a goal reaches all: two robots drive to it.",
     fix="Use a relative name, or a remap rule, so that each robot has its own.",
     bad="""\
@@ -214,10 +215,11 @@ running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/N
 """,
 )
 def service_of_two_nodes(seen: Seen) -> Iterator[Finding]:
-    """Of two nodes with one name the nodes are the finding."""
+    """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
+    robot both serve `set_pose`, which is how they are made."""
     for (kind, name), ends in seen.names.items():
         nodes = nodes_of(ends.servers)
-        if len(nodes) > 1:
+        if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):
             what = "action" if kind == ACTION else SERVICE
             message = f"{and_then(nodes)} both serve the {what} {name}"
             cause = "an absolute name in their code or parameters: make it relative, or remap it"
