@@ -35,6 +35,7 @@ SCAN, JOINTS, MAP = (
     "nav_msgs/msg/OccupancyGrid",
 )
 POSE, START = "geometry_msgs/msg/PoseStamped", "geometry_msgs/msg/PoseWithCovarianceStamped"
+TRIGGER, MOVE = "std_srvs/srv/Trigger", "moveit_msgs/action/MoveGroup"
 TF, CLOCK = "tf2_msgs/msg/TFMessage", "rosgraph_msgs/msg/Clock"
 NAVIGATE = "nav2_msgs/action/NavigateToPose"
 # Role, name, type.
@@ -124,7 +125,7 @@ def _rviz(space: str) -> Iterator[End]:
     yield PUBLISHES, f"{space}/initialpose", START
     yield PUBLISHES, f"{space}/clicked_point", "geometry_msgs/msg/PointStamped"
     yield CALLS, f"{space}/navigate_to_pose", NAVIGATE
-    yield CALLS, f"{space}/lifecycle_manager_slam/is_active", "std_srvs/srv/Trigger"
+    yield CALLS, f"{space}/lifecycle_manager_slam/is_active", TRIGGER
 
 
 def nav2_with_tools(layout: str = "L1") -> Snapshot:
@@ -181,13 +182,13 @@ def slam_with_filters() -> Snapshot:
 def arms() -> Snapshot:
     """Two arms with MoveIt and ros2_control on one tf, frames with a prefix."""
     graph = started(("moveit", "ros2_control"), "L3", ("left_arm", "right_arm"))
+    # Its name ends with an address.
+    graph = respelled(graph, lambda name: name.replace("*", "94231"))
     for robot in ("left_arm", "right_arm"):
         space = f"/{robot}"
         listener = f"{space}/transform_listener_impl_55{robot[0]}0"
         graph = with_node(graph, listener, (SUBSCRIBES, f"{space}/tf", TF))
-        graph = with_node(
-            graph, f"{space}/rviz2", (CALLS, f"{space}/move_action", "moveit_msgs/action/MoveGroup")
-        )
+        graph = with_node(graph, f"{space}/rviz2", (CALLS, f"{space}/move_action", MOVE))
     return graph
 
 
@@ -247,9 +248,7 @@ def follower() -> Snapshot:
     order = (PUBLISHES, "/robot2/cmd_vel_follow", TWIST)
     graph = with_node(graph, "/robot2/follower", *ends, order)
     both = ((CALLS, f"/{robot}/navigate_to_pose", NAVIGATE) for robot in TWO)
-    return with_node(
-        graph, "/robot1/convoy", *both, (SERVES, "/robot1/handover", "std_srvs/srv/Trigger")
-    )
+    return with_node(graph, "/robot1/convoy", *both, (SERVES, "/robot1/handover", TRIGGER))
 
 
 SYSTEMS: Mapping[str, Callable[[], Snapshot]] = {

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.graph.dangers.seen import (
     EVERYBODYS,
+    TF,
     Ends,
     Seen,
     and_then,
@@ -58,7 +59,7 @@ def topic_names_miss(seen: Seen) -> Iterator[Finding]:
     }
     unheard = {name: it for name, it in published.items() if not it.subscribers}
     for (kind, name), ends in seen.names.items():
-        if kind != TOPIC or ends.publishers or name in EVERYBODYS:
+        if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node):
@@ -85,9 +86,10 @@ def _published_instead(
         # Its own robot has it: whether or not others read it as well.
         own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
         return next((it for it in own if published[it].type == end.type), "")
-    same = {name: it for name, it in unheard.items() if it.type == end.type}
-    bare = [it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name)]
-    return next(iter(bare), "") or alike(end.name, same, end.type)
+    same = [name for name, it in published.items() if it.type == end.type]
+    bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
+    unread = (it for it in bare if it in unheard)
+    return next(unread, "") or alike(end.name, same, end.type)
 
 
 def alike(name: str, known: Iterable[str], type_: str) -> str:
@@ -103,7 +105,8 @@ def alike(name: str, known: Iterable[str], type_: str) -> str:
     parts = name.split("/")
     for at in (1, len(parts) - 1):
         near = dict(_with_other_word(parts, at, names))
-        found = nearest(parts[at], near, MISTYPED)
+        swapped = (it for it in near if sorted(it) == sorted(parts[at]))
+        found = next(swapped, "") or nearest(parts[at], near, MISTYPED)
         if found:
             return near[found]
     return ""

@@ -102,7 +102,12 @@ def robots_frames_collide(seen: Seen) -> Iterator[Finding]:
         named = {seen.owners.frames.get(edge.child, "") for edge in tree.edges}
         nameless = [robot for robot in robots if robot not in named]
         doubled = {seen.owners.plain_frames.get(it, "") for it in _named_frames(seen, tree)}
-        both = bare and (len(nameless) > 1 or (len(robots) > 1 and doubled & set(bare)))
+        # Who sends on another robot's topic is a finding of its own.
+        both = (
+            bare
+            and not seen.robot(tree.topic)
+            and (len(nameless) > 1 or (not nameless and doubled & set(bare)))
+        )
         if not both and not (bare and twice):
             continue
         listed = shorten(bare, SEVERAL)
@@ -129,7 +134,8 @@ def _bare_frames(seen: Seen, tree: Tree) -> list[str]:
 
 
 def _named_frames(seen: Seen, tree: Tree) -> Iterator[str]:
-    return (edge.child for edge in tree.edges if seen.owners.frames.get(edge.child))
+    frames = (it for edge in tree.edges for it in (edge.child, edge.parent))
+    return (it for it in frames if seen.owners.frames.get(it))
 
 
 def _either(seen: Seen, tree: Tree, robots: Sequence[str]) -> str:
