@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from graph_cases import environment, sent
 from graph_faults import FAULTS, Fault, nav
+from graph_faults_page import lines
 from healthy_systems import (
     CLOCK,
     SCAN,
@@ -22,6 +23,7 @@ from healthy_systems import (
     with_ends,
     with_node,
 )
+from paths import ROOT
 
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import INCONCLUSIVE
@@ -53,6 +55,10 @@ def test_a_fault_is_found_with_its_cause(fault: Fault) -> None:
 def test_there_are_faults_enough() -> None:
     assert len(FAULTS) >= 60
     assert len({it.name for it in FAULTS}) == len(FAULTS)
+
+
+def test_the_page_of_faults_is_that_of_today() -> None:
+    assert (ROOT / "docs" / "graph-faults.md").read_text() == "".join(f"{it}\n" for it in lines())
 
 
 # ---------------------------------------------------------------- whose names

@@ -527,3 +527,31 @@ def clock_rows() -> tuple[Fault, ...]:
 
 
 FAULTS = (*tf_rows(), *command_rows(), *name_rows(), *data_rows(), *clock_rows())
+# Those whose types are on PyPI; a fault in an action needs nav2_msgs.
+LIVE = (
+    "a joystick in the root",
+    "robot2's teleop drives robot1",
+    "a joystick called after robot2 drives robot1",
+    "a joystick against Nav2",
+    "ros2 topic pub on cmd_vel",
+    "both drivers obey /cmd_vel",
+    "both amcl take /initialpose",
+    "ros2 bag play into the running robot",
+    "two programs send one arm's trajectories",
+    "a lifecycle manager in the root",
+    "a costmap's relative scan",
+    "amcl has an absolute scan topic",
+    "a best effort scan, a reliable reader",
+    "both lidars on /scan",
+    "map_server beside SLAM",
+    "robot2's amcl reads robot1's scan",
+    "joint_state_publisher beside the driver",
+    "amcl started twice",
+    "a second lifecycle manager",
+    "robot2 on simulated time without a clock",
+    "nobody passed /tf:=tf: both trees on /tf",
+    "one robot_state_publisher lacks /tf:=tf",
+    "a static map -> odom beside amcl",
+    "a node sends base_link -> map",
+    "frame_prefix on top of a rewritten description",
+)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import cache
 from typing import NamedTuple
 
-from graph_faults import FAULTS, Fault, nav, shared_tf, simulation
+from graph_faults import FAULTS, LIVE, Fault, nav, shared_tf, simulation
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, Finding
@@ -72,8 +72,6 @@ def _healthy_findings(planned: Expectation, graph: Snapshot) -> frozenset[Findin
 
 def lines() -> Iterator[str]:
     """The page."""
-    from test_live_doctor import LIVE
-
     yield HEAD
     found = [(fault, outcome(fault)) for fault in FAULTS]
     causes = sum(it.cause for _, it in found)

@@ -118,7 +118,7 @@ def robots_frames_collide(seen: Seen) -> Iterator[Finding]:
             )
         else:
             message = f"two nodes of one name send the same frames on {tree.topic}: {listed}"
-        cause = _either(seen, tree, robots)
+        cause = _either(tree, robots)
         yield robots_frames_collide.finding(message, cause, names=tuple(bare))
 
 
@@ -138,14 +138,12 @@ def _named_frames(seen: Seen, tree: Tree) -> Iterator[str]:
     return (it for it in frames if seen.owners.frames.get(it))
 
 
-def _either(seen: Seen, tree: Tree, robots: Sequence[str]) -> str:
+def _either(tree: Tree, robots: Sequence[str]) -> str:
     namespaced = any(node.startswith(f"/{robot}/") for robot in robots for node in tree.senders)
-    if namespaced:
-        own = "-r /tf:=tf -r /tf_static:=tf_static for every node of a robot"
-    else:
-        own = "a namespace for each robot, with -r /tf:=tf -r /tf_static:=tf_static"
+    rules = "pass -r /tf:=tf -r /tf_static:=tf_static to every node of a robot"
+    own = rules if namespaced else f"give each robot a namespace and {rules}"
     senders = shorten(tree.senders, SEVERAL)
-    return f"{own}, or frames with the robot's name (urdf-postfix). Senders: {senders}"
+    return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
 
 
 @danger_rule(
