@@ -93,7 +93,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF5",
         "bridges",
-        ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),
+        (
+            "fleets.bridge_checks",
+            "fleets.bridge_merge",
+            "fleets.bridge_outputs",
+            "fleets.bridge_types",
+        ),
     ),
     Home(
         "MF6",
@@ -109,7 +114,16 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF8",
         "what a robot's files say of its nodes",
-        ("evidence.nodes", "evidence.launched", "fleets.closing", "fleets.closing_topics"),
+        (
+            "evidence.nodes",
+            "evidence.launched",
+            "fleets.launched_files",
+            "fleets.shared_nodes",
+            "fleets.closing",
+            "fleets.closing_bridges",
+            "fleets.closing_controllers",
+            "fleets.closing_topics",
+        ),
     ),
     Home(
         "MG1",
@@ -120,6 +134,7 @@ HOMES: tuple[Home, ...] = (
             "graph.rules.leaks",
             "graph.rules.type_and_qos",
             "graph.rules.publishers",
+            "graph.rules.demands",
         ),
         GRAPH_INTRO,
     ),

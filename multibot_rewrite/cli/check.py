@@ -8,14 +8,14 @@ from collections.abc import Sequence
 
 from multibot_rewrite.bounded import MAX_FLEET_BYTES
 from multibot_rewrite.cli import live, pictures
-from multibot_rewrite.cli.fleet import check_unread, note_interfaces
 from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.cli.watch import WORDS, follow
-from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable
@@ -33,7 +33,7 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
     _check_use(options)
-    plan = _plan(options)
+    plan = plan_of(options)
     try:
         if options.watch:
             return _watch(options, plan)
@@ -53,16 +53,16 @@ def _check_use(options: argparse.Namespace) -> None:
         check_target(options.output, [options.plan, *options.snapshot])
 
 
-def _plan(options: argparse.Namespace) -> Expectation:
+def plan_of(options: argparse.Namespace) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
-    from multibot_rewrite.fleets.fleet_file import input_files, is_fleet, read_fleet
-
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)
     if is_json(data) or not is_fleet(data):
         return _of_release(options, read_plan(data, path))
+    from multibot_rewrite.cli.fleet import check_unread, note_interfaces  # a plan needs none of it
     from multibot_rewrite.fleets.closed_plan import closed_plan
     from multibot_rewrite.fleets.fleet import expected
+    from multibot_rewrite.fleets.fleet_file import input_files, read_fleet
     from multibot_rewrite.fleets.fleet_plan import plan_fleet
 
     file = read_fleet(path, options.distro or "", os.environ)
@@ -103,7 +103,8 @@ def conclude(
         say(f"incomplete: {caveat.message}", PROGRAM)
     codes = {it.code for it in findings}
     pictures.deliver(options, plan, graph, [it for it in found if it.code in codes])
-    verdict = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    unsure = caveats or any(it.level == INCONCLUSIVE for it in of_graph)
+    verdict = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
     _sum_up(options, plan, findings, verdict, gaps)
     return STOPPED if failed else CODES[verdict]

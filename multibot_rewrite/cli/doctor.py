@@ -86,7 +86,7 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
 
 def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:
     """The pictures and the files that the options ask for."""
-    if any(vars(options)[name] for name in pictures.DRAWN):
+    if any(vars(options)[name] for name in pictures.NAMES):
         pictures.deliver(options, seen_plan(seen), seen.graph, findings)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import shlex
 from collections.abc import Mapping, Sequence
+from itertools import takewhile
 from typing import Any, NamedTuple
 
+from multibot_rewrite.evidence.packages import file_of_package
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.model import UsageError
 
@@ -26,10 +28,12 @@ class LaunchOrder(NamedTuple):
 
 class ParameterText(NamedTuple):
     """A parameter file that a node gets, or values that a launch file gives it, in YAML; ``file`` is
-    empty for these, and for a file that the launch makes."""
+    empty for these, and for a file that the launch makes. ``source`` is the file that is there without
+    the launch: ``file``, or what the launch makes another one of; empty for values."""
 
     file: str
     text: str
+    source: str = ""
 
 
 class LaunchedNode(NamedTuple):
@@ -67,18 +71,25 @@ class LaunchGraph(NamedTuple):
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
-    """The order of what follows ``ros2 launch``: a file and ``NAME:=VALUE`` words.
+    """The order of what follows ``ros2 launch``: a file, or a package and a file in it, and
+    ``NAME:=VALUE`` words.
 
-    Raises UsageError for another word.
+    Raises UsageError for other words, and for a package or file that is not there.
     """
     try:
-        file, *words = shlex.split(text)
+        words = shlex.split(text)
     except ValueError:
-        raise UsageError(f"--launch {text!r}: write FILE NAME:=VALUE ...") from None
-    for it in words:
+        words = []
+    named = list(takewhile(lambda it: "=" not in it, words))
+    if not 0 < len(named) < 3:
+        raise UsageError(f"--launch {text!r}: write FILE NAME:=VALUE ..., or PACKAGE FILE ...")
+    for it in words[len(named) :]:
         if not it.partition(":=")[0] or ":=" not in it:
-            raise UsageError(f"launch {file}: {it!r} is no argument; write NAME:=VALUE")
-    arguments = (it.partition(":=") for it in words)
+            raise UsageError(f"launch {named[-1]}: {it!r} is no argument; write NAME:=VALUE")
+    arguments = (it.partition(":=") for it in words[len(named) :])
+    file = named[0]
+    if len(named) > 1:
+        file = file_of_package(named[0], named[1], tuple(roots))
     return LaunchOrder(file, tuple((name, value) for name, _, value in arguments), tuple(roots))
 
 

@@ -21,10 +21,12 @@ from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, 
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.rosnames import expand
 
 _ROBOTS = """\
 robots:
@@ -80,7 +82,7 @@ NOT_WHOLE = declare(
 )
 _TF = ("/tf", "/tf_static")
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
-# Stands for the name of a file in what a launch file gives itself.
+# The name of a file for what a launch file gives itself.
 _OWN = "parameters of a launch file"
 NO_NAME = "the launch file gives it no name"
 
@@ -94,11 +96,12 @@ class Programs(NamedTuple):
 
 class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, if that is all that runs, and findings."""
+    its name, the controllers that are spawned by theirs, if that is all that runs, and findings."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[GivenNode, ...]
     started: Mapping[str, LaunchedNode]
+    spawned: Mapping[str, Spawned]
     whole: bool
     findings: tuple[Finding, ...]
 
@@ -125,6 +128,8 @@ def with_launched(
     parameters: KnownNodes,
 ) -> Launched:
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
+    spawned, notes = spawned_in(graph.nodes)
+    graph = graph._replace(notes=(*graph.notes, *notes))
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
@@ -136,11 +141,13 @@ def with_launched(
     kept = [it for it in stack if it.name not in nodes and not {it.name, it.host} & gone]
     hosted = list(_hosted(pairs, known, {it.name for it in kept}))
     inside = [*hosted, *(it for it in kept if it.host)]
-    given = [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    given = list(_controllers(spawned, pairs, words, parameters))
+    given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
+        {_stripped(it.full_name.strip("/"), words): it for it in spawned},
         not graph.notes,
         tuple(_findings(graph, pairs, left)),
     )
@@ -151,7 +158,12 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
     origins = {it.name: it.origin for it in launched.nodes}
     for it in nodes:
         if it.name in launched.started:
-            yield _remapped(it, launched.started[it.name], origins[it.name])
+            node = launched.started[it.name]
+            yield _remapped(it, node.remappings, node.namespace)._replace(origin=origins[it.name])
+        elif it.name in launched.spawned:
+            controller = launched.spawned[it.name]
+            above = controller.manager.rpartition("/")[0]
+            yield _remapped(it, controller.rules, above)
         elif it.host in launched.started:
             yield it._replace(origin=origins.get(it.name, it.origin))
         elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
@@ -159,7 +171,8 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
 
 
 def _passes(it: LaunchedNode) -> bool:
-    return not it.package or f"{it.package}/{it.executable}" in programs().passing
+    program = f"{it.package}/{it.executable}"
+    return not it.package or is_spawner(it) or program in programs().passing
 
 
 def _pair(
@@ -229,13 +242,43 @@ def _hosted(
             yield node._replace(origin=origins[node.host])
 
 
+def _controllers(
+    spawned: Sequence[Spawned],
+    pairs: Iterable[_Pair],
+    words: Collection[str],
+    parameters: KnownNodes,
+) -> Iterator[GivenNode]:
+    """What the launch files set for the controllers that they spawn."""
+    own = {_full_name(it.node, it.facts): it.node.parameters for it in pairs}
+    places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
+    for manager, texts in texts_of(spawned, own):
+        above = _stripped(manager.strip("/"), words)
+        documents = [_document(it) for it in texts if _has_sections(it)]
+        found: dict[str, GivenNode] = {}
+        for it in given_nodes(documents, parameters):
+            name = _stripped(it.name, words)
+            if name in places:
+                found[name] = _joined(found.get(name, it), it)
+        for name, it in found.items():
+            yield _placed(it, places[name])._replace(name=name, manager=above)
+
+
+def _joined(one: GivenNode, other: GivenNode) -> GivenNode:
+    """A manager of any namespace declares a controller by another name than the launch starts it."""
+    said = one if one.type else other
+    return said._replace(values={**one.values, **other.values})
+
+
+def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:
+    return expand(facts.name.rpartition("/")[2], node.namespace, "")
+
+
 def _given(
     pair: _Pair, inside: Iterable[NodeFacts], words: Collection[str], parameters: KnownNodes
 ) -> Iterator[GivenNode]:
     """What the launch file's parameters set for a node, the nodes in it and its controllers."""
-    own = f"{pair.node.namespace.strip('/')}/{pair.facts.name.rpartition('/')[2]}".lstrip("/")
     # Sections for any node count, too, so each node gets one of its own.
-    first = ParameterText("", f"/{own}:\n  ros__parameters: {{}}\n")
+    first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
     # launch_ros gives a component the values of a file without such a key; it names no node.
     files_ = (it for it in pair.node.parameters if _has_sections(it))
     documents = [_document(it) for it in (first, *files_)]
@@ -271,14 +314,18 @@ def _document(it: ParameterText) -> YamlText:
     return read_yaml(it.text.encode(), it.file or _OWN)
 
 
-def _remapped(node: NodeFacts, launched: LaunchedNode, origin: str) -> NodeFacts:
+def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
     """The node with the remap rules of its launch file; those of tf belong to the layout."""
-    rules = dict(reversed([it for it in launched.remappings if it[0] not in _TF]))
-    ends = tuple(
-        it._replace(remapped=rules[it.name]) if rules.get(it.name, it.name) != it.name else it
-        for it in node.endpoints
-    )
-    return node._replace(endpoints=ends, origin=origin)
+    above, name = namespace.rstrip("/"), node.name.rpartition("/")[2]
+    targets = {
+        expand(old, above, name): new.removeprefix(f"{above}/") if above else new
+        for old, new in reversed([it for it in rules if it[0] not in _TF])
+    }
+    ends = []
+    for it in node.endpoints:
+        target = targets.get(expand(it.name, above, name), it.name)
+        ends.append(it._replace(remapped=target) if target != it.name else it)
+    return node._replace(endpoints=tuple(ends))
 
 
 def _findings(

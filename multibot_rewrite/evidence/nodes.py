@@ -73,6 +73,39 @@ arm:
 )
 
 
+NO_TYPE = declare(
+    "MF825",
+    "spawned-controller-without-type",
+    NOTE,
+    what="A launch file spawns a controller, and no file says its type: the plan has its name, and "
+    "nothing of its topics, frames and interfaces.",
+    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
+    fix="Name the parameter file with its type under `params`, or give it to the spawner.",
+    bad="""\
+launch: system_model.yaml
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    good="""\
+companions: {params: controllers.yaml}
+launch: system_model.yaml
+robots:
+  - {name: robot1, description: robot.urdf}
+  - {name: robot2, description: robot.urdf}
+""",
+    line=3,
+    formats=("fleet",),
+    beside={
+        "system_model.yaml": "structure:\n  nodes:\n    /spawner:\n      pkg: controller_manager\n"
+        "      exec: spawner\n      args: [drive]\n",
+        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    drive: "
+        "{type: diff_drive_controller/DiffDriveController}\n",
+    },
+)
+ALWAYS: Mapping[str, str] = {}
+
+
 class RobotNodes(NamedTuple):
     """The nodes that a robot runs, each with its origin, and where files and stacks disagree."""
 
@@ -81,16 +114,20 @@ class RobotNodes(NamedTuple):
 
 
 def nodes_of(
-    stack: Sequence[NodeFacts], given: Sequence[GivenNode], known: Mapping[str, NodeFacts]
+    stack: Sequence[NodeFacts],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+    spawned: Mapping[str, str] = ALWAYS,
 ) -> RobotNodes:
     """The nodes of a robot: those of its stacks as its files have them, and those of its files alone.
 
-    ``known`` are the known nodes by name.
+    ``known`` are the known nodes by name, ``spawned`` the conditions of controllers of which launch
+    files say whether they run.
     """
     sections = {it.name: _section_of(it, given) for it in stack}
     left, kept = _left_out(stack, given, sections)
-    either = alternatives(given, known)
-    nodes = [_of_stack(it, sections[it.name], known, either) for it in kept]
+    either = {**alternatives(given, known), **spawned}
+    nodes = [_of_stack(it, sections[it.name], known, either, spawned) for it in kept]
     names = {it.name for it in filter(None, sections.values())}
     of_stack = {it.place.file for it in given if it.name in names}
     sent = {child for node in kept for child in children_of(node)}
@@ -145,12 +182,14 @@ def _of_stack(
     section: GivenNode | None,
     known: Mapping[str, NodeFacts],
     either: Mapping[str, str],
+    spawned: Mapping[str, str],
 ) -> NodeFacts:
     """A node of a stack as the files have it."""
     if section is None:
         return node
     made = filled(node, section, known.get(node.known))
-    return made._replace(name=node.name, when=node.when or either.get(section.name, ""))
+    when = spawned.get(section.name, node.when or either.get(section.name, ""))
+    return made._replace(name=node.name, when=when)
 
 
 def _added(given: GivenNode, known: Mapping[str, NodeFacts], either: str) -> NodeFacts:
@@ -175,6 +214,10 @@ def _not_declared(node: NodeFacts, beside: GivenNode) -> Finding:
 
 def _unknown(given: Sequence[GivenNode]) -> Iterator[Finding]:
     for it in given:
+        if it.manager and not (it.type or it.known):
+            message = f"controller {it.name} is spawned, and no file says its type"
+            hint = "name the file with its type under params, or as --param-file of the spawner"
+            yield NO_TYPE.finding(message, hint, file=it.place.file, line=it.place.line, column=1)
         if it.manager and it.unknown_type:
             message = f"controller {it.name} is of type {it.type}, which is not known"
             described = "describe it in a file of nodes (docs/stacks.md)"

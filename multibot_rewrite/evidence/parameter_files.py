@@ -1,7 +1,8 @@
 """Parameter files -> the nodes they are for, with all values that each node gets.
 
 Sources: rcl_yaml_param_parser (a later section wins; wildcards count for every node that they match);
-ros2_control controller_manager.cpp (a controller manager's ``NAME.type`` makes a controller NAME).
+ros2_control controller_manager.cpp (a controller manager's ``NAME.type`` makes a controller NAME),
+controller_manager/spawner.py (``type`` of a controller's own section is set as that).
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import nearest
 
-TYPE = ".type"
+OWN_TYPE = "type"
+TYPE = f".{OWN_TYPE}"
 
 
 class _Section(NamedTuple):
@@ -55,7 +57,7 @@ def given_nodes(documents: Iterable[YamlText], known: KnownNodes) -> list[GivenN
     Raises InputError for a file that is not a parameter file.
     """
     sections = [_section(document, it) for document in documents for it in raw_sections(document)]
-    controllers = dict(_controllers(sections))
+    controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections))}
     names = dict.fromkeys((*(it.name for it in sections if it.name), *controllers))
     return [_node(name, sections, controllers.get(name), known) for name in names]
 
@@ -92,6 +94,15 @@ def _controllers(sections: Sequence[_Section]) -> Iterator[tuple[str, _Controlle
                 controller = name.removesuffix(TYPE)
                 full = f"{above}/{controller}" if above else controller
                 yield full, _Controller(given, section.name)
+
+
+def _typed(sections: Sequence[_Section], known: KnownNodes) -> Iterator[tuple[str, _Controller]]:
+    """Controllers whose own section has their type: a spawner hands it on to the manager."""
+    for section in sections:
+        given = section.values.get(OWN_TYPE)
+        if section.name and given is not None and given.value in known.types:
+            above = section.name.rpartition("/")[0]
+            yield section.name, _Controller(given, f"{above}/{MANAGER}" if above else MANAGER)
 
 
 def _node(

@@ -7,6 +7,7 @@ Source: NEWSLabNTU/play_launch, docs/design/system-model.md, scripts/compare_mod
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -22,6 +23,7 @@ from multibot_rewrite.evidence.launch_records import (
     ParameterText,
 )
 from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.evidence.spawners import controller_files
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
@@ -79,7 +81,7 @@ def _node(full: str, it: Mapping[str, Any], place: Place) -> LaunchedNode:
         name,
         above or "/",
         remaps,
-        tuple(_parameters(it)),
+        tuple(_parameters(it, place)),
         f"/{container.lstrip('/')}" if container else "",
         tuple(str(word) for word in it.get("args") or ()),
         "",
@@ -87,9 +89,14 @@ def _node(full: str, it: Mapping[str, Any], place: Place) -> LaunchedNode:
     )
 
 
-def _parameters(it: Mapping[str, Any]) -> Iterator[ParameterText]:
+def _parameters(it: Mapping[str, Any], place: Place) -> Iterator[ParameterText]:
     for text in it.get("params_files") or ():
         yield ParameterText("", str(text))
+    program = f"{it.get('pkg')}/{it.get('exec')}"
+    for path in controller_files(program, [str(word) for word in it.get("args") or ()]):
+        file = os.path.realpath(os.path.join(os.path.dirname(place.file), path))
+        if os.path.isfile(file):
+            yield ParameterText(file, read_file(file).decode(errors="replace"), file)
     values = it.get("params") or {}
     if values:
         body = {"/**": {"ros__parameters": dict(values)}}

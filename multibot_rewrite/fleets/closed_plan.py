@@ -17,7 +17,9 @@ from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
 
 # Rules about a file that names what the robot does not have.
-NAMES_NOTHING = frozenset(["MF111", "MF112", "MF127", "MF301", "MF401", "MF452", "MF507"])
+NAMES_NOTHING = frozenset(
+    "MB803 MB804 MB805 MB810 MF111 MF112 MF127 MF301 MF401 MF452 MF507 MF510".split()  # noqa: SIM905
+)
 
 
 def closed_plan(plan: FleetPlan) -> Fleet:
@@ -29,7 +31,9 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         fleet, few = with_start_pose_nodes(plan), _one_of_each(plan)
         made = [*companion_files(few), *bridge_outputs(few)]
         texts = texts_of(it for it in made if isinstance(it, OutputFile))
-        gaps = gaps_of(plan, fleet, texts, [it for it in made if isinstance(it, Finding)])
+        found = [it for it in made if isinstance(it, Finding)]
+        found += (it for robot in few.robots for it in robot.findings)
+        gaps = gaps_of(plan, fleet, texts, found)
         return fleet._replace(gaps=gaps)
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import shlex
 from collections.abc import Iterable, Iterator
 
+from multibot_rewrite.evidence.parameter_files import OWN_TYPE
 from multibot_rewrite.fleets import spawn, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.start_poses import InitialPose, command, start_poses
 from multibot_rewrite.releases import facts_of_release
 from multibot_rewrite.remap.started import SPAWN, arguments, started
@@ -50,8 +52,23 @@ def _controllers(plan: FleetPlan) -> Iterator[str]:
     for it in started(plan.fleet.table):
         if it.way == SPAWNER:
             condition = when.get(it.node.node, "")
-            line = shlex.join(["ros2", "run", *SPAWN, *arguments(it)])
+            name, *more = arguments(it)
+            words = [name, *_as_declared(plan, it.node.node), *more]
+            line = shlex.join(["ros2", "run", *SPAWN, *words])
             yield f"{line}  # {condition}\n" if condition else f"{line}\n"
+
+
+def _as_declared(plan: FleetPlan, controller: str) -> Iterator[str]:
+    """The file of a controller whose own section has its type, and if a launch file leaves it
+    inactive."""
+    (robot,) = plan.robots
+    evidence = plan.evidence[node_sources(robot.spec)]
+    given = next((it for it in evidence.given if it.name == controller), None)
+    params = robot.spec.companions.get("params", ())
+    if given and OWN_TYPE in given.values and given.values[OWN_TYPE].place.file in params:
+        yield from ("--param-file", path_for(robot, given.values[OWN_TYPE].place.file))
+    if controller in evidence.spawned and evidence.spawned[controller].inactive:
+        yield "--inactive"
 
 
 def _start_parameters(plan: FleetPlan, pose: InitialPose) -> bytes:

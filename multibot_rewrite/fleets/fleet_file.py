@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from importlib.resources import files
@@ -17,7 +16,7 @@ from multibot_rewrite.fleets.checked_yaml import Path, read_checked
 from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, nodl_files, with_paths
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import LAYOUTS, Naming, Policy, make_naming
+from multibot_rewrite.naming import LAYOUTS, NAMESPACE, Naming, Policy, make_naming
 from multibot_rewrite.releases import RELEASES, chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 
@@ -28,8 +27,6 @@ POLICY = tuple(Policy.__annotations__)
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
-# What follows ``robots:``, empty lines and comments aside.
-_ROBOTS = re.compile(rb"^robots:[ \t]*(?:#[^\n]*)?(?:\s*#[^\n]*\n)*\s*(\S)", re.MULTILINE)
 
 
 class Pose(NamedTuple):
@@ -48,7 +45,8 @@ class RobotSpec(NamedTuple):
 
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
-    is its line in ``file``.
+    is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
+    something, by path.
     """
 
     name: str
@@ -65,6 +63,7 @@ class RobotSpec(NamedTuple):
     file: str
     line: int
     launch: tuple[LaunchOrder, ...] = ()
+    filled: tuple[tuple[str, str], ...] = ()
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -81,7 +80,8 @@ class RobotSpec(NamedTuple):
 class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
-    parameters, vocabulary. ``installed`` is where the results are when they are used, empty for where
+    parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
+    ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
     file: str
@@ -95,6 +95,7 @@ class FleetFile(NamedTuple):
     vocabulary: tuple[str, ...]
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
+    shared_nodes: tuple[str, ...] = ()
 
 
 class _Read(NamedTuple):
@@ -135,6 +136,7 @@ def read_fleet(path: str, distro: str, environment: Mapping[str, str]) -> FleetF
         vocabulary,
         robots,
         tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
+        tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
     )
 
 
@@ -145,12 +147,6 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
         yield from filter(None, (robot.description, robot.srdf))
         yield from (path for paths in robot.companions.values() for path in paths)
         yield from (it.file for it in robot.launch)
-
-
-def is_fleet(data: bytes) -> bool:
-    """Is this a fleet file? Its robots are a list; in a plan they are keys."""
-    found = _ROBOTS.search(data)
-    return found is not None and found[1][:1] in (b"-", b"[")
 
 
 def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
@@ -226,7 +222,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         description,
         own.get("srdf", data.get("srdf", "")),
         _arguments(data, own, description, place),
-        own.get("namespace", name).strip("/"),
+        _namespace(own, naming, place),
         _tag(own, naming.affix, place),
         own.get("model", name),
         _pose(own, place),
@@ -304,6 +300,15 @@ def _colour(own: Mapping[str, Any], place: str) -> str | tuple[int, ...]:
 def _argument(value: object) -> str:
     """The text for xacro: YAML's true is xacro's true."""
     return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _namespace(own: Mapping[str, Any], naming: Naming, place: str) -> str:
+    namespace = str(own.get("namespace", own["name"])).strip("/")
+    if "/" in namespace and naming.topics != NAMESPACE:
+        what = f"{own['name']!r} has the namespace {namespace!r}, but here names get no namespace"
+        hint = "write one word, or take a layout with namespaces"
+        raise InputError(f"{place}: {what}; {hint}")
+    return namespace
 
 
 def _tag(own: Mapping[str, Any], side: str, place: str) -> str:

@@ -23,7 +23,7 @@ def check_files(data: Mapping[str, Any], at: Path, places: Places) -> None:
                 check_files(robot, ("robots", number), places)
             continue
         if key == "launch":
-            value = [it.partition(" ")[0] for it in listed(value)]
+            value = [it.partition(" ")[0] for it in listed(value) if not _of_package(it)]
         kinds = value.items() if key == "companions" and value else [("", value)]
         for kind, paths in kinds:
             here = (*at, key, kind) if kind else (*at, key)
@@ -60,8 +60,16 @@ def with_paths(folder: str, data: dict[str, Any]) -> dict[str, Any]:
 
 def _launch_path(folder: str, text: str) -> str:
     """What follows ``ros2 launch``, with the path of its file relative to the working directory."""
+    if _of_package(text):
+        return text
     file, blank, arguments = text.partition(" ")
     return f"{os.path.join(folder, file)}{blank}{arguments}"
+
+
+def _of_package(text: str) -> bool:
+    """Is it a package and the name of a file in it, not a path?"""
+    words = text.split()
+    return len(words) > 1 and not any("=" in it for it in words[:2])
 
 
 def listed(value: Any) -> Sequence[Any]:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import Fleet, assemble, merge
 from multibot_rewrite.fleets.fleet_file import FleetFile, Sources
+from multibot_rewrite.fleets.launched_files import with_launched_files
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.rewritten_robots import (
     Jobs,
@@ -21,6 +22,7 @@ from multibot_rewrite.fleets.robot_nodes import (
     node_sources,
     robot_nodes,
 )
+from multibot_rewrite.fleets.shared_nodes import check_shared
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
 
@@ -41,16 +43,19 @@ def plan_fleet(
 ) -> FleetPlan:
     """Rewrite every robot's description and make the table of the whole fleet.
 
+    The parameter files that launch files name are rewritten, too.
+
     ``jobs`` are the descriptions if they have been read already; ``trust`` lets xacro files do
     anything, and launch files run. Raises as ``rewrite_all``, and UsageError for an unknown stack.
     """
-    file = _trusted(file) if trust else file
+    file, notes = with_launched_files(_trusted(file) if trust else file)
     with gc_paused():
         naming = make_naming(**file.policy)
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
         specs = {node_sources(it): it for it in reversed(file.robots)}
-        evidence = {key: robot_nodes(spec, file) for key, spec in specs.items()}
+        evidence = {key: robot_nodes(spec, file, notes[spec.name]) for key, spec in specs.items()}
+        check_shared(file, {node.name: node for it in evidence.values() for node in it.nodes})
         fleet = _fleet(file, robots, naming, evidence)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 

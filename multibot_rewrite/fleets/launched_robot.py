@@ -13,6 +13,8 @@ from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.sources.own_names import filled
 
+NOT_SPAWNED = "no spawner of the launch files loads it"
+
 
 def launched_robot(
     stack: Sequence[NodeFacts],
@@ -28,13 +30,23 @@ def launched_robot(
     """
     if not orders:
         return None
-    mine = [it._replace(arguments=tuple(_filled(it, words[0]))) for it in orders]
-    graphs = [launch_graph(it) for it in mine]
-    graph = LaunchGraph(
+    mine = _own(orders, words[0])
+    graph = launch_of(orders, words[0])
+    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters)
+
+
+def launch_of(orders: Sequence[LaunchOrder], robot: str) -> LaunchGraph:
+    """All that these launch files start, with the robot in the place of ``{robot}``; raises as
+    ``launched_robot``."""
+    graphs = [launch_graph(it) for it in _own(orders, robot)]
+    return LaunchGraph(
         tuple(node for it in graphs for node in it.nodes),
         tuple(note for it in graphs for note in it.notes),
     )
-    return with_launched(stack, graph, known, {*words, *_values(mine)}, parameters)
+
+
+def _own(orders: Sequence[LaunchOrder], robot: str) -> list[LaunchOrder]:
+    return [it._replace(arguments=tuple(_filled(it, robot))) for it in orders]
 
 
 def nodes_with(
@@ -46,17 +58,25 @@ def nodes_with(
     """The nodes that a robot runs, by its launch files, its other files and its stacks."""
     if launched is None:
         return nodes_of(stack, given, known)
-    nodes, findings = nodes_of(launched.nodes, given, known)
+    nodes, findings = nodes_of(launched.nodes, given, known, _spawned(launched, given))
     return RobotNodes(tuple(as_launched(nodes, launched)), (*launched.findings, *findings))
+
+
+def _spawned(launched: Launched, given: Sequence[GivenNode]) -> dict[str, str]:
+    """Controllers of which launch files say whether they run -> the condition; empty for always."""
+    found = {name: it.later for name, it in launched.spawned.items()}
+    rest = (it.name for it in given if it.manager and it.name not in found)
+    return found | (dict.fromkeys(rest, NOT_SPAWNED) if found and launched.whole else {})
 
 
 def given_with(launched: Launched | None, given: Sequence[GivenNode]) -> tuple[GivenNode, ...]:
     """What a robot's files set and what its launch files do: these come last, so they count."""
     if launched is None:
         return tuple(given)
-    own = {it.name: it for it in given}
-    both = [_both(own.pop(it.name), it) if it.name in own else it for it in launched.given]
-    return (*own.values(), *both)
+    started = {it.name: it for it in launched.given}
+    # In the order of the files, so that they can be compared with what is made of them.
+    own = [_both(it, started.pop(it.name)) if it.name in started else it for it in given]
+    return (*own, *started.values())
 
 
 def _both(own: GivenNode, launched: GivenNode) -> GivenNode:
@@ -67,7 +87,10 @@ def _both(own: GivenNode, launched: GivenNode) -> GivenNode:
         if k in launched.values and launched.values[k].value == it.value
     }
     values = {**own.values, **launched.values, **same}
-    return launched._replace(values=values, place=own.place)
+    # The file may say what the launch alone does not: the type of a controller.
+    said = launched if launched.type or not own.type else own
+    manager = launched.manager or own.manager
+    return said._replace(values=values, place=own.place, manager=manager)
 
 
 def _filled(order: LaunchOrder, robot: str) -> Iterator[tuple[str, str]]:

@@ -8,6 +8,7 @@ from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.fleet_file import RobotSpec
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.sources.read import read_file
 
@@ -26,6 +27,15 @@ FilesAndFindings: TypeAlias = Iterator[OutputFile | Finding]
 def path_for(robot: RewrittenRobot, source: str) -> str:
     """Where the robot's version of a source file goes: ``robot1/params.yaml``."""
     return f"{robot.spec.name}/{os.path.basename(source)}"
+
+
+def params_of(spec: RobotSpec) -> dict[str, YamlText]:
+    """A robot's parameter files by path, as a launch fills them; raises InputError as ``read_yaml``."""
+    filled = dict(spec.filled)
+    return {
+        it: read_yaml(filled[it].encode(), it) if it in filled else yaml_of(it)
+        for it in spec.companions.get("params", ())
+    }
 
 
 def yaml_of(path: str) -> YamlText:

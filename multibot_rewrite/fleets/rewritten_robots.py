@@ -139,11 +139,15 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
 
 
 def _texts(job: Job, group: Sequence[RobotSpec]) -> Iterator[Rewrite]:
-    """The text of each robot with its namespace; refused where it carries one of its words."""
-    for number, text in enumerate(rewrite_job(job, [it.namespace for it in group], again=True)):
+    """The text of each robot with its namespace; refused where it carries one of its words.
+
+    A namespace of several levels is no robot's name: its robot's text is made of its halves alone.
+    """
+    words = [it.tag if "/" in it.namespace else it.namespace for it in group]
+    for number, text in enumerate(rewrite_job(job, words, again=True)):
         if not number:
             _check_new(text.template, group)
-        yield text
+        yield text._replace(robot=group[number].namespace)
 
 
 def _check_new(template: Template, group: Sequence[RobotSpec]) -> None:

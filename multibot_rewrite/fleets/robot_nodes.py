@@ -9,11 +9,13 @@ from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.evidence.spawners import Spawned
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
 from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
-from multibot_rewrite.fleets.output_file import yaml_of
+from multibot_rewrite.fleets.output_file import params_of
+from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -27,24 +29,30 @@ def node_sources(spec: RobotSpec) -> NodeSources:
 
 
 class RobotEvidence(NamedTuple):
-    """What a robot's files set for nodes, the nodes that are known by name, those that it runs, and
-    where its files and stacks disagree."""
+    """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
+    where its files and stacks disagree, and the controllers that its launch files spawn."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
     nodes: tuple[NodeFacts, ...]
     findings: tuple[Finding, ...]
+    spawned: Mapping[str, Spawned]
 
 
-def robot_nodes(spec: RobotSpec, file: FleetFile) -> RobotEvidence:
-    """The nodes of a robot. Raises InputError for a parameter file that cannot be read."""
+def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> RobotEvidence:
+    """The nodes of a robot; ``notes`` are findings about its files.
+
+    Raises InputError for a parameter file that cannot be read.
+    """
     parameters = load_known_nodes(file.parameters, file.distro)
-    documents = [yaml_of(path) for path in spec.companions.get("params", ())]
-    own = tuple(given_nodes(documents, parameters))
+    own = tuple(given_nodes(params_of(spec).values(), parameters))
     known, stack = _known(own, file), stack_nodes(spec, file)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)
-    return RobotEvidence(given, known, *nodes_with(launched, stack, given, known))
+    spawned = launched.spawned if launched else {}
+    nodes, findings = nodes_with(launched, stack, given, known)
+    marked, shared = apart(nodes, file)
+    return RobotEvidence(given, known, marked, (*notes, *findings, *shared), spawned)
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

@@ -15,6 +15,7 @@ from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import with_patterns
 from multibot_rewrite.graph.rules import (
+    demands,
     endpoints,
     frame_names,
     leaks,
@@ -26,7 +27,7 @@ from multibot_rewrite.graph.rules import (
 from multibot_rewrite.graph.rules.comparison import View, make_view
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
-_MODULES = (nodes, endpoints, leaks, type_and_qos, publishers, transforms, frame_names)
+_MODULES = (nodes, endpoints, leaks, type_and_qos, publishers, demands, transforms, frame_names)
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 WAITED_FOR = "expected-not-seen"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import LEVELS, Finding
 from multibot_rewrite.model import InputError
@@ -14,12 +14,6 @@ def gap_value(gap: Finding) -> dict[str, str]:
     """A finding as a row; ``at`` is the place in a file, empty for none."""
     at = f"{gap.file}:{gap.line}" if gap.file else ""
     return dict(zip(KEYS, (gap.code, gap.level, at, gap.message, gap.hint), strict=True))
-
-
-def gap_row(gap: Finding, quote: Callable[[str], str]) -> str:
-    """The same as a line of YAML."""
-    pairs = (f"{key}: {quote(value)}" for key, value in gap_value(gap).items())
-    return f"- {{{', '.join(pairs)}}}\n"
 
 
 def read_gaps(value: object, place: str) -> Iterator[Finding]:

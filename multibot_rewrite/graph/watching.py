@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from enum import IntEnum
 from typing import NamedTuple
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, Finding
 from multibot_rewrite.graph.check import ABSENCE, check, doubts
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
@@ -47,9 +47,10 @@ class WatchState(NamedTuple):
 
 def judge(found: Iterable[Finding], graph: Snapshot) -> Verdict:
     """As planned, not as planned, or inconclusive because the view may be incomplete."""
-    if any(finding.level == ERROR for finding in found):
+    levels = {finding.level for finding in found}
+    if ERROR in levels:
         return Verdict.WRONG
-    return Verdict.INCONCLUSIVE if doubts(graph) else Verdict.PLANNED
+    return Verdict.INCONCLUSIVE if INCONCLUSIVE in levels or doubts(graph) else Verdict.PLANNED
 
 
 def next_state(plan: Expectation, graph: Snapshot, before: WatchState | None) -> WatchState:

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple, TypeAlias
 
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import NAMESPACE, Naming
-from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.remap.applied_rules import is_stand_in
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -40,6 +40,7 @@ from multibot_rewrite.remap.ways import MANAGER
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 SAME = "all robots would share this name otherwise"
+TOGETHER = "all robots share this name; each would have its own otherwise"
 NOTHING: Mapping[str, Pairs] = {}
 # The full name of a robot's node, by its name in the stack.
 Places: TypeAlias = Mapping[str, str]
@@ -72,8 +73,10 @@ def _build(
 ) -> Table:
     shared = [(node, node_table("", node, naming)) for node in nodes if node.shared]
     # Made once: another robot's table differs only in the robot's name.
-    others = places_of(PROBE, nodes, naming)
-    own = [(node, node_table(PROBE, node, naming, others)) for node in nodes if not node.shared]
+    others, once = places_of(PROBE, nodes, naming), frozenset(node.name for node, _ in shared)
+    own = [
+        (node, node_table(PROBE, node, naming, others, once)) for node in nodes if not node.shared
+    ]
     meant = list(names_of(own))
     apart = {robot: _without_stand_ins(pairs, nodes) for robot, pairs in plugins.items()}
     names = {
@@ -163,20 +166,28 @@ def _copies(pairs: Pairs, robot: str) -> Iterator[NodeTable]:
         )
 
 
-def node_table(robot: str, node: NodeFacts, naming: Naming, others: Places = NOWHERE) -> NodeTable:
+def node_table(
+    robot: str,
+    node: NodeFacts,
+    naming: Naming,
+    others: Places = NOWHERE,
+    once: frozenset[str] = frozenset(),
+) -> NodeTable:
     """Namespace, name and rules of one robot's node; a node for all robots stays as it is.
 
     ``others`` are the places of the robot's nodes: a name below one of them is renamed with it.
+    ``once`` are the nodes for all robots: a name below one of them is that node's own.
     """
     if node.shared:
         above, _, own = node.name.strip("/").rpartition("/")
         return NodeTable("", node.name, f"/{above}", own, ())
     namespace, name = placed(robot, node.name, naming, node.apart)
-    place = _Place(robot, naming, namespace, _root(namespace, robot, node, naming), others)
+    place = _Place(robot, naming, namespace, _root(namespace, robot, node, naming), others, once)
     rules: dict[str, NodeRule] = {}
     for endpoint in (it for it in node.endpoints if not it.fixed):
         for source, target, moved in _targets(endpoint, place):
             why = f"{SAME}; the stack calls it {moved}" if moved else SAME
+            why = TOGETHER if target == f"/{source}" else why
             match = expand(source, namespace, name)
             rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
     home = Home(node.host, node.container, node.plugin, apart=node.apart)
@@ -192,18 +203,22 @@ class _Place(NamedTuple):
     namespace: str
     root: str
     others: Places
+    once: frozenset[str]
 
 
 def _targets(endpoint: Endpoint, place: _Place) -> Iterator[tuple[str, str, str]]:
     """The names of an endpoint that need a rule, its target, and what the stack calls them if that is
     another name."""
-    robot, naming, namespace, root, others = place
+    robot, naming, namespace, root, others, once = place
     meant = expanded(endpoint._replace(name=endpoint.remapped or endpoint.name))
     for (kind, source), (_, wanted) in zip(expanded(endpoint), meant, strict=True):
         moved = wanted if wanted != source else ""
-        target = _below(wanted, naming, others)
-        target = target or target_of(wanted, kind, robot, naming) or moved
-        target = target or _shared(wanted, place)
+        if wanted.partition("/")[0] in once:
+            target = f"/{wanted}" if naming.topics == NAMESPACE else moved
+        else:
+            target = _below(wanted, naming, others)
+            target = target or target_of(wanted, kind, robot, naming) or moved
+            target = target or _shared(wanted, place)
         if target:
             yield source, f"{'' if target[0] == '/' else root}{target}", moved
         # What a node joins with the namespace above is no name of its own namespace.

@@ -48,11 +48,15 @@ def expanded(endpoint: Endpoint) -> Iterator[tuple[str, str]]:
 def target_of(name: str, kind: str, robot: str, naming: Naming) -> str:
     """The target of the rule for ``name``; empty if no rule is needed.
 
-    With namespaces targets are relative, so the rule is the same for every robot.
+    With namespaces targets are relative, so the rule is the same for every robot; a relative name
+    that all robots share would be each robot's own without a rule.
     """
     bare = name.strip("/")
-    if name.startswith("~") or bare in naming.shared_topics:
+    if name.startswith("~"):
         return ""
+    if bare in naming.shared_topics:
+        below = naming.topics == NAMESPACE and not name.startswith("/")
+        return f"/{bare}" if below else ""
     if naming.topics == NAMESPACE:
         return bare if name.startswith("/") else ""
     base, rest = _family(name)

@@ -145,7 +145,7 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
         mine = [item for item in plan.insertions if item.parent in inside]
         added = tuple(item.xml.replace(ROBOT_SLOT, robot) for item in mine if not item.step)
         if place[0] == line and added:
-            reason = f"added, or {without(mine[0])} the default"
+            reason = f"added, or {without(mine[0], inventory.release)} the default"
             yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
         for item in mine:
             there = item.filled

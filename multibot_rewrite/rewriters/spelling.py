@@ -137,7 +137,7 @@ def resolve(text: str, kinds: Kinds, role: str, declared: Declared, closed: bool
         if text in declared.get(kind, ()):
             return kind
     bare = text[1:] if text.startswith("/") and not text.startswith("//") else text
-    if not FRAME_KINDS.isdisjoint(kinds) and bare in declared["link"]:
+    if not FRAME_KINDS.isdisjoint(kinds) and not {text, bare}.isdisjoint(declared["link"]):
         return "link"
     if closed or is_keyword(text):
         return ""

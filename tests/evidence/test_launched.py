@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import pytest
+from launched_nodes import AMCL, AT, launched, runs, started
 
 from multibot_rewrite import InputError, UsageError
-from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_child import launch_graph
 from multibot_rewrite.evidence.launch_records import (
     LaunchedNode,
@@ -20,46 +18,12 @@ from multibot_rewrite.evidence.launch_records import (
     order_of,
     to_json,
 )
-from multibot_rewrite.evidence.launched import Launched, with_launched
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.evidence.ros_arguments import ros2_run, ros_arguments
-from multibot_rewrite.fleets.fleet import facts_of, known_nodes
-from multibot_rewrite.fleets.launched_robot import given_with, nodes_with
+from multibot_rewrite.fleets.fleet import facts_of
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import NodeFacts
 
 PUBLISHER = "robot_state_publisher"
-AT = Place("/ws/bringup.launch.py", 12)
-
-
-def started(package: str, executable: str, name: str = "", **more: object) -> LaunchedNode:
-    words = dict.fromkeys(LaunchedNode._fields, ()) | {
-        "package": package,
-        "executable": executable,
-        "name": name,
-        "namespace": "/",
-        "container": "",
-        "later": "",
-        "place": AT,
-    }
-    return LaunchedNode(**{**words, **more})
-
-
-def launched(
-    *nodes: LaunchedNode, stacks: tuple[str, ...] = (), notes: tuple[LaunchNote, ...] = ()
-) -> Launched:
-    stack = facts_of(stacks, None, NEWEST_LTS)
-    known = known_nodes(None, NEWEST_LTS, ()).library.nodes
-    parameters = load_known_nodes("", NEWEST_LTS)
-    return with_launched(stack, LaunchGraph(nodes, notes), known, {"robot1", "r"}, parameters)
-
-
-def runs(found: Launched) -> Mapping[str, NodeFacts]:
-    known = known_nodes(None, NEWEST_LTS, ()).library.nodes
-    return {it.name: it for it in nodes_with(found, (), given_with(found, ()), known).nodes}
-
-
-AMCL = started("nav2_amcl", "amcl", "amcl")
 
 
 def test_a_launched_node_runs_and_the_plan_says_its_line() -> None:

@@ -24,10 +24,10 @@ from multibot_rewrite.fleets.fleet_file import (
     FleetFile,
     Pose,
     RobotSpec,
-    is_fleet,
     read_fleet,
     schema,
 )
+from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.model import InputError
 
 ONE = "robots:\n  - {name: a, description: rover.urdf}\n"
@@ -124,6 +124,7 @@ def test_a_fault_in_an_included_file_has_its_name_and_line(tmp_path: Path) -> No
         ("layout: L1\nrobots:  # all\n# two\n\n- name: a\n", True),
         ("robots:\n  a:\n    tf: /tf\n", False),
         ("amcl:\n", False),
+        ("include: common.yaml\nlayout: L1\n", True),
     ],
 )
 def test_a_fleet_file_is_distinguished_from_a_plan(text: str, fleet: bool) -> None:
@@ -225,9 +226,13 @@ BAD: dict[str, tuple[str, ...]] = {
         "robots:\n  - {name: my-robot}\n",
         "2: robots[0].name: 'my-robot' is not valid; write letters, digits and underscores",
     ),
-    "namespace-of-two": (
-        "robots:\n  - {name: a, namespace: b/c}\n",
-        "2: robots[0].namespace: 'b/c' is not valid; write one word",
+    "namespace-doubled-slash": (
+        "robots:\n  - {name: a, namespace: b//c}\n",
+        "2: robots[0].namespace: 'b//c' is not valid; write words of letters",
+    ),
+    "namespace-digit": (
+        "robots:\n  - {name: a, namespace: b/1}\n",
+        "2: robots[0].namespace: 'b/1' is not valid; write words of letters",
     ),
     "model-slash": ("robots:\n  - {name: a, model: a/b}\n", "2: robots[0].model: 'a/b' is not"),
     "model-date": (

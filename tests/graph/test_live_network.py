@@ -14,7 +14,7 @@ from typing import Any
 import live_fleet
 import pytest
 from live_commands import PATIENTLY, assert_inconclusive, multibot, node, write_plan
-from network_hosts import Host, discovery_server, hosts
+from network_hosts import Host, discovery_server, hosts, lose_packets
 from paths import ROOT
 
 pytestmark = pytest.mark.live
@@ -165,3 +165,85 @@ def test_multicast_has_no_limit(count: int, tmp_path: Path) -> None:
     with hosts(2) as (robots, base), crowd(robots, names, **SUBNET):
         done = run(base, "check", plan, "-v", **SUBNET)
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+ONE_MACHINE = "all that is seen runs on one machine (/robot1/drive). If robot2 is on another"
+
+
+def assert_not_seen_from_here(done: CompletedProcess[str]) -> None:
+    """robot2 is not called missing, and the line says how to look for it."""
+    assert (done.returncode, len(done.stdout.splitlines())) == (3, 1), done.stdout + done.stderr
+    assert "robot2: inconclusive: MG109" in done.stdout
+    assert ONE_MACHINE in done.stdout
+
+
+def test_a_robot_that_keeps_to_its_machine_is_not_missing(plan: Path) -> None:
+    with hosts(2) as (one, two):
+        settings = (one, "robot1", SUBNET), (two, "robot2", LOCALHOST)
+        with ExitStack() as stack:
+            for host, robot, range_ in settings:
+                stack.enter_context(fleet((host, [node(robot)]), **range_))
+            assert_not_seen_from_here(run(one, "check", plan, "-v", **SUBNET))
+
+
+@pytest.mark.deep
+def test_what_is_advised_finds_it(plan: Path, tmp_path: Path) -> None:
+    """Multicast is lost: a look on each machine, joined; and static peers."""
+    with hosts(2, multicast=False) as (one, two):
+        robots = (one, [node("robot1")]), (two, [node("robot2")])
+        with fleet(*robots, **SUBNET):
+            assert_not_seen_from_here(run(one, "check", plan, "-v", **SUBNET))
+            files = [tmp_path / "one.json", tmp_path / "two.json"]
+            for host, file in zip((one, two), files, strict=True):
+                assert run(host, "snapshot", "-o", file, **SUBNET).returncode == 0
+            named = run(one, "check", plan, **LOCALHOST, ROS_STATIC_PEERS=two.address)
+    assert (named.returncode, named.stdout) == (0, ""), named.stderr
+    both = [word for file in files for word in ("--snapshot", file)]
+    done = multibot("check", plan, "-v", *both, env=live_fleet.environ(DOMAIN))
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+@pytest.mark.deep
+def test_looks_from_two_machines_that_see_the_same_are_one_graph(
+    plan: Path, tmp_path: Path
+) -> None:
+    files = [tmp_path / "one.json", tmp_path / "two.json"]
+    with hosts(2) as (one, two):
+        robots = (one, [node("robot1")]), (two, [node("robot2")])
+        with fleet(*robots, **SUBNET):
+            for host, file in zip((one, two), files, strict=True):
+                assert run(host, "snapshot", "-o", file, **SUBNET).returncode == 0
+    target, env = tmp_path / "all.json", live_fleet.environ(DOMAIN)
+    joined = multibot("snapshot", "--merge", *files, "-o", target, env=env)
+    assert joined.returncode == 0, joined.stderr
+    assert "2 nodes in 2 participants" in joined.stderr
+    done = multibot("check", plan, "-v", "--snapshot", target, env=env)
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+
+
+@pytest.mark.deep
+def test_a_robot_of_another_domain(plan: Path, tmp_path: Path) -> None:
+    files = [tmp_path / "one.json", tmp_path / "two.json"]
+    with hosts(2) as (one, two), ExitStack() as stack:
+        for host, robot, domain in ((one, "robot1", DOMAIN), (two, "robot2", DOMAIN + 1)):
+            settings = {**SUBNET, "ROS_DOMAIN_ID": str(domain)}
+            stack.enter_context(fleet((host, [node(robot)]), **settings))
+        assert_not_seen_from_here(run(one, "check", plan, "-v", **SUBNET))
+        for file, domain in zip(files, (DOMAIN, DOMAIN + 1), strict=True):
+            run(one, "snapshot", "-o", file, "--domain", domain, **SUBNET)
+    done = multibot("snapshot", "--merge", *files, env=live_fleet.environ(DOMAIN))
+    assert done.returncode == 2
+    assert "nodes of two domains never meet" in done.stderr
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("percent", [5, 25])
+def test_a_network_that_loses_packets_makes_no_robot_missing(plan: Path, percent: int) -> None:
+    with hosts(3) as (one, two, base):
+        for host in (one, two, base):
+            lose_packets(host, percent)
+        robots = (one, [node("robot1")]), (two, [node("robot2")])
+        with fleet(*robots, **SUBNET):
+            done = run(base, "check", plan, "-v", **SUBNET)
+    assert done.returncode in (0, 3), done.stdout + done.stderr
+    assert ": error: " not in done.stdout

@@ -6,7 +6,7 @@ import json
 import math
 import re
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import pytest
 from hypothesis import given
@@ -20,8 +20,10 @@ from multibot_rewrite.graph.environment import (
     settings,
     view_caveats,
 )
+from multibot_rewrite.graph.live import child
 from multibot_rewrite.graph.live.assemble import (
     LastChange,
+    ObservationClock,
     ReceivedTransform,
     endpoints_with_process,
     frames,
@@ -31,6 +33,7 @@ from multibot_rewrite.graph.live.assemble import (
     topics_to_query,
     why_settled,
 )
+from multibot_rewrite.graph.live.queries import TopicQueries, with_topic_details
 from multibot_rewrite.graph.live.request import Request, from_text, to_text
 from multibot_rewrite.graph.snapshot import (
     EXPECTED,
@@ -451,3 +454,79 @@ def test_a_wrong_domain_of_the_environment_is_one_line(
     (line,) = capfd.readouterr().err.splitlines()
     assert "ROS_DOMAIN_ID=300 is too high" in line
     assert not file.exists()
+
+
+# --- a machine that is busy, a look that has no more time
+
+
+def late_by(*seconds: float) -> ObservationClock:
+    """The clock after polls of a tenth of a second that came so much later than planned."""
+    clock = ObservationClock()
+    for late in seconds:
+        clock = clock.after(clock.last + 0.1 + late, 0.1)
+    return clock
+
+
+def test_time_without_a_processor_is_not_observed() -> None:
+    assert late_by(*[0.0] * 10).observed == pytest.approx(1.0)
+    assert late_by(*[0.3] * 10).observed == pytest.approx(1.0)
+    assert late_by(60.0).observed == pytest.approx(0.1)
+
+
+def test_a_look_that_is_late_again_and_again_is_starved() -> None:
+    (caveat,) = late_by(*[0.3] * 40).starved()
+    assert (caveat.code, caveat.incomplete) == ("busy-machine", True)
+    assert "75% of its time" in caveat.message
+    assert not [*late_by(*[0.05] * 40).starved()]
+    # A laptop that was closed is no busy machine.
+    assert not [*late_by(60.0, *[0.0] * 40).starved()]
+
+
+class Rows(NamedTuple):
+    """What rclpy tells of a topic's publishers and subscriptions: nothing; ``asked`` counts."""
+
+    asked: list[str]
+
+    def get_topic_names_and_types(self) -> list[tuple[str, list[str]]]:
+        return [(f"/t{at}", ["std_msgs/msg/String"]) for at in range(9)]
+
+    def get_fully_qualified_name(self) -> str:
+        return "/look"
+
+    def get_publishers_info_by_topic(self, topic: str) -> list[object]:
+        self.asked.append(topic)
+        return []
+
+    def get_subscriptions_info_by_topic(self, topic: str) -> list[object]:
+        return []
+
+
+def test_slow_queries_end_with_the_time() -> None:
+    node = Rows([])
+    found = [end("/a", f"/t{at}", role) for at in range(9) for role in ("publishes", "subscribes")]
+    asked = TopicQueries((), {}, lambda: len(node.asked) >= 4)
+    left = with_topic_details(node, ["/a"], found, asked)
+    assert node.asked == ["/t0", "/t1", "/t2", "/t3"]
+    # What was not asked is as it was known before.
+    assert {it.name for it in left} == {f"/t{at}" for at in range(4, 9)}
+
+
+TWINS = SNAPSHOT._replace(nodes=(GraphNode("/a", "p"), GraphNode("/a", "q")))
+
+
+@pytest.mark.parametrize(("took", "looks"), [(5.0, [15.0, 10.0]), (8.0, [15.0]), (16.0, [15.0])])
+def test_a_second_look_has_the_time_that_is_left(
+    took: float, looks: list[float], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now, asked = [0.0], []
+
+    def look(request: Request, environ: object) -> Snapshot:
+        asked.append(request.timeout)
+        now[0] += took
+        return TWINS._replace(environment=AROUND._replace(seconds=took, caveats=()))
+
+    monkeypatch.setattr(child, "_observe_once", look)
+    monkeypatch.setattr(child.time, "monotonic", lambda: now[0])
+    seen = child.observe(Request(15.0), {})
+    assert asked == looks
+    assert [it.code for it in incomplete(seen)] == ["no-second-look"] * (len(looks) == 1)

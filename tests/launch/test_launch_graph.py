@@ -226,3 +226,58 @@ def test_without_launch_one_line_says_what_to_do(tmp_path: Path) -> None:
 
 def test_the_command_itself_imports_no_launch() -> None:
     assert "launch_ros" not in sys.modules or not without()
+
+
+@in_launch
+def test_a_file_that_is_made_of_another_one_names_it(tmp_path: Path) -> None:
+    source = tmp_path / "p.yaml"
+    source.write_text("/**:\n  ros__parameters: {rate: $(var rate)}\n")
+    node = (
+        "Node(package='a', executable='b', parameters=[ParameterFile(SOURCE, allow_substs=True)])"
+    )
+    actions = f"DeclareLaunchArgument('rate', default_value='5'), {node}"
+    found = one(read(tmp_path, actions.replace("SOURCE", repr(str(source)))))
+    (given,) = found.parameters
+    assert (given.file, given.source) == ("", str(source))
+    assert "rate: 5" in given.text
+
+
+@in_launch
+def test_the_file_of_a_rewritten_one_is_found(tmp_path: Path) -> None:
+    source, name = tmp_path / "p.yaml", repr(str(tmp_path / "p.yaml"))
+    source.write_text("/**:\n  ros__parameters: {rate: 5}\n")
+    # As nav2_common's: ``name`` is what it reads, and what it makes is a temporary file.
+    made = """
+import tempfile
+class RewrittenYaml(Substitution):
+    def __init__(self, name):
+        super().__init__()
+        self.name = [TextSubstitution(text=name)] if isinstance(name, str) else [name]
+    def perform(self, context):
+        with open(self.name[0].perform(context)) as old:
+            with tempfile.NamedTemporaryFile("w", delete=False) as new:
+                new.write("# made\\n" + old.read())
+        return new.name
+"""
+    head = f"from launch import Substitution{made}"
+    file = tmp_path / "bringup.launch.py"
+    nodes = f"Node(package='a', executable='b', parameters=[RewrittenYaml(RewrittenYaml({name}))])"
+    file.write_text(
+        f"{HEAD.partition('def generate')[0]}{head}\ndef generate_launch_description():\n"
+        f"    return LaunchDescription([{nodes}])\n"
+    )
+    (given,) = one(launch_graph(LaunchOrder(str(file), (), (), True))).parameters
+    assert (given.file, given.source) == ("", str(source))
+    assert given.text.startswith("# made\n# made\n")
+
+
+@in_launch
+def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
+    source = tmp_path / "p.yaml"
+    source.write_text("a:\n  ros__parameters: {type: x/X}\n")
+    words = f"arguments=['a', '-p', {str(source)!r}]"
+    found = one(
+        read(tmp_path, f"Node(package='controller_manager', executable='spawner', {words})")
+    )
+    assert [it.source for it in found.parameters] == [str(source)]
+    assert found.arguments[0] == "a"

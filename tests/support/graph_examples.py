@@ -7,6 +7,9 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     NODE ROLE NAME [TYPE] [QOS ...]     the node publishes, subscribes, serves or calls NAME
     frames of ROBOT on TOPIC: FRAMES    the frames of a robot's description, and its tf topic
     shared topic NAME, shared frame NAME    what all robots use
+    topic NAME from NODES [QOS ...]     who may publish a topic, and what they offer
+    topic NAME from one node            only one node at a time publishes it
+    one of NODES                        one of these nodes runs
     transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
@@ -24,7 +27,13 @@ from graph_cases import environment, qos
 
 from multibot_rewrite.graph.dangers.seen import Owners
 from multibot_rewrite.graph.doctor.robots import GuessedRobot, owners_of, with_frames
-from multibot_rewrite.graph.expectation import ALWAYS, Expectation, PlannedEndpoint, PlannedRobot
+from multibot_rewrite.graph.expectation import (
+    ALWAYS,
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+    PlannedTopic,
+)
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Qos, Snapshot
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
@@ -35,6 +44,8 @@ NODE = re.compile(
 FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
 TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
+TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
+ONE_OF = re.compile(r"one of (.+)")
 ROBOT = re.compile(r"robot\d+")
 PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
 # Words of QOS -> the policy that they are of.
@@ -69,7 +80,7 @@ def read_danger(text: str) -> tuple[Snapshot, Owners]:
 
 
 def _is_known(line: str) -> bool:
-    return any(it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM))
+    return any(it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, ONE_OF))
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -96,7 +107,16 @@ def read_plan(lines: list[str]) -> Expectation:
         tuple(shared["topic"]),
         tuple(shared["frame"]),
         tuple(_planned_endpoint(*words[:4]) for words in _words(NODE, lines) if words[1]),
+        topics=tuple(_planned_topic(*words) for words in _words(TOPIC_OF, lines)),
+        one_of=tuple(tuple(words[0].split(", ")) for words in _words(ONE_OF, lines)),
     )
+
+
+def _planned_topic(name: str, senders: str, qos_words: str) -> PlannedTopic:
+    offered = tuple((POLICIES[word], word.upper()) for word in qos_words.split())
+    if senders == "one node":
+        return PlannedTopic(name, (), True, offered)
+    return PlannedTopic(name, tuple(senders.split(", ")), False, offered)
 
 
 def _planned_endpoint(node: str, role: str, name: str, type_: str) -> PlannedEndpoint:

@@ -24,9 +24,9 @@ from launch_ros.substitutions import ExecutableInPackage
 # They do their work and end, so that what waits for their end starts.
 ENDING = {
     *("spawner", "hardware_spawner", "create", "spawn_entity.py", "gz_spawn_model"),
-    *("sleep", "xacro"),
+    *("sleep", "xacro", "wait_for_robot_description"),
 }
-QUIET = 2.0
+QUIET = 5.0
 Rows = list[dict[str, Any]]
 
 
@@ -57,7 +57,10 @@ def record(rows: Rows) -> None:
 
     async def started(protocol: Any, cmd: list[str], **options: Any) -> Any:
         package, _, executable = cmd[0].rpartition("|")
-        rows.append({"package": package, "executable": executable, **words_of(cmd[1:])})
+        words = cmd[1:]
+        if [executable, *words[:1]] == ["ros2", "run"]:
+            package, executable, *words = words[1:]
+        rows.append({"package": package, "executable": executable, **words_of(words)})
         program = ["true"] if executable in ENDING else ["sleep", "600"]
         return await real(protocol, cmd=program, **{**options, "shell": False})
 

@@ -98,6 +98,13 @@ def _run(inside: tuple[str, ...], script: str) -> None:
         pytest.skip(f"no network of several hosts: {script}: {done.stderr.strip()}")
 
 
+def lose_packets(host: Host, percent: int) -> None:
+    """Drop so many of the packets that the host sends; the test is skipped without netem."""
+    if not shutil.which("tc"):
+        pytest.skip("no packet loss: tc not found")
+    _run(host.inside, f"tc qdisc add dev eth0 root netem loss {percent}%")
+
+
 @contextmanager
 def discovery_server(host: Host, port: int = 11811) -> Iterator[str]:
     """A Fast DDS discovery server on ``host``; gives the value of ROS_DISCOVERY_SERVER.

@@ -18,7 +18,19 @@ TRICKY = (
     "odom", "arm", "arm_left", "arm_left_b", "left_b", "joint_1", "joint_10", "joint_1_b", "a b",
     "a.b", "a-b", "a&b", "it's", 'say "x"', "a>b", "a::b", "robot1", "ärm", "ось", "腕", "name", "1",
 )  # fmt: skip
-FAMILY = ("x", "/x", "x/", "x_robot1", "x/robot1", "robot1/x", "/robot1/x", "world", "/world")
+FAMILY = (
+    "x",
+    "/x",
+    "x/",
+    "x_robot1",
+    "x/robot1",
+    "robot1/x",
+    "/robot1/x",
+    "world",
+    "/world",
+    "/",
+    "//",
+)
 names = st.sampled_from(TRICKY) | (
     st.text("ab1_-./ é", min_size=1, max_size=5).map(str.strip).filter(bool)
 )

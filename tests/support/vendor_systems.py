@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -51,7 +52,7 @@ _VALUED = (
 )
 _PASSING = (
     *("create", "spawn_entity.py", "gz_spawn_model", "generate_description", "generate_launch"),
-    *("generate_param", "generate_semantic_description"),
+    *("generate_param", "generate_semantic_description", "wait_for_robot_description"),
 )
 
 
@@ -116,7 +117,9 @@ def prepare(system: Mapping[str, Any], words: Mapping[str, str]) -> None:
 def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str]) -> list[Started]:
     """The nodes of one robot, by the real launch."""
     rows = [row for line in filled(system["launch"], words) for row in _recorded(line)]
-    found = [it for row in rows for it in _nodes(row, vendors.named)]
+    below = filled(system.get("below", ""), words)
+    nodes = [it for row in rows for it in _nodes(row, vendors.named)]
+    found = [_below(it, below) for it in nodes]
     also = filled(system.get("simulator", {}), words)
     return [*found, *(Started(f"/{words['robot']}/{name}", by) for name, by in also.items())]
 
@@ -138,7 +141,9 @@ def _nodes(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> It
         return
     namespace = f"/{row['namespace'].strip('/')}".rstrip("/")
     if row["executable"] == "spawner":
-        yield from (Started(f"{namespace}/{it}", by) for it in _positional(row["own"]))
+        above = _manager(row["own"]).strip("/").rpartition("/")[0]
+        home = f"/{above}" if above else namespace
+        yield from (Started(f"{home}/{it}", by) for it in _positional(row["own"]))
         return
     names = named.get(by, {}).get("nodes", [""])
     own = row["name"] or names[0]
@@ -147,6 +152,18 @@ def _nodes(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> It
     rules = tuple((old, new) for old, new in row["rules"])
     for name in (own, *names[1:]):
         yield Started(f"{namespace}/{name}", by, rules, tuple(row.get("parameters", ())))
+
+
+def _below(it: Started, namespace: str) -> Started:
+    """The node in a namespace; one RViz serves all robots."""
+    alone = not namespace or it.by.startswith("rviz2/")
+    return it if alone else it._replace(name=f"/{namespace}{it.name}")
+
+
+def _manager(words: list[str]) -> str:
+    """The controller manager that a spawner is told; controllers run in its namespace."""
+    given = (word for flag, word in pairwise(words) if flag in ("-c", "--controller-manager"))
+    return next(given, "")
 
 
 def _positional(words: Iterable[str]) -> Iterator[str]:

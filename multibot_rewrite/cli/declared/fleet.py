@@ -58,9 +58,9 @@ _DESCRIPTION = OptionGroup(
         ),
         repeated(
             "--launch",
-            "'FILE NAME:=VALUE...'",
-            "a launch file that starts each robot's nodes, with its arguments, or a system_model.yaml;"
-            " it is read, nothing is started (docs/launch.md)",
+            "'[PACKAGE] FILE NAME:=VALUE...'",
+            "a launch file that starts each robot's nodes, with its arguments, as ros2 launch takes it,"
+            " or a system_model.yaml; it is read, nothing is started (docs/launch.md)",
         ),
         several(
             "--launch-roots",

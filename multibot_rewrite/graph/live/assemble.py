@@ -10,6 +10,7 @@ from multibot_rewrite.graph.snapshot import (
     EXPECTED,
     QUIET,
     TIMEOUT,
+    Caveat,
     GraphEndpoint,
     GraphFrame,
     GraphNode,
@@ -18,8 +19,10 @@ from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 # Participants announce themselves every 3 s: a shorter quiet time proves nothing.
 QUIET_SECONDS = 3.5
-# A poll that is later than this was delayed by the machine.
+# More than this of one delay is a pause: of the process, or of the machine.
 DELAY_SECONDS = 0.5
+# So much of its time a look may wait for a processor.
+STARVED = 1 / 3
 # The endpoints of one participant arrive together; a busy machine may pause in between.
 BURST_SECONDS = 0.5
 # The second replaces the first in a rehearsal on a machine without tf2_msgs.
@@ -47,17 +50,37 @@ class LastChange(NamedTuple):
 class ObservationClock(NamedTuple):
     """Seconds of observation, and when the last poll was.
 
-    While this process or the machine is paused, the graph is not quiet: what arrived meanwhile has
-    not been read yet. So ``observed`` counts no more than a short delay for each poll.
+    While this process or the machine is paused, or has no processor for it, the graph is not quiet:
+    what arrived meanwhile has not been read yet. So a poll that comes late adds no more to ``observed``
+    than one in time. ``delayed`` are the seconds by which polls were late, of each half a second at
+    most: one long pause is no busy machine.
     """
 
     observed: float = 0.0
     last: float = 0.0
+    delayed: float = 0.0
 
-    def after(self, now: float, waited: float) -> ObservationClock:
-        """The clock at a poll that was planned for ``waited`` seconds after the last one."""
-        passed = min(now - self.last, waited + DELAY_SECONDS)
-        return ObservationClock(self.observed + passed, now)
+    def after(self, now: float, planned: float) -> ObservationClock:
+        """The clock at a poll that was planned for ``planned`` seconds after the last one."""
+        passed = now - self.last
+        late = min(max(0.0, passed - planned), DELAY_SECONDS)
+        return ObservationClock(self.observed + min(passed, planned), now, self.delayed + late)
+
+    def starved(self) -> Iterator[Caveat]:
+        """Where a look waited for a processor so long that nodes may have come too late."""
+        part = self.delayed / max(self.observed + self.delayed, DELAY_SECONDS)
+        if part > STARVED:
+            text = (
+                f"this machine was too busy: the look waited for a processor in {part:.0%} of its time,"
+                " so what is missing may only be late; look again when the machine is less busy"
+            )
+            yield Caveat("busy-machine", True, text)
+
+
+def cut_short() -> Iterator[Caveat]:
+    """Where the time was over in the midst of the slow queries."""
+    text = "the timeout was over before the QoS of all topics was read; give a longer --timeout"
+    yield Caveat("cut-short", True, text)
 
 
 def why_settled(

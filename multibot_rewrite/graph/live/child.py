@@ -9,12 +9,13 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple
 
 from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
-from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, Snapshot, from_json
+from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, Caveat, Snapshot, from_json
 from multibot_rewrite.model import MultibotError
 
 INSTALL = (
@@ -22,8 +23,12 @@ INSTALL = (
     " pip install 'multibot_rewrite[ros]'"
 )
 OBSERVE, RUN_STUBS = "multibot_rewrite.graph.live.observe", "multibot_rewrite.graph.live.stub_nodes"
-# For import and start, for the slow queries in a fleet of 500 nodes, and for tf.
-SLACK_SECONDS = 45.0
+# For import and start, and for an end on a busy machine: the child keeps to the timeout by itself.
+SLACK_SECONDS = 30.0
+NO_SECOND_LOOK = (
+    "two nodes have one name, or a node has none: one of them may be dead, and there was no time for a"
+    " second look; give a longer --timeout"
+)
 _EXIT_SECONDS = 3.0
 
 
@@ -58,9 +63,20 @@ def observe(request: Request, environ: Mapping[str, str]) -> Snapshot:
 
     No process is left running, however this call ends.
     """
+    began = time.monotonic()
     seen = _observe_once(request, environ)
+    if not _may_contain_dead_nodes(seen):
+        return seen
     # A node that was killed meanwhile stays visible for 20 s, but not for a new participant.
-    return _observe_once(request, environ) if _may_contain_dead_nodes(seen) else seen
+    left = request.timeout - (time.monotonic() - began)
+    if left < seen.environment.seconds:
+        return _with_caveat(seen, Caveat("no-second-look", True, NO_SECOND_LOOK))
+    return _observe_once(request._replace(timeout=left), environ)
+
+
+def _with_caveat(seen: Snapshot, caveat: Caveat) -> Snapshot:
+    around = seen.environment
+    return seen._replace(environment=around._replace(caveats=(*around.caveats, caveat)))
 
 
 def _may_contain_dead_nodes(seen: Snapshot) -> bool:

@@ -9,7 +9,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from typing import Any, NamedTuple
@@ -23,6 +23,7 @@ from multibot_rewrite.graph.snapshot import (
     CHANGING,
     QUIET,
     UNKNOWN_NODE,
+    Caveat,
     Environment,
     GraphEndpoint,
     Snapshot,
@@ -35,10 +36,12 @@ from multibot_rewrite.remap.records import ACTION, CALLS, SERVES
 POLL_SECONDS, PAUSE_FACTOR, LONG_PAUSE_FACTOR = 0.1, 10, 30
 # The longest pause; a poll may only have been slow because the machine was busy.
 LONGEST_PAUSE_SECONDS = 1.0
-# After so long without a change there will probably be none.
-IDLE_SECONDS = 1.0
 # tf has 10 Hz or more; a shared topic of 100 robots took 1.3 s to be received completely.
 TF_SECONDS = (1.5, 3.0)
+# After so long without a change there will probably be none; tf is received until that is known.
+IDLE_SECONDS = assemble.QUIET_SECONDS - TF_SECONDS[0]
+# What a look may take beyond its timeout, for the last queries.
+GRACE_SECONDS = 1.0
 # When watching, a snapshot comes so long after the last change, because changes come in groups,
 SETTLE_SECONDS = 0.15
 # but it waits no longer than this while the graph goes on changing.
@@ -57,6 +60,10 @@ class GraphSession(NamedTuple):
     def now(self) -> float:
         """Seconds since the observation began."""
         return time.monotonic() - self.started
+
+    def over(self) -> bool:
+        """Whether it has to end, also in the midst of queries."""
+        return self.stop.is_set() or self.now() >= self.request.timeout + GRACE_SECONDS
 
 
 def main(order: str, stop: threading.Event, send: Send) -> int:
@@ -84,14 +91,15 @@ def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSess
 def take_snapshot(session: GraphSession) -> Snapshot:
     """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
-    why = _wait_until_settled(session, cache)
+    tf = TfSubscriptions(partial(_subscribe, session))
+    why, clock = _wait_until_settled(session, cache, tf)
     seconds = session.now()
     names, endpoints = _complete_view(session, cache)
-    tf = TfSubscriptions(partial(_subscribe, session))
+    more = [*clock.starved(), *(assemble.cut_short() if session.over() else ())]
     tf.update(endpoints, session.request.substitutes)
-    while not session.stop.is_set() and tf.keep_waiting(*TF_SECONDS):
+    while not session.over() and tf.keep_waiting(*TF_SECONDS):
         ros.spin(session.ros, POLL_SECONDS)
-    return _snapshot(session, names, endpoints, tf, (why, seconds))
+    return _snapshot(session, names, endpoints, tf, (why, seconds), more)
 
 
 def watch(session: GraphSession) -> Iterator[Snapshot]:
@@ -101,13 +109,12 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
     before: object = None
     sent: object = None
     changed = sent_at = 0.0
-    pause, clock = POLL_SECONDS, assemble.ObservationClock()
+    pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
     while not session.stop.is_set():
         ros.spin(session.ros, pause)
-        began = time.thread_time()
+        clock = clock.after(session.now(), pause + spent)
+        now, began = clock.observed, time.thread_time()
         state = (*_overview(session), tf.transforms())
-        clock = clock.after(session.now(), pause)
-        now = clock.observed
         pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
         if state != before:
             before, changed = state, now
@@ -121,6 +128,7 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
             tf.update(endpoints, session.request.substitutes)
             why = QUIET if quiet else CHANGING
             yield _snapshot(session, names, endpoints, tf, (why, session.now()))
+        spent = time.thread_time() - began
 
 
 def _overview(session: GraphSession) -> tuple[list[str], list[GraphEndpoint]]:
@@ -132,32 +140,38 @@ def _overview(session: GraphSession) -> tuple[list[str], list[GraphEndpoint]]:
     return names, sorted(found)
 
 
-def _wait_until_settled(session: GraphSession, cache: queries.TopicCache) -> str:
+def _wait_until_settled(
+    session: GraphSession, cache: queries.TopicCache, tf: TfSubscriptions
+) -> tuple[str, assemble.ObservationClock]:
     """Wait until the graph is settled; returns why it is, empty if the observation was stopped.
 
-    The slow queries are made while there is only waiting to do; the cache grows.
+    The slow queries are made while there is only waiting to do, and tf is received; the cache grows.
     """
     request = session.request
     times = _ChangeTimes()
     queried: object = None
-    pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock()
-    while not session.stop.wait(pause):
-        began = time.thread_time()
-        view = _overview(session)
+    pause, spent, clock = POLL_SECONDS, 0.0, assemble.ObservationClock(last=session.now())
+    while not session.stop.is_set():
+        ros.spin(session.ros, pause)
         clock = clock.after(session.now(), pause + spent)
-        now = clock.observed
-        pause = _pause_after(time.thread_time() - began, LONG_PAUSE_FACTOR)
+        now, began = clock.observed, time.thread_time()
+        view = _overview(session)
         changed = times.update(now, view, request.expected)
+        pause = _pause_after(time.thread_time() - began, LONG_PAUSE_FACTOR)
+        # Not later than the moment at which it is quiet.
+        pause = min(pause, max(POLL_SECONDS, changed.all + assemble.QUIET_SECONDS - now))
         seen = {end.node for end in view[1]}
-        why = assemble.why_settled(now, changed, seen, request.expected, request.timeout)
+        # Its timeout is of real time.
+        timeout = request.timeout - (session.now() - now)
+        why = assemble.why_settled(now, changed, seen, request.expected, timeout)
         if why:
-            return why
-        began = session.now()
-        if queried != view and now - changed.all >= IDLE_SECONDS:
+            return why, clock
+        idle = now - changed.all >= IDLE_SECONDS or now >= timeout - TF_SECONDS[1]
+        if idle and queried != view:
             queried = view
-            _view(session, cache)
-        spent = session.now() - began
-    return ""
+            tf.update(_view(session, cache)[1], request.substitutes)
+        spent = time.thread_time() - began
+    return "", clock
 
 
 class _ChangeTimes:
@@ -206,7 +220,8 @@ def _view(
     names = queries.node_names(node)
     all_queries = (*queries.NODE_QUERIES, *_ACTION_QUERIES)
     found = list(queries.endpoints_by_node(node, names, all_queries, ros.node_gone_error()))
-    return names, queries.with_topic_details(node, names, found, session.request.topics, cache)
+    details = queries.TopicQueries(session.request.topics, cache, session.over)
+    return names, queries.with_topic_details(node, names, found, details)
 
 
 _ACTION_QUERIES: tuple[queries.NodeQuery, ...] = (
@@ -229,6 +244,7 @@ def _snapshot(
     endpoints: list[GraphEndpoint],
     tf: TfSubscriptions,
     settled: tuple[str, float],
+    more: Iterable[Caveat] = (),
 ) -> Snapshot:
     processes = assemble.processes_by_node(endpoints)
     nodes = assemble.nodes_with_process(names, processes)
@@ -239,6 +255,7 @@ def _snapshot(
         *environment.setting_caveats(os.environ),
         *environment.view_caveats(nodes, placed, asked, why, session.request.expected),
         *tf.caveats(),
+        *more,
     ]
     around = Environment(
         session.ros.context.get_domain_id(),

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.live import assemble
 from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, GraphEndpoint, Qos
@@ -71,32 +71,38 @@ def endpoints_by_node(
 TopicCache = dict[str, tuple[frozenset[GraphEndpoint], list[GraphEndpoint]]]
 
 
-def with_topic_details(
-    node: Any,
-    names: list[str],
-    found: list[GraphEndpoint],
-    requested: Collection[str],
-    cache: TopicCache,
-) -> list[GraphEndpoint]:
-    """The endpoints ``found`` by node, with QoS and process for topics that are worth a query.
+class TopicQueries(NamedTuple):
+    """Which topics are always queried, the answers so far, and whether there is no time for more.
 
-    ``requested`` are topics that are always queried. A topic in ``cache`` is not queried again
-    while the endpoints of its nodes are the same; the cache grows.
+    A topic in ``cache`` is not queried again while the endpoints of its nodes are the same; the cache
+    grows.
     """
+
+    requested: Collection[str]
+    cache: TopicCache
+    over: Callable[[], bool]
+
+
+def with_topic_details(
+    node: Any, names: list[str], found: list[GraphEndpoint], asked: TopicQueries
+) -> list[GraphEndpoint]:
+    """The endpoints ``found`` by node, with QoS and process for topics that are worth a query."""
     topics = dict(node.get_topic_names_and_types())
-    wanted = assemble.topics_to_query(names, found, topics, requested)
+    wanted = assemble.topics_to_query(names, found, topics, asked.requested)
     if len(set(names)) < len(names):
         # One of two nodes with one name is hidden, and so are its endpoints.
-        cache.clear()
-    details = _query_topics(node, wanted, found, cache)
+        asked.cache.clear()
+    details = _query_topics(node, wanted, found, asked)
     endpoints = assemble.merged(found, details)
     known = assemble.processes_by_node(endpoints)
     unknown = {end.node: end for end in found if end.node not in known and end.kind != ACTION}
-    return [*endpoints, *_with_process(node, endpoints, unknown)] if unknown else endpoints
+    if not unknown or asked.over():
+        return endpoints
+    return [*endpoints, *_with_process(node, endpoints, unknown)]
 
 
 def _query_topics(
-    node: Any, topics: Iterable[str], found: Iterable[GraphEndpoint], cache: TopicCache
+    node: Any, topics: Iterable[str], found: Iterable[GraphEndpoint], asked: TopicQueries
 ) -> dict[str, list[GraphEndpoint]]:
     ends: dict[str, list[GraphEndpoint]] = {}
     for end in found:
@@ -104,12 +110,14 @@ def _query_topics(
     result = {}
     for topic in topics:
         now = frozenset(ends.get(topic, ()))
-        before, details = cache.get(topic, (None, []))
+        before, details = asked.cache.get(topic, (None, []))
         if before != now:
+            if asked.over():
+                continue
             details = _topic_endpoints(node, topic)
             # Otherwise discovery is not finished for this topic.
             if {(end.role, end.node) for end in details} == {(end.role, end.node) for end in now}:
-                cache[topic] = now, details
+                asked.cache[topic] = now, details
         result[topic] = details
     return result
 

@@ -59,8 +59,9 @@ def opened() -> Iterator[Session]:
 def add_node(
     session: Session, name: str, namespace: str = "/", arguments: Sequence[str] = ()
 ) -> Node:
-    """Add a node without parameter services; ``arguments`` are those of its command line."""
+    """Add a node without services; ``arguments`` are those of its command line."""
     from rclpy.node import Node
+    from rclpy.parameter import Parameter
 
     node = Node(
         name,
@@ -70,6 +71,8 @@ def add_node(
         use_global_arguments=False,
         start_parameter_services=False,
         enable_rosout=False,
+        # Its types need numpy, which takes longer to import than all of rclpy.
+        parameter_overrides=[Parameter("start_type_description_service", value=False)],
     )
     session.executor.add_node(node)
     return node
@@ -92,24 +95,22 @@ def node_gone_error() -> type[Exception]:
 
 def action_servers(node: Node, name: str, namespace: str) -> Any:
     """Names and types of the actions that a node serves."""
-    from rclpy.action import get_action_server_names_and_types_by_node
-
-    return _actions(get_action_server_names_and_types_by_node, node, name, namespace)
+    return _actions(node, node.handle.get_action_server_names_and_types_by_node, name, namespace)
 
 
 def action_clients(node: Node, name: str, namespace: str) -> Any:
     """Names and types of the actions that a node calls."""
-    from rclpy.action import get_action_client_names_and_types_by_node
-
-    return _actions(get_action_client_names_and_types_by_node, node, name, namespace)
+    return _actions(node, node.handle.get_action_client_names_and_types_by_node, name, namespace)
 
 
-def _actions(query: Callable[..., Any], node: Node, name: str, namespace: str) -> Any:
+# rclpy.action.graph asks the same, and imports all of rclpy.action, which needs numpy.
+def _actions(node: Node, query: Callable[..., Any], name: str, namespace: str) -> Any:
     """Queries for actions raise a plain RCLError for a node that left the graph."""
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     try:
-        return query(node, name, namespace)
+        with node.handle:
+            return query(name, namespace)
     except rclpy_implementation.RCLError as error:
         if (name, namespace) in node.get_node_names_and_namespaces():
             raise

@@ -26,7 +26,8 @@ class View(NamedTuple):
     hidden topics and services of actions. ``published_topics`` have a publisher in the graph.
     ``seen`` counts the nodes by name. ``unplanned`` are nodes that are not in the plan and not
     ignored. ``probable_matches`` maps a missing node to the running node that it probably is.
-    ``places`` has file and line of the plugin that starts a node.
+    ``places`` has file and line of the plugin that starts a node. ``may_miss`` are the planned nodes
+    that need not run: optional ones, and those of which another one may run in their place.
     """
 
     plan: Expectation
@@ -47,6 +48,7 @@ class View(NamedTuple):
     trees: tuple[TfTree, ...]
     robots: Mapping[str, PlannedRobot]
     frames_of: Mapping[str, frozenset[str]]
+    may_miss: frozenset[str]
 
 
 def make_view(plan: Expectation, graph: Snapshot) -> View:
@@ -81,6 +83,11 @@ def make_view(plan: Expectation, graph: Snapshot) -> View:
         trees=tf_trees(graph.frames, plan.robots, ownership),
         robots={robot.name: robot for robot in plan.robots},
         frames_of={r.name: frozenset((*r.frames, *r.other_frames)) for r in plan.robots},
+        may_miss=frozenset(
+            node
+            for group in (*(robot.optional for robot in plan.robots), *plan.one_of)
+            for node in group
+        ),
     )
 
 

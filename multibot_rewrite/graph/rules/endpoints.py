@@ -47,8 +47,8 @@ running: /robot1/driver subscribes /cmd_vel
 def missing_endpoint(view: View) -> Iterator[Finding]:
     """Only where its node is in the graph."""
     for key, planned in view.planned.items():
-        robot = view.robot_of.get(planned.node)
-        if robot is None or planned.node not in view.seen or key in view.types:
+        robot = view.robot_of.get(planned.node, "")
+        if planned.node not in view.seen or key in view.types:
             continue
         # Of two nodes with one name, rcl shows the services of only one.
         if view.seen[planned.node] > 1 and planned.kind != TOPIC:
@@ -81,7 +81,7 @@ def _why_remapped(view: View, planned: PlannedEndpoint, used: str) -> str:
     if used in _moved_down(view, planned):
         return f": {use_absolute(planned.name)}"
     other = view.ownership.robot(used)
-    if other and other != view.robot_of[planned.node]:
+    if other and other != view.robot_of.get(planned.node, other):
         return f", a name of {other}: a remap rule or parameter names the wrong robot"
     return ": is the name misspelled in a remap rule or parameter?"
 
@@ -93,12 +93,17 @@ def _used_instead(view: View, planned: PlannedEndpoint) -> str:
     likely += _moved_down(view, planned)
     if likely:
         return likely[0]
-    ownership, robot = view.ownership, view.robot_of[planned.node]
+    # A node for all robots has names of several: which robot's is in the name itself.
+    ownership = view.ownership
+    robot = view.robot_of.get(planned.node) or ownership.robot(planned.name)
     plain = {
         ownership.without_robot(name, ownership.robot(name) or robot): name for name in unplanned
     }
     wanted = ownership.without_robot(planned.name, robot)
-    return plain.get(wanted, "") or plain.get(similar(wanted, plain), "")
+    near = plain.get(wanted, "") or plain.get(similar(wanted, plain), "")
+    if near or planned.node in view.robot_of:
+        return near
+    return similar(planned.name, unplanned)
 
 
 def _moved_down(view: View, planned: PlannedEndpoint) -> list[str]:

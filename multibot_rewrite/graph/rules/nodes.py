@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, WARNING, Finding
 from multibot_rewrite.graph.expectation import EVERYWHERE, PlannedRobot
+from multibot_rewrite.graph.reach import hidden_from_here, why_not_seen
 from multibot_rewrite.graph.rules.causes import Cause, caused, plugin_of, why_other_name
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
@@ -45,7 +46,7 @@ def missing_node(view: View) -> Iterator[Finding]:
             message = f"node {node} is in the plan, but not in the graph"
             yield missing_node.finding(message, **cause._asdict(), robot=robot.name, node=node)
     for node in dict.fromkeys(view.plan.shared_nodes):
-        if node not in view.seen:
+        if node not in view.seen and node not in view.may_miss:
             message = f"node {node} for all robots is in the plan, but not in the graph"
             yield missing_node.finding(message, "is it started?", level=WARNING, node=node)
 
@@ -55,7 +56,7 @@ def _missing(view: View, robot: PlannedRobot) -> list[str]:
     return [
         node
         for node in robot.nodes
-        if node not in view.seen and (node not in robot.optional or node in view.probable_matches)
+        if node not in view.seen and (node not in view.may_miss or node in view.probable_matches)
     ]
 
 
@@ -160,8 +161,10 @@ def _foreign_names(view: View, node: str, robot: str) -> str:
     absence=True,
     drawn="missing",
     what="No node of a robot is in the graph.",
-    why="The robot is off, in another domain, or its nodes run under other names.",
-    fix="Start it, in its namespace, and check `ROS_DOMAIN_ID` on both sides.",
+    why="The robot is off, in another domain, or its nodes run under other names. Where all that is"
+    " seen runs on one machine, the network may hide it: then it is inconclusive, not an error.",
+    fix="Start it, in its namespace, and check `ROS_DOMAIN_ID` on both sides. Look from its machine as"
+    " well, and join both snapshots: `multibot snapshot --merge`.",
     bad="""\
 as planned: /robot1/driver
 planned: /robot2/driver
@@ -178,15 +181,21 @@ def missing_robot(view: View) -> Iterator[Finding]:
         if _is_absent(view, robot):
             message = f"none of the {len(robot.nodes)} nodes of {robot.name} is in the graph"
             cause = _why_absent(view, robot)
-            yield missing_robot.finding(message, **cause._asdict(), robot=robot.name)
+            hidden = not _matches(view, robot) and hidden_from_here(view.graph)
+            level = INCONCLUSIVE if hidden else ERROR
+            yield missing_robot.finding(message, **cause._asdict(), robot=robot.name, level=level)
+
+
+def _matches(view: View, robot: PlannedRobot) -> list[tuple[str, str]]:
+    """Its nodes, and those that probably run in their place."""
+    matches = view.probable_matches
+    return [(node, matches[node]) for node in robot.nodes if node in matches]
 
 
 def _why_absent(view: View, robot: PlannedRobot) -> Cause:
-    matches = [
-        (node, view.probable_matches[node]) for node in robot.nodes if node in view.probable_matches
-    ]
+    matches = _matches(view, robot)
     if not matches:
-        return Cause("is the robot started, and with this ROS_DOMAIN_ID?")
+        return Cause(why_not_seen(view.graph, robot.name))
     cause = why_other_name(view, *matches[0])
     same = f"; the same for {len(matches) - 1} more of its nodes" if len(matches) > 1 else ""
     return cause._replace(hint=cause.hint + same)

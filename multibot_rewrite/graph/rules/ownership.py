@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation
@@ -16,10 +16,11 @@ class NameOwnership(NamedTuple):
     """How the names of one sort, graph names or frames, show their robot.
 
     ``exact`` are planned names that belong to one robot, ``nodes`` the planned nodes, whose names
-    begin their private names. A robot's tag is its name in these names: ``robots`` maps tags to
-    robots, ``tags`` robots to tags where the tag is not the robot's name. ``ambiguous_words`` are
+    begin their private names. A robot's tag is its name in these names, a namespace of several levels
+    with its slashes: ``robots`` maps tags to robots, ``tags`` robots to tags where the tag is not the
+    robot's name. ``ambiguous_words`` are
     tags that occur as an ordinary word as well (a robot ``scan``). ``robot_is_last`` says that the
-    tag is at the end of a name.
+    tag is at the end of a name; ``levels`` is the largest number of segments of a tag.
     """
 
     exact: Mapping[str, str]
@@ -28,6 +29,7 @@ class NameOwnership(NamedTuple):
     ambiguous_words: frozenset[str]
     robot_is_last: bool
     tags: Mapping[str, str] = NO_TAGS
+    levels: int = 1
 
     def robot(self, name: str) -> str:
         """The robot that a name belongs to, or an empty string."""
@@ -44,12 +46,19 @@ class NameOwnership(NamedTuple):
     def _robot_by_tag(self, name: str) -> str:
         segments = name.strip("/").split("/")
         if len(segments) > 1:
-            place = segments[-1 if self.robot_is_last else 0]
-            found = place if place in self.robots else self._longest(segments)
+            found = self._at_its_place(segments) or self._longest(segments)
             if found:
                 return self.robots[found]
         found = self._longest(end for segment in segments for end in _ends(segment))
         return self.robots.get(found, "")
+
+    def _at_its_place(self, segments: Sequence[str]) -> str:
+        """The tag at the end where this plan has them; the longest of those with several levels."""
+        if self.robot_is_last:
+            return segments[-1] if segments[-1] in self.robots else ""
+        deepest = min(self.levels, len(segments) - 1)
+        ways_in = ("/".join(segments[:count]) for count in range(deepest, 0, -1))
+        return next((it for it in ways_in if it in self.robots), "")
 
     def _longest(self, parts: Iterable[str]) -> str:
         """The longest tag among the parts: ``arm_left`` rather than ``arm``."""
@@ -66,6 +75,8 @@ class NameOwnership(NamedTuple):
         if not tag or tag not in name:
             return name
         slash = "/" if name.startswith("/") else ""
+        if "/" in tag:
+            return slash + f"{name.strip('/')}/".removeprefix(f"{tag}/").rstrip("/")
         segments = name.strip("/").split("/")
         places = [at for at, segment in enumerate(segments) if segment == tag]
         if places and len(segments) > 1:
@@ -109,9 +120,9 @@ def name_ownership(plan: Expectation) -> NameOwnership:
     last = _is_last(
         (name, robot.name) for robot in plan.robots for name in (*robot.nodes, robot.tf)
     )
-    draft = NameOwnership(
-        _of_one_robot((*nodes.items(), *planned)), nodes, robots, frozenset(), last
-    )
+    exact = _of_one_robot((*nodes.items(), *planned))
+    levels = max((name.count("/") + 1 for name in robots), default=1)
+    draft = NameOwnership(exact, nodes, robots, frozenset(), last, levels=levels)
     return draft._replace(ambiguous_words=frozenset(robots.keys() & _plain_words(plan, draft)))
 
 

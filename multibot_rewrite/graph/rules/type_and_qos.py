@@ -12,7 +12,7 @@ from multibot_rewrite.graph.expectation import PlannedEndpoint
 from multibot_rewrite.graph.rules.causes import DOES
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.snapshot import GraphEndpoint, Qos
+from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint, Qos
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 
@@ -160,8 +160,8 @@ as planned: /robot1/viewer subscribes /robot1/image sensor_msgs/msg/Image best_e
     line=2,
 )
 def qos_mismatch(view: View) -> Iterator[Finding]:
-    """One finding for each subscription."""
-    for name, ends in view.by_name.items():
+    """One finding for each subscription. Zenoh connects any two (rmw_zenoh design.md)."""
+    for name, ends in view.by_name.items() if view.graph.environment.rmw != ZENOH else ():
         # The same QoS on both sides always connects.
         if all(end.qos == ends[0].qos for end in ends):
             continue

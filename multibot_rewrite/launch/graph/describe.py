@@ -18,7 +18,9 @@ import yaml
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchNote, ParameterText
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.evidence.ros_arguments import params_text, ros2_run, ros_arguments
+from multibot_rewrite.evidence.spawners import controller_files
 from multibot_rewrite.launch.door import of_launch, of_launch_ros
+from multibot_rewrite.launch.graph.made_files import source_of
 from multibot_rewrite.launch.graph.places import place_of
 
 _LIMIT = 1 << 24
@@ -75,13 +77,14 @@ def node(action: Any, here: Visit) -> LaunchedNode:
     )
     rules = [*_rules(_kept(action, "remappings"), here.context), *given.rules]
     own = _kept(action, "parameters") or ()
+    files = (*given.files, *controller_files(f"{package}/{executable}", given.own))
     return LaunchedNode(
         package,
         executable,
         text(_kept(action, "node_name"), here.context) or given.name,
         given.namespace or _namespace(_kept(action, "node_namespace"), here.context),
         tuple(rules),
-        (*_parameters(own, here), *_given(given.values, given.files, here)),
+        (*_parameters(own, here), *_given(given.values, files, here)),
         "",
         given.own,
         here.later,
@@ -209,7 +212,17 @@ def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
         here.note(f"the parameter file {path!r} is not there")
         return
-    # A file that the launch makes is gone when this is read.
-    made = os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
+    source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:
-        yield ParameterText("" if made else os.path.realpath(path), file.read())
+        text_ = file.read()
+    # A file that the launch makes is gone when this is read.
+    yield ParameterText("" if _is_made(path) else os.path.realpath(path), text_, _kept_file(source))
+
+
+def _is_made(path: str) -> bool:
+    return os.path.realpath(path).startswith(os.path.realpath(tempfile.gettempdir()) + os.sep)
+
+
+def _kept_file(path: str) -> str:
+    """The real path of a file that is there when the launch is over, else nothing."""
+    return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)

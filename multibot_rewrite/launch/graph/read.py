@@ -10,6 +10,7 @@ from multibot_rewrite.evidence.launch_records import LaunchGraph, LaunchOrder
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.launch.door import of_launch, of_launch_ros
 from multibot_rewrite.launch.graph.describe import Visit, failure
+from multibot_rewrite.launch.graph.made_files import keep_sources
 from multibot_rewrite.launch.graph.packages import add_sources
 from multibot_rewrite.launch.graph.places import keep_places
 from multibot_rewrite.launch.graph.visit import visit
@@ -28,6 +29,7 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     # What the parsers of the launch files in XML and YAML need.
     of_launch_ros("actions")
     keep_places()
+    keep_sources()
     _without_programs()
     try:
         description = _included(order)

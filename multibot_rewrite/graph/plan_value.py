@@ -1,0 +1,243 @@
+"""The plan of a fleet as plain values, as its YAML and JSON files have them, and back."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping
+from sys import intern
+from typing import Any
+
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+    PlannedTopic,
+    vacuous,
+)
+from multibot_rewrite.graph.plan_gaps import gap_value, read_gaps
+from multibot_rewrite.model import InputError
+from multibot_rewrite.releases import RELEASES
+from multibot_rewrite.remap.records import KINDS, ROLES
+from multibot_rewrite.remap.yaml_with_lines import unknown
+
+KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
+ROBOT_KEYS = ("tf", "frames", "nodes")
+TOPIC_KEYS = ("senders", "one_sender", "qos")
+# Policies whose value is a word.
+QOS_KEYS = ("history", "reliability", "durability", "liveliness")
+# Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
+BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways"}
+OPEN = "open"
+OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", *BY_NODE, OPEN)
+# Key -> field of PlannedRobot.
+OPTIONAL_ROBOT_KEYS = {
+    "other_frames": "other_frames",
+    "optional": "optional",
+    "spelled": "frame_tag",
+}
+FIELDS = 5
+# Between several types of an endpoint.
+OR = " | "
+REMEDY = "use the file that multibot plan wrote"
+# The endpoints of a node, a row each.
+Rows = Mapping[str, list[list[str]]]
+
+
+def value_of(plan: Expectation) -> dict[str, object]:
+    """The keys of a file, in their order, with their values."""
+    rows: dict[str, list[list[str]]] = defaultdict(list)
+    for end in plan.endpoints:
+        types = OR.join((end.type, *end.also))
+        rows[end.node].append([end.role, end.kind, end.name, types, end.code_name])
+    more = {
+        "topics": {it.name: _topic_value(it) for it in plan.topics},
+        "one_of": plan.one_of,
+        **{key: dict(getattr(plan, field)) for key, field in BY_NODE.items()},
+        OPEN: [gap_value(it) for it in plan.gaps],
+    }
+    return {
+        **({"distro": plan.release} if plan.release else {}),
+        "layout": plan.layout,
+        "shared_nodes": {node: rows.get(node, []) for node in plan.shared_nodes},
+        "shared_topics": plan.shared_topics,
+        "shared_frames": plan.shared_frames,
+        "ignored_nodes": plan.ignored_nodes,
+        "robots": {it.name: _robot_value(it, rows) for it in plan.robots},
+        **{key: value for key, value in more.items() if value},
+    }
+
+
+def _robot_value(robot: PlannedRobot, rows: Rows) -> dict[str, object]:
+    fields = {key: getattr(robot, field) for key, field in OPTIONAL_ROBOT_KEYS.items()}
+    given = {key: value for key, value in fields.items() if value}
+    nodes = {node: rows.get(node, []) for node in robot.nodes}
+    return {"tf": robot.tf, "frames": robot.frames, **given, "nodes": nodes}
+
+
+def _topic_value(topic: PlannedTopic) -> dict[str, object]:
+    given = {"senders": topic.senders, "one_sender": topic.one_sender, "qos": dict(topic.qos)}
+    return {key: value for key, value in given.items() if value}
+
+
+def from_value(value: object, file: str) -> Expectation:
+    """The plan that a value of YAML or JSON holds; raises InputError."""
+    top = _mapping(value, KEYS, file, "the plan", OPTIONAL_KEYS)
+    shared, endpoints = _read_nodes(_named(top["shared_nodes"]), f"{file}: shared_nodes")
+    topics, frames = (_texts(top[key], f"{file}: {key}") for key in KEYS[2:4])
+    robots: list[PlannedRobot] = []
+    for name, given in _mapping(top["robots"], (), file, "robots").items():
+        robot, ends = _read_robot(str(name), given, file)
+        robots.append(robot)
+        endpoints += ends
+    sources, origins, ways = (tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE)
+    plan = Expectation(
+        str(top["layout"]),
+        tuple(robots),
+        shared,
+        topics,
+        frames,
+        tuple(endpoints),
+        _texts(top.get("ignored_nodes", []), f"{file}: ignored_nodes"),
+        sources,
+        origins,
+        _release(top.get("distro", ""), file),
+        ways,
+        tuple(_read_topics(top.get("topics", {}), file)),
+        tuple(_read_groups(top.get("one_of", []), file)),
+        tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
+    )
+    nothing = vacuous(plan)
+    if nothing:
+        raise InputError(f"{file}: {nothing}, so every graph would be as planned; {REMEDY}")
+    return plan
+
+
+def _release(value: object, file: str) -> str:
+    """A plan of an earlier version has none."""
+    if value and value not in RELEASES:
+        raise InputError(f"{file}: distro: {unknown('release', str(value), RELEASES)}")
+    return str(value)
+
+
+def _read_robot(name: str, given: object, file: str) -> tuple[PlannedRobot, list[PlannedEndpoint]]:
+    place = f"robots.{name}"
+    robot = _mapping(given, ROBOT_KEYS, file, place, (*OPTIONAL_ROBOT_KEYS,))
+    keys = ("frames", "other_frames", "optional")
+    frames, others, optional = (
+        _texts(robot.get(key, []), f"{file}: {place}.{key}") for key in keys
+    )
+    names, endpoints = _read_nodes(robot["nodes"] or {}, f"{file}: {place}.nodes")
+    tf = _full_name(robot["tf"], f"{file}: {place}.tf")
+    frame_tag = robot.get("spelled", "")
+    if not isinstance(frame_tag, str):
+        raise InputError(f"{file}: {place}.spelled: write one word")
+    return PlannedRobot(name, names, frames, tf, others, optional, frame_tag), endpoints
+
+
+def _named(value: object) -> object:
+    """Names alone, as a list, are nodes without planned endpoints."""
+    return dict.fromkeys(map(str, value)) if isinstance(value, list) else value or {}
+
+
+def _read_nodes(given: object, place: str) -> tuple[tuple[str, ...], list[PlannedEndpoint]]:
+    """The names of nodes and their endpoints."""
+    file, _, what = place.rpartition(": ")
+    endpoints: list[PlannedEndpoint] = []
+    nodes = _mapping(given, (), file, what)
+    for node, rows in nodes.items():
+        endpoints += _read_endpoints(_full_name(node, place), rows, f"{place}.{node}")
+    return tuple(nodes), endpoints
+
+
+def _read_topics(given: object, file: str) -> Iterator[PlannedTopic]:
+    for name, value in _mapping(given or {}, (), file, "topics").items():
+        what = f"topics.{name}"
+        topic = _mapping(value, (), file, what)
+        _known(topic, TOPIC_KEYS, f"{file}: {what}")
+        qos = _mapping(topic.get("qos", {}), (), file, f"{what}.qos")
+        _known(qos, QOS_KEYS, f"{file}: {what}.qos")
+        one = topic.get("one_sender", False)
+        if not isinstance(one, bool) or not all(isinstance(it, str) for it in qos.values()):
+            wrong = "one_sender" if not isinstance(one, bool) else "qos"
+            raise InputError(f"{file}: {what}.{wrong}: write {_FORMS[wrong]}")
+        senders = _texts(topic.get("senders", []), f"{file}: {what}.senders")
+        words = tuple((policy, word.upper()) for policy, word in qos.items())
+        yield PlannedTopic(_full_name(name, f"{file}: topics"), senders, one, words)
+
+
+_FORMS = {"one_sender": "true or false", "qos": "words, as {durability: transient_local}"}
+
+
+def _known(given: Mapping[str, Any], keys: tuple[str, ...], place: str) -> None:
+    for key in given:
+        if key not in keys:
+            raise InputError(f"{place}: {unknown('key', str(key), keys)}")
+
+
+def _read_groups(given: object, file: str) -> Iterator[tuple[str, ...]]:
+    if not isinstance(given, list):
+        raise InputError(f"{file}: one_of is not a list; write [[NODE, NODE]]")
+    for at, group in enumerate(given):
+        place = f"{file}: one_of[{at}]"
+        yield tuple(_full_name(node, place) for node in _texts(group, place))
+
+
+def _full_name(value: object, place: str) -> str:
+    if not isinstance(value, str) or not value.startswith("/"):
+        raise InputError(f"{place}: {_not_full(value)}")
+    return intern(value)
+
+
+def _not_full(value: object) -> str:
+    return f"{value!r} is not a full name; write it with a / in front"
+
+
+def _by_node(value: object, file: str, key: str) -> Iterator[tuple[str, str]]:
+    for node, place in _mapping(value or {}, (), file, key).items():
+        if not isinstance(place, str):
+            raise InputError(f"{file}: {key}.{node}: write file:line")
+        yield str(node), place
+
+
+def _mapping(
+    value: object, keys: tuple[str, ...], file: str, what: str, more: tuple[str, ...] = ()
+) -> Mapping[str, Any]:
+    """``value``, checked to have all of ``keys`` and otherwise only ``more``; any without ``keys``."""
+    if not isinstance(value, dict):
+        raise InputError(f"{file}: {what} is not a mapping; write it as multibot plan does")
+    missing = [key for key in keys if key not in value]
+    unknown = [key for key in value if keys and key not in (*keys, *more)]
+    if missing or unknown:
+        wrong = f"key {missing[0]!r} is missing" if missing else f"unknown key {unknown[0]!r}"
+        raise InputError(f"{file}: {what}: {wrong}; the keys are {', '.join((*keys, *more))}")
+    return value
+
+
+def _texts(value: object, place: str) -> tuple[str, ...]:
+    if not isinstance(value, list) or not all(isinstance(item, str) for item in value):
+        raise InputError(f"{place} is not a list of names")
+    return tuple(value)
+
+
+def _read_endpoints(node: str, rows: object, place: str) -> Iterator[PlannedEndpoint]:
+    if rows is not None and not isinstance(rows, list):
+        raise InputError(f"{place} is not a list; write [] for a node without planned endpoints")
+    for at, row in enumerate(rows or ()):
+        wrong = _wrong_row(row)
+        if wrong:
+            raise InputError(f"{place}[{at}]: {wrong}")
+        # Many nodes have the same names, types and words.
+        role, kind, name, types, code_name = map(intern, row)
+        type_, *also = types.split(OR) if OR in types else (types,)
+        yield PlannedEndpoint(node, kind, role, name, type_, code_name, tuple(also))
+
+
+def _wrong_row(row: object) -> str:
+    """What is wrong with a row of the plan; empty for an endpoint."""
+    if not isinstance(row, list) or len(row) != FIELDS or {*map(type, row)} != {str}:
+        return "write [role, kind, name, type, name in the node's code]"
+    role, kind, name, _, _ = row
+    if role not in ROLES or kind not in KINDS:
+        allowed = f"a role ({', '.join(ROLES)}) and a kind ({', '.join(KINDS)})"
+        return f"{role!r}, {kind!r}: write {allowed}"
+    return "" if name.startswith("/") else _not_full(name)

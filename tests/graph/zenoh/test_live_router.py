@@ -1,0 +1,202 @@
+"""A real router and sessions of robots on loopback: what is seen through it, and what is said."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("zenoh", reason="no zenoh: pip install '.[zenoh]'")
+
+from live_commands import write_plan
+from zenoh_robots import STRING, TF_HASH, TF_TYPE, Robot, drive, robot, router
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.snapshot import CHANGING, Snapshot, incomplete
+from multibot_rewrite.graph.zenoh.observe import Router, look, watch
+from multibot_rewrite.model import InputError
+
+pytestmark = pytest.mark.live
+NOWHERE = "tcp/127.0.0.1:1"
+BOTH = ("robot1", "robot2")
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    with router() as found:
+        yield found
+
+
+@pytest.fixture
+def plan(tmp_path: Path) -> Path:
+    return write_plan(tmp_path / "plan.yaml", BOTH)
+
+
+@contextmanager
+def fleet(address: str, domain: int, names: tuple[str, ...] = BOTH) -> Iterator[Robot]:
+    """Robots as planned, all in one session."""
+    with robot(address, domain) as there:
+        for number, name in enumerate(names):
+            drive(there, name, number)
+        yield there
+
+
+def seen(address: str, domain: int, **more: tuple[str, ...]) -> Snapshot:
+    return look(Request(10.0, **more), Router(address, domain))
+
+
+def check(plan: Path, address: str, domain: int) -> int:
+    return main(["check", str(plan), "--zenoh", address, "--domain", str(domain)])
+
+
+def codes(snapshot: Snapshot) -> set[str]:
+    return {it.code for it in snapshot.environment.caveats}
+
+
+def test_a_fleet_as_planned(plan: Path, address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with fleet(address, 1):
+        assert check(plan, address, 1) == 0
+    shown = capsys.readouterr()
+    assert (shown.out, "2 robots, 0 findings: as planned" in shown.err) == ("", True), shown.err
+
+
+def test_the_snapshot_is_complete_with_qos_and_hashes(address: str) -> None:
+    with fleet(address, 2) as there:
+        graph = seen(address, 2)
+        session = str(there.session.zid())
+    assert [(it.name, it.process) for it in graph.nodes] == [
+        ("/robot1/drive", session),
+        ("/robot2/drive", session),
+    ]
+    assert len(graph.endpoints) == 6
+    assert all(it.type_hash.startswith("RIHS01_") for it in graph.endpoints)
+    assert {it.qos.depth for it in graph.endpoints if it.qos} == {10}
+    around = graph.environment
+    assert (around.rmw, around.participants, around.caveats) == ("rmw_zenoh_cpp", 1, ())
+
+
+def test_what_is_wrong_is_found(
+    plan: Path, address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with fleet(address, 3, ("robot1",)) as there:
+        there.node(7, "/robot2", "drive")
+        there.end(7, "/robot2", "drive", "MS", "/cmd_vel", STRING)
+        assert check(plan, address, 3) == 1
+    shown = capsys.readouterr().out
+    assert "/robot2/drive: error: MG102" in shown
+    assert "MG103 uses /cmd_vel" in shown
+
+
+def test_another_version_of_a_type_is_found_and_other_qos_is_none(
+    plan: Path, address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In Zenoh the hash is a part of the key, and QoS keeps nobody from hearing."""
+    with fleet(address, 4) as there:
+        there.node(8, "/", "rviz2")
+        best_effort, reliable = "2::,10:,:,:,,", "1::,10:,:,:,,"
+        there.end(8, "/", "rviz2", "MP", "/robot1/cmd_vel", STRING, qos=best_effort)
+        there.end(8, "/", "rviz2", "MS", "/robot1/odom", STRING, qos=reliable)
+        assert check(plan, address, 4) == 0
+        there.end(8, "/", "rviz2", "MS", "/robot2/odom", STRING, hash=TF_HASH)
+        assert check(plan, address, 4) == 1
+    shown = capsys.readouterr().out
+    assert "MG107" not in shown
+    assert "MG106 topic /robot2/odom has 2 versions of std_msgs/msg/String" in shown
+
+
+def test_tf_is_heard_latched_and_not(address: str) -> None:
+    with fleet(address, 5) as there:
+        for topic, qos in (("/tf", "::,:,:,:,,"), ("/robot1/tf_static", ":1:,1:,:,:,,")):
+            there.end(0, "/robot1", "drive", "MP", topic, TF_TYPE, hash=TF_HASH, qos=qos)
+        static = there.sends("/robot1/tf_static", ("base", "laser"), ("base", "imu"), latched=True)
+        with static, there.sends("/tf", ("odom", "base")):
+            graph = seen(address, 5)
+    found = {(it.topic, it.parent, it.child, it.static) for it in graph.frames}
+    assert found == {
+        ("/tf", "odom", "base", False),
+        ("/robot1/tf_static", "base", "laser", True),
+        ("/robot1/tf_static", "base", "imu", True),
+    }
+    assert {it.publishers for it in graph.frames} == {("/robot1/drive",)}
+    assert not incomplete(graph)
+
+
+@pytest.mark.deep
+def test_tf_that_nobody_hears_is_said(address: str) -> None:
+    with fleet(address, 6) as there:
+        there.end(0, "/robot1", "drive", "MP", "/tf", TF_TYPE, hash=TF_HASH)
+        graph = seen(address, 6)
+        assert [it.code for it in incomplete(graph)] == ["frames-not-heard"]
+
+
+def test_a_token_of_another_kind_is_left_out_and_named(address: str) -> None:
+    with fleet(address, 7) as there:
+        there.hold(f"@ros2_lv/7/{there.session.zid()}/0/99/XX/%/%robot1/drive")
+        graph = seen(address, 7)
+    (caveat,) = graph.environment.caveats
+    assert (caveat.code, caveat.incomplete) == ("strange-token", False)
+    assert "/XX/" in caveat.message
+    assert len(graph.nodes) == 2
+
+
+def test_another_domain_is_named(
+    plan: Path, address: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with fleet(address, 8):
+        assert check(plan, address, 9) == 3
+    assert "knows no node of domain 9; it has nodes of domain 8" in capsys.readouterr().err
+
+
+def test_a_missing_router_is_inconclusive(plan: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Not "the robots are missing": nobody was asked."""
+    command = ["check", str(plan), "--zenoh", NOWHERE, "--timeout", "0.3"]
+    assert main(command) == 3
+    shown = capsys.readouterr()
+    assert f"no Zenoh router answers at {NOWHERE}" in shown.err
+    assert "error:" not in shown.out
+    assert main(["snapshot", "--zenoh", NOWHERE, "--timeout", "0.3"]) == 3
+
+
+def test_expected_nodes_are_waited_for(address: str) -> None:
+    with fleet(address, 10):
+        graph = seen(address, 10, expected=("/robot1/drive",))
+        assert graph.environment.settled == "expected"
+        late = look(Request(0.2, ("/robot3/drive",)), Router(address, 10))
+    assert (late.environment.settled, codes(late)) == ("timeout", {"expected-not-seen"})
+
+
+def test_watching_shows_what_comes_and_goes(address: str) -> None:
+    graphs = watch(Request(20.0), Router(address, 11))
+    try:
+        with fleet(address, 11, ("robot1",)) as there:
+            first = next(it for it in graphs if it.nodes)
+            drive(there, "robot2", 1)
+            both = next(it for it in graphs if len(it.nodes) == 2)
+        gone = next(it for it in graphs if not it.nodes)
+    finally:
+        graphs.close()
+    assert [it.name for it in first.nodes] == ["/robot1/drive"]
+    assert len(both.endpoints) >= 3
+    assert "no-router" not in codes(gone)
+
+
+def test_a_router_that_ends_is_no_robot_that_left() -> None:
+    with router() as address, fleet(address, 12):
+        graphs = watch(Request(20.0), Router(address, 12))
+        next(it for it in graphs if it.environment.settled != CHANGING and len(it.nodes) == 2)
+    lost = next(it for it in graphs if "no-router" in codes(it))
+    graphs.close()
+    assert incomplete(lost)
+
+
+def test_a_session_configuration_is_a_router(tmp_path: Path, address: str) -> None:
+    file = tmp_path / "session.json5"
+    file.write_text(f"// as a robot has it\n{{ connect: {{ endpoints: ['{address}'] }} }}\n")
+    with fleet(address, 13):
+        assert len(seen(str(file), 13).nodes) == 2
+    file.write_text("{ connect: 3 }")
+    with pytest.raises(InputError, match=r"session\.json5: no session configuration of Zenoh"):
+        seen(str(file), 13)

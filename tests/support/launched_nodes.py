@@ -1,0 +1,46 @@
+"""Nodes as launch files start them, and the robot that runs them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, LaunchNote
+from multibot_rewrite.evidence.launched import Launched, with_launched
+from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.fleets.fleet import facts_of, known_nodes
+from multibot_rewrite.fleets.launched_robot import given_with, nodes_with
+from multibot_rewrite.releases import NEWEST_LTS
+from multibot_rewrite.remap.records import NodeFacts
+
+AT = Place("/ws/bringup.launch.py", 12)
+
+
+def started(package: str, executable: str, name: str = "", **more: object) -> LaunchedNode:
+    words = dict.fromkeys(LaunchedNode._fields, ()) | {
+        "package": package,
+        "executable": executable,
+        "name": name,
+        "namespace": "/",
+        "container": "",
+        "later": "",
+        "place": AT,
+    }
+    return LaunchedNode(**{**words, **more})
+
+
+def launched(
+    *nodes: LaunchedNode, stacks: tuple[str, ...] = (), notes: tuple[LaunchNote, ...] = ()
+) -> Launched:
+    stack = facts_of(stacks, None, NEWEST_LTS)
+    known = known_nodes(None, NEWEST_LTS, ()).library.nodes
+    parameters = load_known_nodes("", NEWEST_LTS)
+    return with_launched(stack, LaunchGraph(nodes, notes), known, {"robot1", "r"}, parameters)
+
+
+def runs(found: Launched) -> Mapping[str, NodeFacts]:
+    known = known_nodes(None, NEWEST_LTS, ()).library.nodes
+    return {it.name: it for it in nodes_with(found, (), given_with(found, ()), known).nodes}
+
+
+AMCL = started("nav2_amcl", "amcl", "amcl")
