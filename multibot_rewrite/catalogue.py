@@ -122,6 +122,7 @@ HOMES: tuple[Home, ...] = (
             "fleets.closing",
             "fleets.closing_bridges",
             "fleets.closing_controllers",
+            "fleets.closing_semantics",
             "fleets.closing_topics",
         ),
     ),
