@@ -93,7 +93,12 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF5",
         "bridges",
-        ("fleets.bridge_checks", "fleets.bridge_merge", "fleets.bridge_outputs"),
+        (
+            "fleets.bridge_checks",
+            "fleets.bridge_merge",
+            "fleets.bridge_outputs",
+            "fleets.bridge_types",
+        ),
     ),
     Home(
         "MF6",
@@ -111,10 +116,13 @@ HOMES: tuple[Home, ...] = (
         "what a robot's files say of its nodes",
         (
             "evidence.nodes",
-            "evidence.launched",
+            "evidence.launch_findings",
             "fleets.launched_files",
             "fleets.shared_nodes",
             "fleets.closing",
+            "fleets.closing_bridges",
+            "fleets.closing_controllers",
+            "fleets.closing_semantics",
             "fleets.closing_topics",
         ),
     ),

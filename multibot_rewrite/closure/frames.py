@@ -8,11 +8,12 @@ from typing import NamedTuple
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.filling import filled, lookup
 from multibot_rewrite.evidence.records import GivenNode, Place
+from multibot_rewrite.graph.expectation import USUAL_FRAMES
 from multibot_rewrite.graph.transforms import Edge
 from multibot_rewrite.remap.conditions import AND, holds, parse_condition
 from multibot_rewrite.remap.records import NodeFacts
 
-FRAME, TREE = "frame", "tree"
+FRAME, TREE, READ = "frame", "tree", "read frame"
 
 
 class Sender(NamedTuple):
@@ -42,6 +43,39 @@ def tree_gaps(description: Iterable[Edge], senders: Sequence[Sender]) -> Iterato
             name = f"{own.parent} -> {own.child}"
             other = f"{first.parent} -> {first.child}"
             yield Gap(TREE, name, it.node, (TREE, it.node), it.place, other, moving[0].place)
+
+
+def unsent_gaps(
+    description: Iterable[Edge],
+    senders: Sequence[Sender],
+    given: Sequence[GivenNode],
+    known: Mapping[str, NodeFacts],
+) -> Iterator[Gap]:
+    """Usual frames that nodes read by their files, while others send transforms without them: the first
+    reader of each. ``near`` is a transform that is sent.
+
+    Nothing is said where no file has a node that sends any: a driver that nobody names may.
+    """
+    sent = [edge for it in senders for edge in it.edges]
+    there = {frame for edge in (*description, *sent) for frame in edge[:2]}
+    by_file = next((it for it in senders if it.edges and it.place), None)
+    for node in given if by_file else ():
+        for parameter, frame, place in _read_frames(node, known.get(node.known)):
+            if frame in USUAL_FRAMES and frame not in there and by_file:
+                there.add(frame)
+                first = by_file.edges[0]
+                near = f"{by_file.node} sends {first.parent} -> {first.child}"
+                key = (READ, node.known, parameter)
+                yield Gap(READ, frame, node.name, key, place, near, by_file.place)
+
+
+def _read_frames(given: GivenNode, node: NodeFacts | None) -> Iterator[tuple[str, str, Place]]:
+    """Parameters of frames that a node does not send itself, with what a file sets them to."""
+    own = {name for it in node.sends for name in it[:2]} if node else set()
+    for it in node.frames if node else ():
+        found = given.values.get(it.parameter)
+        if found and it.parameter not in own and isinstance(found.value, str):
+            yield it.parameter, found.value.lstrip("/"), found.place
 
 
 class _Trees:

@@ -11,7 +11,8 @@ class Gap(NamedTuple):
     """``node`` needs ``name`` (of a ``kind``: interface, topic, service, frame), and nothing has it.
 
     ``key`` is the same before and after a rewrite. ``place`` is where it is needed, ``near`` what may
-    be meant, and where that is; places are None where no file says it.
+    be meant, and where that is; places are None where no file says it. ``at`` is where the node is
+    declared that needs it.
     """
 
     kind: str
@@ -21,3 +22,4 @@ class Gap(NamedTuple):
     place: Place | None = None
     near: str = ""
     near_place: Place | None = None
+    at: Place | None = None

@@ -6,6 +6,7 @@ activated) and its chaining: a controller's own interfaces are called ``CONTROLL
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
@@ -16,6 +17,7 @@ from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.remap.records import NodeFacts
 
 INTERFACE = "interface"
+PLACEHOLDER = re.compile(r"<|\$\(|\{")
 
 
 def interface_gaps(
@@ -33,7 +35,9 @@ def interface_gaps(
     hints = Guesses()
     for at, controller in enumerate(controllers):
         for number, it in enumerate(_claims(controller, known)):
-            if (it.kind, it.name) in places or it.name.startswith(own):
+            # Launch files fill in placeholders such as <namespace>.
+            filled = not PLACEHOLDER.search(it.name)
+            if (it.kind, it.name) in places or it.name.startswith(own) or not filled:
                 continue
             near = hints.nearest(it.name, _names(exports, it.kind))
             key = (INTERFACE, str(at), it.kind, str(number))

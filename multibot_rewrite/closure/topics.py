@@ -8,15 +8,17 @@ from typing import NamedTuple
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.nearest import CHOICE, nearest
-from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES, TOPIC
 
-# What people, planners of missions and tools send, by the last word of the name.
+# What people, planners of missions, scenes and tools send, by the last word of the name.
 OUTSIDE = frozenset(
     """cmd_vel cmd_vel_unstamped cmd_vel_teleop initialpose goal_pose goal_update clicked_point set_pose
     joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
     parameter_events robot_description external_wrench manual_control speed_scaling_input footprint
-    feedback""".split()  # noqa: SIM905
+    feedback set_feedback planning_scene planning_scene_world collision_object attached_collision_object
+    trajectory_execution_event enable_freedrive_mode equilibrium_pose script_command""".split()  # noqa: SIM905
 )
+TYPE, STATUS = "type", "/_action/status"
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)
 
 
@@ -25,7 +27,8 @@ class End(NamedTuple):
 
     ``role`` is empty where it is not known which end. ``type`` may be empty. ``code_name`` is the name
     in the node's code, ``owner`` the node's name without a robot. ``sure`` is false for an end that is
-    there on a condition only.
+    there on a condition only. ``also`` are other types that it may have. ``place`` is where a file
+    names it, ``at`` where the node is declared.
     """
 
     node: str
@@ -37,6 +40,8 @@ class End(NamedTuple):
     owner: str
     place: Place | None = None
     sure: bool = True
+    also: tuple[str, ...] = ()
+    at: Place | None = None
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -49,8 +54,27 @@ def topic_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:
     given = [it for it in ends if it.role in GIVES]
     for it in _needed(ends, more, sent=False):
         near = _near(it, given)
-        where = near.place if near else None
-        yield Gap(it.kind, it.name, it.node, it.key, it.place, near.name if near else "", where)
+        where = (near.place or near.at) if near else None
+        name = near.name if near else ""
+        yield Gap(it.kind, it.name, it.node, it.key, it.place, name, where, it.at)
+
+
+def type_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:
+    """What is sent under the name that a node needs, and of other types alone: the two never meet."""
+    given: dict[tuple[str, str], list[End]] = {}
+    for it in (*ends, *more):
+        if it.role not in NEEDS:
+            given.setdefault((it.kind, it.name), []).append(it)
+    for it in ends:
+        others = given.get((it.kind, it.name), ())
+        if it.role not in NEEDS or not it.sure or not it.type or not others:
+            continue
+        sent = {type_ for other in others for type_ in (other.type, *other.also)}
+        if "" not in sent and sent.isdisjoint((it.type, *it.also)):
+            first = others[0]
+            what = f"{it.name} as {it.type}"
+            near = f"{first.node} sends {first.type}"
+            yield Gap(TYPE, what, it.node, it.key, it.place, near, first.place or first.at, it.at)
 
 
 def closed(ends: Sequence[End], more: Iterable[End] = ()) -> set[tuple[str, ...]]:
@@ -60,6 +84,8 @@ def closed(ends: Sequence[End], more: Iterable[End] = ()) -> set[tuple[str, ...]
 
 def _needed(ends: Sequence[End], more: Iterable[End], sent: bool) -> Iterator[End]:
     given = {(it.kind, it.name) for it in (*ends, *more) if it.role not in NEEDS}
+    # The server of an action sends its status.
+    given |= {(TOPIC, f"{name}{STATUS}") for kind, name in given if kind == ACTION}
     for it in ends:
         needed = it.role in NEEDS and it.sure and not _is_from_outside(it)
         if needed and ((it.kind, it.name) in given) is sent:

@@ -27,6 +27,7 @@ from multibot_rewrite.fleets.bridge_entry import (
     TYPES,
     BridgeEntry,
 )
+from multibot_rewrite.fleets.bridge_types import not_converted
 from multibot_rewrite.nearest import did_you_mean
 
 SKIPPED_ENTRY = declare(
@@ -143,6 +144,7 @@ def entry_findings(document: YamlText, entry: BridgeEntry, context: Context) -> 
     """What is wrong with an entry that the bridge loads."""
     yield from _names(document, entry)
     yield from _parts(document, entry, context)
+    yield from not_converted(document, entry.node)
     yield from _unknown_keys(document, entry)
     yield from _mentions(document, entry, context)
 

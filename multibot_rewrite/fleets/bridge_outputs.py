@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
+from multibot_rewrite.companions.rviz.read_config import text_of
+from multibot_rewrite.companions.yaml_text import items, read_yaml
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.bridge_entry import BOTH, GZ
 from multibot_rewrite.fleets.bridge_file import BridgeFile, rewrite_bridge
 from multibot_rewrite.fleets.bridge_merge import as_spawned, fill_bridge, merge_bridges
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.member import line_of
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for, yaml_of
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
@@ -37,9 +41,12 @@ def bridge_outputs(plan: FleetPlan) -> FilesAndFindings:
         for file in files.values():
             yield from file.own.findings
         for robot in group.robots:
-            yield from _for_robot(robot, files, topics)
+            made = list(_for_robot(robot, files, topics))
+            yield from made
+            own = [it for it in unbridged if it.robot == robot.spec.namespace]
+            texts = [it for it in made if isinstance(it, OutputFile)]
+            yield from (_unbridged(robot, it) for it in own if not _is_carried(it, texts, topics))
     yield from _for_all(groups, topics)
-    yield from (_unbridged(plan, it) for it in unbridged)
 
 
 def _read(group: RobotGroup) -> GroupBridges:
@@ -102,11 +109,32 @@ NO_TOPIC = declare(
 )
 
 
-def _unbridged(plan: FleetPlan, topic: UnbridgedTopic) -> Finding:
+def _is_carried(
+    topic: UnbridgedTopic, made: Iterable[OutputFile], others: Iterable[BridgedTopic]
+) -> bool:
+    """Does a file of the user have a row for it? Only who knows the world can write one."""
+    known = {it.gz.lstrip("/") for it in others}
+    for row in (row for it in made for row in items(read_yaml(it.data, it.path).root)):
+        name = text_of(row, GZ) or text_of(row, BOTH)
+        alike = topic.part or text_of(row, "gz_type_name") == topic.type
+        if alike and topic.part in name and name.lstrip("/") not in known:
+            return True
+    return False
+
+
+def _line(robot: RewrittenRobot, topic: UnbridgedTopic) -> int:
+    """The line in the source: inserted text moves those of the result."""
+    tag = "sensor" if topic.part else "plugin"
+    written = robot.member.inventory.document.root.iter(tag)
+    lines = [cast("int", it.sourceline) for it in written]
+    number = lines.index(topic.line)
+    return line_of(robot.member.source, tag, number)
+
+
+def _unbridged(robot: RewrittenRobot, topic: UnbridgedTopic) -> Finding:
     message = (
         f"{topic.what} of {topic.robot} has no topic of its own: its gz topic depends on the world"
     )
     hint = "give it a topic in the description, so that a bridge can name it"
-    spec = next(it.spec for it in plan.robots if it.spec.namespace == topic.robot)
-    place = {"file": spec.description, "line": topic.line, "column": 1}
+    place = {"file": robot.spec.description, "line": _line(robot, topic), "column": 1}
     return NO_TOPIC.finding(message, hint, **place)

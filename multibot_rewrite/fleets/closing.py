@@ -4,74 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.closure.frames import frame_gaps, tree_gaps
+from multibot_rewrite.closure.frames import frame_gaps, tree_gaps, unsent_gaps
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.closure.interfaces import interface_gaps
-from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.closing_topics import bridge_findings, topic_findings
+from multibot_rewrite.fleets.closing_bridges import bridge_findings
+from multibot_rewrite.fleets.closing_controllers import controller_findings
+from multibot_rewrite.fleets.closing_semantics import semantic_findings
+from multibot_rewrite.fleets.closing_topics import topic_findings
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.gap_findings import at_gap, meant
+from multibot_rewrite.fleets.gap_findings import at_gap
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
 from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
-from multibot_rewrite.graph.transforms import edges_in
+from multibot_rewrite.graph.transforms import description_edges, edges_in
 
-_ARM = """\
-<robot name="arm">
-  <link name="base_link"/>
-  <link name="hand"/>
-  <joint name="elbow" type="revolute">
-    <parent link="base_link"/><child link="hand"/>
-    <limit lower="-1" upper="1" effort="1" velocity="1"/>
-  </joint>
-  <ros2_control name="arm" type="system">
-    <hardware><plugin>mock_components/GenericSystem</plugin></hardware>
-    <joint name="elbow">
-      <command_interface name="position"/>
-      <state_interface name="position"/>
-    </joint>
-  </ros2_control>
-</robot>
-"""
-NO_INTERFACE = declare(
-    "MF811",
-    "interface-not-exported",
-    WARNING,
-    what="A controller claims an interface that the ros2_control systems of the description do not "
-    "export. Where the files before the rewrite agreed, it is an error.",
-    why="The controller manager does not activate a controller whose interfaces do not exist.",
-    fix="Name an interface that the description has, or add it to the ros2_control system.",
-    bad="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: joint_trajectory_controller/JointTrajectoryController}
-arm:
-  ros__parameters:
-    joints: [elbow]
-    command_interfaces: [velocity]
-    state_interfaces: [position]
-""",
-    good="""\
-controller_manager:
-  ros__parameters:
-    arm: {type: joint_trajectory_controller/JointTrajectoryController}
-arm:
-  ros__parameters:
-    joints: [elbow]
-    command_interfaces: [position]
-    state_interfaces: [position]
-""",
-    line=6,
-    formats=("params",),
-    beside={"robot.urdf": _ARM},
-)
 NOBODY_SENDS = declare(
     "MF813",
     "odometry-not-sent",
@@ -101,6 +53,29 @@ drive:
 )
 
 
+NOT_THERE = declare(
+    "MF809",
+    "frame-not-sent",
+    WARNING,
+    what="A node reads odom, base_footprint, base_link or map by its parameters, and neither the "
+    "description nor a known node sends it, though others send transforms. A note for the map.",
+    why="The node waits for a transform that never comes.",
+    fix="Use the frame that is sent, or name the node or stack that sends it.",
+    bad="""\
+ekf_filter_node:
+  ros__parameters: {odom_frame: odom_ekf, world_frame: odom_ekf, base_link_frame: base_link}
+collision_monitor:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
+""",
+    good="""\
+ekf_filter_node:
+  ros__parameters: {odom_frame: odom, world_frame: odom, base_link_frame: base_link}
+collision_monitor:
+  ros__parameters: {odom_frame_id: odom, base_frame_id: base_link}
+""",
+    line=4,
+    formats=("params",),
+)
 TWO_TREES = declare(
     "MF817",
     "two-tf-trees",
@@ -123,38 +98,8 @@ ekf_filter_node:
     line=3,
     formats=("params",),
 )
-NOT_MOVED = declare(
-    "MF815",
-    "moveit-controller-not-there",
-    WARNING,
-    what="MoveIt sends trajectories to a controller that none of the robot's parameter files declares, "
-    "or for a joint that the controller does not move. An error where the rewrite has made it so.",
-    why="MoveIt plans, and execution fails: no controller takes the trajectory.",
-    fix="Use the controller's name and its joints.",
-    bad="""\
-moveit_simple_controller_manager:
-  controller_names: [arm_controler]
-  arm_controler: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [elbow]}
-""",
-    good="""\
-moveit_simple_controller_manager:
-  controller_names: [arm_controller]
-  arm_controller: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [elbow]}
-""",
-    line=3,
-    formats=("moveit",),
-    beside={
-        "robot.urdf": _ARM,
-        "controllers.yaml": """\
-controller_manager:
-  ros__parameters:
-    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}
-arm_controller:
-  ros__parameters: {joints: [elbow], command_interfaces: [position], state_interfaces: [position]}
-""",
-    },
-    options={"companions": {"params": "controllers.yaml"}},
-)
+
+MAP = "map"
 
 
 def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Iterator[Finding]:
@@ -169,36 +114,18 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         evidence = plan.evidence[node_sources(robot.spec)]
         before, library = system_before(robot, evidence), evidence.known
         after = system_after(robot, fleet, texts, known)
-        made = [*interface_gaps(before.given, library, before.exports)]
-        now = [*interface_gaps(after.given, library, after.exports)]
-        yield from _interfaces(robot, made, now)
+        yield from controller_findings(robot, before, after, library)
         yield from _frames(robot, frame_gaps(before.given, library, before.sent))
-        yield from _trees(robot, tree_gaps(edges_in(robot.member.source.root), before.senders))
+        old = list(tree_gaps(edges_in(robot.member.source.root), before.senders))
+        yield from _trees(robot, old, WARNING)
+        joints = edges_in(robot.member.source.root)
+        yield from _unsent(robot, unsent_gaps(joints, before.senders, before.given, library))
+        now = tree_gaps(description_edges(robot.member.inventory), after.senders)
+        known_before = {it.key for it in old}
+        yield from _trees(robot, (it for it in now if it.key not in known_before), ERROR)
         yield from topic_findings(robot, before, after)
-        old, new = (list(moveit_gaps(it.moveit, it.given)) for it in (before, after))
-        yield from _moveit(robot, old, new)
+        yield from semantic_findings(plan, robot, before, after)
         yield from bridge_findings(plan, robot, texts)
-
-
-def _interfaces(
-    robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
-) -> Iterator[Finding]:
-    known = {it.key for it in before}
-    rest = [it for it in after if it.key not in known]
-    for level, gaps in ((WARNING, before), (ERROR, rest)):
-        for first, *more in _by_place(gaps):
-            names = f"{first.name} and {len(more)} more" if more else first.name
-            claims = f"{first.node} of {robot.spec.name} claims {names}"
-            message = f"{claims}, which no ros2_control exports"
-            yield at_gap(NO_INTERFACE, robot, first, message, meant(first), level)
-
-
-def _by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
-    """The gaps of each controller that are written at one place."""
-    found: dict[object, list[Gap]] = {}
-    for it in gaps:
-        found.setdefault((it.node, it.place), []).append(it)
-    return found.values()
 
 
 def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
@@ -210,19 +137,17 @@ def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
         yield at_gap(NOBODY_SENDS, robot, it, message, hint, ERROR if it.near else WARNING)
 
 
-def _trees(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
+def _unsent(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
+    for it in gaps:
+        message = f"{it.node} of {robot.spec.name} reads frame {it.name}, which no known node sends"
+        hint = f"{it.near} ({it.near_place}); use a frame that is sent, or name the node that does"
+        # A map often comes from a node that is started apart.
+        yield at_gap(NOT_THERE, robot, it, message, hint, NOTE if it.name == MAP else WARNING)
+
+
+def _trees(robot: RewrittenRobot, gaps: Iterable[Gap], level: str) -> Iterator[Finding]:
     for it in gaps:
         message = f"{it.node} of {robot.spec.name} sends {it.name}, apart from {it.near}"
         where = f" ({it.near_place})" if it.near_place else ""
         hint = f"use the same odometry frame in both{where}, or add what joins them"
-        yield at_gap(TWO_TREES, robot, it, message, hint)
-
-
-def _moveit(
-    robot: RewrittenRobot, before: Sequence[Gap], after: Sequence[Gap]
-) -> Iterator[Finding]:
-    known = {it.key for it in before}
-    for it in (*before, *(it for it in after if it.key not in known)):
-        level = WARNING if it.key in known else ERROR
-        message = f"MoveIt uses {it.name}, which no controller of {robot.spec.name} has"
-        yield at_gap(NOT_MOVED, robot, it, message, meant(it), level)
+        yield at_gap(TWO_TREES, robot, it, message, hint, level)

@@ -1,23 +1,16 @@
-"""Topics that no node of a robot sends, before and after its rewrite; rows of its bridge."""
+"""Topics that no node of a robot sends, before and after its rewrite."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.closure.bridges import bridge_gaps
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.closure.topics import closed, topic_gaps
-from multibot_rewrite.companions.yaml_text import read_yaml
-from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.closure.topics import closed, topic_gaps, type_gaps
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.bridge_merge import as_spawned
-from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.gap_findings import at_gap, meant
-from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
-from multibot_rewrite.fleets.systems import BRIDGE_FILE, System
-from multibot_rewrite.remap.bridged_topics import bridged_topics
+from multibot_rewrite.fleets.systems import System
 
 # So many names in one line.
 _LISTED = 8
@@ -66,40 +59,30 @@ robots:
     line=3,
     formats=("fleet",),
 )
-NO_GZ_TOPIC = declare(
-    "MF816",
-    "bridge-row-without-gz-topic",
+
+OTHER_TYPE = declare(
+    "MF818",
+    "topic-of-another-type",
     WARNING,
-    what="A row of a bridge reads a gz topic that nothing in the description sends, while a sensor or "
-    "plugin sends another one of the type.",
-    why="The bridge waits for data that never comes.",
-    fix="Give the row the topic of the sensor.",
+    what="A node of a robot reads a topic as one type, and all that send it send another type.",
+    why="ROS does not connect them: the node waits for data that never comes.",
+    fix="Make both of one type: by the parameter that chooses it, or in the row of the bridge.",
     bad="""\
 - ros_topic_name: scan
-  gz_topic_name: lidar/scan
-  ros_type_name: sensor_msgs/msg/LaserScan
-  gz_type_name: gz.msgs.LaserScan
+  gz_topic_name: front/points
+  ros_type_name: sensor_msgs/msg/PointCloud2
+  gz_type_name: gz.msgs.PointCloudPacked
   direction: GZ_TO_ROS
 """,
     good="""\
 - ros_topic_name: scan
-  gz_topic_name: scan
+  gz_topic_name: front
   ros_type_name: sensor_msgs/msg/LaserScan
   gz_type_name: gz.msgs.LaserScan
   direction: GZ_TO_ROS
 """,
-    line=2,
     formats=("bridge",),
-    beside={
-        "robot.urdf": """\
-<robot name="rover">
-  <link name="base_link"/>
-  <gazebo reference="base_link">
-    <sensor name="lidar" type="gpu_lidar"><topic>scan</topic></sensor>
-  </gazebo>
-</robot>
-""",
-    },
+    options={"stack": "slam_toolbox"},
 )
 
 
@@ -122,9 +105,18 @@ def topic_findings(robot: RewrittenRobot, before: System, after: System) -> Iter
         verb = "reads" if nodes == it.node else "read"
         message = f"{nodes} of {robot.spec.name} {verb} {it.name}, which nothing sends"
         yield at_gap(NOT_SENT, robot, it, message, meant(it), WARNING)
+    yield from _types(robot, type_gaps(before.ends, before.shared))
     rest = [it for it in gaps if not it.near]
     if rest:
         yield _all_open(robot, rest)
+
+
+def _types(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
+    for it in gaps:
+        message = f"{it.node} of {robot.spec.name} reads {it.name}, but {it.near}"
+        where = f", see {it.near_place}" if it.near_place else ""
+        at = it._replace(at=it.at or it.near_place)
+        yield at_gap(OTHER_TYPE, robot, at, message, f"make both of one type{where}")
 
 
 def _by_place_and_name(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
@@ -133,25 +125,6 @@ def _by_place_and_name(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
     for it in gaps:
         found.setdefault((it.place, it.name), []).append(it)
     return found.values()
-
-
-def bridge_findings(
-    plan: FleetPlan, robot: RewrittenRobot, texts: Sequence[OutputText]
-) -> Iterator[Finding]:
-    """Rows of the robot's bridge against the gz topics of its written description."""
-    own = {robot.spec.namespace: robot.member.inventory}
-    topics, _ = bridged_topics(own, plan.fleet.naming)
-    sent = {f"/{it.gz.lstrip('/')}": it.gz_type for it in as_spawned(topics, [robot])}
-    for text in (
-        it for it in texts if it.path == f"{robot.spec.name}/{BRIDGE_FILE}" and it.sources
-    ):
-        for it in bridge_gaps(read_yaml(text.text.encode(), text.path), sent):
-            message = (
-                f"the bridge of {robot.spec.name} reads gz topic {it.name}, which nothing sends"
-            )
-            source = line_in_source(text, it.place.line) if it.place else None
-            at = it._replace(place=Place(*source)) if source else it
-            yield at_gap(NO_GZ_TOPIC, robot, at, message, meant(it))
 
 
 def _all_open(robot: RewrittenRobot, gaps: Sequence[Gap]) -> Finding:

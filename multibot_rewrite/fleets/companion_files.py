@@ -11,6 +11,7 @@ from multibot_rewrite.companions.moveit.rewrite import rewrite_moveit
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, TAG_SLOT, fill_template
+from multibot_rewrite.evidence.nodes import children_of
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import (
@@ -22,6 +23,7 @@ from multibot_rewrite.fleets.output_file import (
 )
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.model import InputError
 from multibot_rewrite.sources.read import read_file
 
@@ -54,6 +56,8 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     read = params_of(group.robots[0].spec)
     others = [document for it, document in read.items() if it != path]
     known = load_known_nodes(plan.file.parameters, plan.file.distro)
+    nodes = plan.evidence[node_sources(group.robots[0].spec)].nodes
+    known = known._replace(sent=known.sent | {it for node in nodes for it in children_of(node)})
     robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
     made = rewrite_params(read[path], group.context, known, others, group.facts, sorted(robots))
     if path != next(iter(read)):

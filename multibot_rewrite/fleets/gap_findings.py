@@ -23,6 +23,6 @@ def at_gap(
     rule: Rule, robot: RewrittenRobot, gap: Gap, message: str, hint: str, level: str = ""
 ) -> Finding:
     """The finding where the name is needed, else at the robot in the fleet file."""
-    at = gap.place or Place(robot.spec.file, robot.spec.line)
+    at = gap.place or gap.at or Place(robot.spec.file, robot.spec.line)
     place: dict[str, Any] = {"file": at.file, "line": at.line, "column": 1}
     return rule.finding(message, hint, level=level or rule.level, **place)

@@ -86,6 +86,9 @@ def system_after(
     owners = {f"{it.namespace.rstrip('/')}/{it.name}": it.node for it in fleet.table.nodes}
     ends = [end for it in bridges for end in bridge_ends(it)]
     ends += [_planned(it, owners) for it in fleet.table.names if it.robot == robot.spec.namespace]
+    # Rules of a plugin are for its whole process: topics of controllers that the table does not have.
+    of_plugins = (end for node in robot.member.reading.nodes for end in _plugin_ends(node))
+    ends += [it for it in of_plugins if not it.role]
     return System(
         tuple(given_nodes(params, known)),
         tuple(exported(written.root, file)),
@@ -93,13 +96,20 @@ def system_after(
         tuple(_planned(it, owners) for it in fleet.table.names if not it.robot),
         frozenset(it.child for it in description_edges(robot.member.inventory)),
         tuple(_read(it) for it in own if MOVEIT in it.text),
+        tuple(_senders(fleet, robot)),
     )
+
+
+def _senders(fleet: Fleet, robot: RewrittenRobot) -> Iterator[Sender]:
+    for (owner, node), edges in fleet.edges.items():
+        if owner == robot.spec.namespace and node != STATE_PUBLISHER:
+            yield Sender(f"/{node}", tuple(edges), None)
 
 
 def _planned(it: EndpointName, owners: Mapping[str, str]) -> End:
     end = it.endpoint
     own = (end.kind, end.role, it.name, end.type, end.name, owners.get(it.node, it.node))
-    return End(it.node, *own, None, not end.when)
+    return End(it.node, *own, None, not end.when, end.also)
 
 
 def _plain(robot: RewrittenRobot, export: Exported) -> Exported:
@@ -148,7 +158,8 @@ def _ends_of(node: NodeFacts, given: Iterable[GivenNode]) -> Iterator[End]:
         # A node with parameters is meant to run.
         sure = not it.when and (section is not None or not node.when)
         own = (it.kind, it.role, full, it.type, it.name, node.name)
-        yield End(f"/{node.name}", *own, place, sure)
+        at = section.place if section else None
+        yield End(f"/{node.name}", *own, place, sure, it.also, at)
 
 
 def _plugin_ends(node: ReadNode) -> Iterator[End]:

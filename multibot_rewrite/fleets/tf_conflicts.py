@@ -14,6 +14,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.member import line_of as line_of_element
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.fleets.robot_groups import RobotGroup, group_robots
@@ -94,18 +95,28 @@ def _of_two_nodes(
         below = f" below {other.edge.parent} and {it.edge.parent}" if apart else ""
         both = f"{other.by} and {it.by}"
         message = f"frame {child} of {robot.spec.name} is published{below} by both {both}"
-        hint = "only one node may publish a frame: remove one, or switch its transform off"
+        first_file, first_line = _place(robot, other, files)
+        see = f"{other.by}: {first_file}:{first_line}"
+        hint = f"only one node may publish a frame: remove one, or switch its transform off; {see}"
         file, line = _place(robot, it, files)
         yield FRAME_TWICE.finding(message, hint, file=file, line=line, column=1)
 
 
 def _place(robot: RewrittenRobot, sent: SentTransform, files: Parsed) -> tuple[str, int]:
-    """The node's section in a source, else the robot in the fleet file."""
+    """The node's section in a source, or the joint; else the robot in the fleet file."""
+    if sent.by == DESCRIPTION:
+        return robot.spec.description, _line_of_joint(robot, sent.edge)
     for file, document in files:
         for found in raw_sections(document):
             if file.sources and f"/{found.path}" == sent.full:
                 return line_in_source(file, line_of(found.keys[0]))
     return robot.spec.file, robot.spec.line
+
+
+def _line_of_joint(robot: RewrittenRobot, edge: Edge) -> int:
+    """The line in the source: inserted text moves those of the result."""
+    number = list(description_edges(robot.member.inventory)).index(edge)
+    return line_of_element(robot.member.source, "joint", number)
 
 
 def _sent(fleet: Fleet, group: RobotGroup) -> Iterator[SentTransform]:

@@ -32,11 +32,14 @@ class BridgedTopic(NamedTuple):
 
 
 class UnbridgedTopic(NamedTuple):
-    """A topic that cannot be bridged: its gz name depends on the world or the spawner."""
+    """A topic that cannot be bridged: its gz name depends on the world or the spawner. ``part`` is what
+    that name holds all the same, ``type`` its type where that tells it from others."""
 
     robot: str
     line: int
     what: str
+    part: str = ""
+    type: str = ""
 
 
 @lru_cache(maxsize=1)
@@ -90,7 +93,8 @@ def _sensor(
         return  # a Gazebo Classic sensor, whose plugin is a ROS node, or an unknown type
     base = text_at(sensor, "topic")
     if not base:
-        yield UnbridgedTopic(robot, _line(sensor), f"sensor {sensor.get('name')}")
+        name = sensor.get("name")
+        yield UnbridgedTopic(robot, _line(sensor), f"sensor {name}", f"/sensor/{name}/")
         return
     for ending, ros_type, gz_type, way in topics:
         name = f"{base}{ending}"
@@ -123,7 +127,7 @@ def _plugin(
         )
         if not name:
             what = f"<{element}> of {plugin.get('filename')}"
-            yield UnbridgedTopic(robot, _line(plugin), what)
+            yield UnbridgedTopic(robot, _line(plugin), what, type=gz_type)
             continue
         ros = _tf_name(robot, naming) if ros_type == TF_TYPE else _ros_name(name)
         if not given and ros_type != TF_TYPE:

@@ -9,6 +9,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     shared topic NAME, shared frame NAME    what all robots use
     topic NAME from NODES [QOS ...]     who may publish a topic, and what they offer
     topic NAME from one node            only one node at a time publishes it
+    topic NAME over a bridge that ROLE TYPE     what a ros_gz_bridge has to do
     one of NODES                        one of these nodes runs
     enclave PATH of NODE                the enclave of SROS2 that a running node is in
     transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
@@ -47,6 +48,7 @@ SHARED = re.compile(r"shared (topic|frame) (\S+)")
 TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
 ENCLAVE = re.compile(r"enclave (/\S+) of (/\S+)")
+BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S+)")
 ONE_OF = re.compile(r"one of (.+)")
 ROBOT = re.compile(r"robot\d+")
 PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
@@ -83,7 +85,8 @@ def read_danger(text: str) -> tuple[Snapshot, Owners]:
 
 def _is_known(line: str) -> bool:
     return any(
-        it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, ONE_OF, ENCLAVE)
+        it.fullmatch(line)
+        for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE)
     )
 
 
@@ -111,7 +114,13 @@ def read_plan(lines: list[str]) -> Expectation:
         tuple(shared["topic"]),
         tuple(shared["frame"]),
         tuple(_planned_endpoint(*words[:4]) for words in _words(NODE, lines) if words[1]),
-        topics=tuple(_planned_topic(*words) for words in _words(TOPIC_OF, lines)),
+        topics=(
+            *(_planned_topic(*words) for words in _words(TOPIC_OF, lines)),
+            *(
+                PlannedTopic(name, bridge=(role,), type=type_)
+                for name, role, type_ in _words(BRIDGED, lines)
+            ),
+        ),
         one_of=tuple(tuple(words[0].split(", ")) for words in _words(ONE_OF, lines)),
     )
 
