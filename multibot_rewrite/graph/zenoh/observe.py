@@ -153,6 +153,8 @@ def _watch(
     end = session.follow_tokens(
         router.key(), lambda key, up: there.add(key) if up else there.discard(key)
     )
+    # At once, so that the first view is whole.
+    there.update(session.tokens(router.key())[0])
     shown: object = None
     while (now := time.monotonic() - started) < request.timeout:
         session.deliver()
