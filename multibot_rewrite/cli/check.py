@@ -33,7 +33,7 @@ CODES = {Verdict.PLANNED: DONE, Verdict.WRONG: STOPPED, Verdict.INCONCLUSIVE: li
 def run(options: argparse.Namespace) -> int:
     """Compare, report, sum up; returns the exit code."""
     _check_use(options)
-    plan = _plan(options)
+    plan = plan_of(options)
     try:
         if options.watch:
             return _watch(options, plan)
@@ -53,7 +53,7 @@ def _check_use(options: argparse.Namespace) -> None:
         check_target(options.output, [options.plan, *options.snapshot])
 
 
-def _plan(options: argparse.Namespace) -> Expectation:
+def plan_of(options: argparse.Namespace) -> Expectation:
     """The plan that a file holds, or that follows from a fleet file."""
     path: str = options.plan
     data = read_file(path, MAX_FLEET_BYTES)

@@ -44,12 +44,24 @@ def path(text: str) -> str:
     return text
 
 
+def full_path(text: str) -> str:
+    """A path that means the same from every folder."""
+    if not text.startswith("/"):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a full path, begin with /")
+    return text
+
+
 def zenoh_router(text: str) -> str:
     """An endpoint as Zenoh writes it, or the name of a session configuration."""
-    if text.endswith((".json5", ".json")) or _ENDPOINT.fullmatch(text):
-        return text
-    hint = "write PROTOCOL/HOST:PORT, such as tcp/localhost:7447, or the name of a .json5 file"
-    raise argparse.ArgumentTypeError(f"{text!r} is no Zenoh router; {hint}")
+    return text if text.endswith((".json5", ".json")) else zenoh_endpoint(text)
+
+
+def zenoh_endpoint(text: str) -> str:
+    """Where a Zenoh router listens."""
+    if not _ENDPOINT.fullmatch(text):
+        hint = "write PROTOCOL/HOST:PORT, such as tcp/localhost:7447"
+        raise argparse.ArgumentTypeError(f"{text!r} is no Zenoh router; {hint}")
+    return text
 
 
 def one_of(known: Collection[str]) -> Callable[[str], str]:

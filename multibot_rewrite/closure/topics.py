@@ -16,7 +16,7 @@ OUTSIDE = frozenset(
     joy speed_limit reference commands joint_trajectory trajectory preempt_teleop clock diagnostics
     parameter_events robot_description external_wrench manual_control speed_scaling_input footprint
     feedback set_feedback planning_scene planning_scene_world collision_object attached_collision_object
-    trajectory_execution_event enable_freedrive_mode""".split()  # noqa: SIM905
+    trajectory_execution_event enable_freedrive_mode equilibrium_pose script_command""".split()  # noqa: SIM905
 )
 TYPE, STATUS = "type", "/_action/status"
 GIVES, NEEDS = (PUBLISHES, SERVES), (SUBSCRIBES, CALLS)

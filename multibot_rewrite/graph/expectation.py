@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS, Naming, spelled
 from multibot_rewrite.remap.records import EndpointName, NodeFacts, Table
-from multibot_rewrite.remap.ways import COMPONENT, SPAWNER, deliveries
+from multibot_rewrite.remap.ways import HOST, PLUGIN, PROCESS, deliveries
 
 if TYPE_CHECKING:
     from multibot_rewrite.steps.collect import Inventory
@@ -61,13 +61,16 @@ class PlannedTopic(NamedTuple):
 
     ``senders`` are patterns of the nodes that may publish it, empty where any may; with
     ``one_sender`` only one node at a time does. ``qos`` are policies with the word that each publisher
-    offers, both as in ``snapshot.Qos``.
+    offers, both as in ``snapshot.Qos``. ``bridge`` is what a ros_gz_bridge does with it: publishes,
+    subscribes, both, or nothing; ``type`` is its type then.
     """
 
     name: str
     senders: tuple[str, ...] = ()
     one_sender: bool = False
     qos: tuple[tuple[str, str], ...] = ()
+    bridge: tuple[str, ...] = ()
+    type: str = ""
 
 
 class Expectation(NamedTuple):
@@ -76,10 +79,11 @@ class Expectation(NamedTuple):
     ``ignored_nodes`` are patterns of nodes that may come and go, besides the usual tools.
     ``sources`` has for a node ``file:line`` of the plugin that starts it, ``origins`` for any other
     node the file (``file:line``) or stack (``stack nav2``) that names it. ``release`` is that whose
-    facts it rests on, empty if that is not known. ``ways`` has for a node that takes its rules from
-    its spawner or at its loading which of the two (``remap.ways``). ``topics`` say more of some
-    topics; of each group in ``one_of`` one node runs, and not more. ``gaps`` are findings about what is
-    open in the robots as they are planned: a name that is read and not sent, for example.
+    facts it rests on, empty if that is not known. ``ways`` has for a node without --ros-args of its
+    own how it gets rules (``remap.ways``), and from which node, if it is in the process of one.
+    ``topics`` say more of some topics; of each group in ``one_of`` one node runs, and not more.
+    ``gaps`` are findings about what is open in the robots as they are planned: a name that is read
+    and not sent, for example.
     """
 
     layout: str
@@ -169,13 +173,16 @@ def _may_miss(
 
 
 def _ways(table: Table) -> Iterator[tuple[str, str]]:
-    """The nodes that are started without --ros-args of their own, each with its way."""
-    found = {it.node.full_name: it.way for it in reversed(deliveries(table))}
-    return (
-        (node.full_name, found[node.full_name])
-        for node in table.nodes
-        if found.get(node.full_name) in (SPAWNER, COMPONENT)
-    )
+    """The nodes that are started without --ros-args of their own, each with its way, and behind it the
+    full name of the node that takes its rules, if that is another one."""
+    found = {it.node.full_name: it for it in reversed(deliveries(table))}
+    full = {(it.robot, it.node): it.full_name for it in table.nodes}
+    for node in table.nodes:
+        it = found.get(node.full_name)
+        if it is None or it.way == PROCESS or node.home.plugin:
+            continue
+        taker = full.get((node.robot, it.taker), "")
+        yield node.full_name, f"{it.way} {taker}" if it.way in (HOST, PLUGIN) else it.way
 
 
 def _nodes(table: Table) -> dict[str, list[tuple[str, str]]]:

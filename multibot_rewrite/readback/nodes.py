@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.model import Site, UsageError
 from multibot_rewrite.naming import TOPIC_KINDS
-from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
 from multibot_rewrite.readback.xml import child_text, text_of

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
-from multibot_rewrite.readback.controllers import ControllerWay, controller_way
+from multibot_rewrite.controller_ways import ControllerWay, controller_way
 from multibot_rewrite.remap.records import PUBLISHES, Endpoint, NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,

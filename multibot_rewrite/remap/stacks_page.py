@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from multibot_rewrite.readback.controllers import CONTROLLER_WAYS, ControllerWay
+from multibot_rewrite.controller_ways import CONTROLLER_WAYS, ControllerWay
 from multibot_rewrite.remap.node_library import NodeLibrary, Stack
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.readback.controllers import controller_way
 from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, TOPIC, EndpointName, Table
 from multibot_rewrite.remap.ways import MANAGER, PLUGIN

@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple, TypeAlias
 
-from multibot_rewrite.readback.controllers import controller_way
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.releases import has_release
 from multibot_rewrite.remap.records import EndpointName, NodeRule, NodeTable, Table
 

@@ -10,6 +10,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
+from multibot_rewrite.rewriters.forms import IN_FRONT
 from multibot_rewrite.rewriters.insert import Insertion, without
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.rewriters.text import text_of
@@ -79,7 +80,7 @@ def _reasons(
     declared = inventory.declared
     if claim.site.form == "collision":
         yield "a collision, named after its link by the conversion to SDF"
-    if claim.site.form == "prefix" and naming.affix != PREFIX:
+    if claim.site.form in IN_FRONT and naming.affix != PREFIX:
         yield "the plugin puts it in front of names, so a postfix cannot be added"
         return
     for name in names:
@@ -145,7 +146,7 @@ def _inserted(inventory: Inventory, plan: Plan, robot: str, line: int) -> Iterat
         mine = [item for item in plan.insertions if item.parent in inside]
         added = tuple(item.xml.replace(ROBOT_SLOT, robot) for item in mine if not item.step)
         if place[0] == line and added:
-            reason = f"added, or {without(mine[0])} the default"
+            reason = f"added, or {without(mine[0], inventory.release)} the default"
             yield Explanation(*place, tag_path(host.element, ""), name, None, reason, name, added)
         for item in mine:
             there = item.filled

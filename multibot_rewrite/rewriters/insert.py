@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from lxml import etree
 
+from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.model import Site
 from multibot_rewrite.naming import FRAME_KINDS, NAMESPACE, Naming, spelled
 from multibot_rewrite.rewriters.forms import Declared
@@ -34,7 +35,7 @@ class Insertion(NamedTuple):
     ``xml`` and ``new`` hold ``ROBOT_SLOT`` where the robot's name goes; ``old`` is what the consumer
     would use without it. ``step`` finds the element in ``parent`` where it is there and empty: then
     nothing but its text is put into it. ``shared`` tells that all robots would have ``old``, else it is
-    a name that nothing else has.
+    a name that nothing else has. ``of_controllers`` tells that controllers of the plugin have it.
     """
 
     parent: etree._Element
@@ -45,6 +46,7 @@ class Insertion(NamedTuple):
     new: str
     step: str = ""
     shared: bool = True
+    of_controllers: bool = False
 
     @property
     def filled(self) -> etree._Element | None:
@@ -74,8 +76,10 @@ def _insertions(
     return found
 
 
-def without(item: Insertion) -> str:
+def without(item: Insertion, release: str) -> str:
     """What would be wrong without it, before the name."""
+    if item.of_controllers and not controller_way(release).of_manager:
+        return "all but controllers, whose rules are their spawner's, would share"
     if item.shared:
         return "all robots would share"
     return "tf would not have" if item.kind in FRAME_KINDS else "topics would move with the sensor"
@@ -180,7 +184,9 @@ def _remaps(
         if target and expand(topic, namespace, node) not in taken:
             parent, wrap = (host, "ros") if home is None else (home, "")
             xml = f"<remapping>{topic}:={target}</remapping>"
-            yield Insertion(parent, wrap, xml, "topic", topic, target)
+            of_controllers = section.process_wide and topic in section.publishes
+            made = Insertion(parent, wrap, xml, "topic", topic, target)
+            yield made._replace(of_controllers=of_controllers)
 
 
 def _remap_target(topic: str, naming: Naming) -> str:

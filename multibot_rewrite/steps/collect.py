@@ -33,7 +33,7 @@ class Host(NamedTuple):
 class Inventory(NamedTuple):
     """Everything a plan needs. ``declared`` maps a kind to its declarations by name, those of the
     URDF beside an SRDF included; ``format`` is the section of the root element; ``names`` are the
-    names in each of the ``claims``, in their order."""
+    names in each of the ``claims``, in their order; ``release`` is that of the facts."""
 
     document: Document
     claims: list[Claim]
@@ -41,6 +41,7 @@ class Inventory(NamedTuple):
     declared: dict[str, dict[str, Claim]]
     format: str
     names: list[tuple[ResolvedName, ...]]
+    release: str
 
     @property
     def served(self) -> list[tuple[etree._Element, VocabularySection]]:
@@ -83,7 +84,8 @@ def collect(document: Document, tree: Tree, urdf_declarations: Declared = NOTHIN
     claims = below_models(claims, document.source, tree.vocabulary.release)
     declared = _declared(claims, urdf_declarations)
     names = resolved_names(claims, declared)
-    return Inventory(document, claims, hosts, declared, format_, names)
+    release = tree.vocabulary.release
+    return Inventory(document, claims, hosts, declared, format_, names, release)
 
 
 def _format(document: Document, tree: Tree, likely: str) -> str:

@@ -40,14 +40,15 @@ class Marker(NamedTuple):
     filled: tuple[str, ...]
 
 
-def insertion_edits(document: Document, items: list[Insertion]) -> list[Edit]:
-    """One edit group per parent element, right after its start tag."""
+def insertion_edits(document: Document, items: list[Insertion], release: str) -> list[Edit]:
+    """One edit group per parent element, right after its start tag, worded for a release."""
     if not items:
         return []
     starts = dict(zip(document.root.iter("*"), document.starts, strict=True))
     edits = []
     for parent, group in groupby(sorted(items, key=lambda i: starts[i.parent]), lambda i: i.parent):
-        edits += _parent_edits(document.source, parent, starts[parent], list(group))
+        why = _why(these := list(group), release)
+        edits += _parent_edits(document.source, parent, starts[parent], these, why)
     for item in items:
         if item.filled is not None:
             start, end, opening, close = fillable(document.source, starts[item.filled])
@@ -57,7 +58,7 @@ def insertion_edits(document: Document, items: list[Insertion]) -> list[Edit]:
 
 
 def _parent_edits(
-    source: bytes, parent: etree._Element, start: int, items: list[Insertion]
+    source: bytes, parent: etree._Element, start: int, items: list[Insertion], why: str
 ) -> list[Edit]:
     end = tag_end(source, start)
     expanded = source[end - 2 : end] == b"/>"
@@ -67,7 +68,7 @@ def _parent_edits(
     words = ["expanded"] if expanded else ["filled", *filled] if filled else []
     head = " ".join(["multibot", ROBOT_SLOT, f"+{len(elements)}", *words])
     added = "added, " if elements else ""
-    marker = f"<!-- {head} ({added}or {_why(items)}) -->"
+    marker = f"<!-- {head} ({added}or {why}) -->"
     text = "".join(lead + part for part in (marker, *elements))
     if expanded:
         name = source[start + 1 : end].split(None, 1)[0].rstrip(b"/>").decode()
@@ -75,10 +76,12 @@ def _parent_edits(
     return slot_edits(end, end, text)
 
 
-def _why(items: list[Insertion]) -> str:
+def _why(items: list[Insertion], release: str) -> str:
     """What would be without the inserted elements, as a comment can hold it."""
-    texts = dict.fromkeys(without(item) for item in items)
-    parts = [f"{it} {_names([item for item in items if without(item) == it])}" for it in texts]
+    texts: dict[str, list[Insertion]] = {}
+    for item in items:
+        texts.setdefault(without(item, release), []).append(item)
+    parts = [f"{text} {_names(found)}" for text, found in texts.items()]
     # A comment may not hold "--", a YAML string may not hold a colon and a space.
     return ", and ".join(parts).replace("--", "- -").replace(": ", ":")
 

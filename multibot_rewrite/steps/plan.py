@@ -69,7 +69,7 @@ def make_plan(inventory: Inventory, naming: Naming) -> Plan:
         else:
             edits += slot_edits(*slot, new)
     added = insertions(inventory.served, declared, naming)
-    edits += insertion_edits(document, added)
+    edits += insertion_edits(document, added, inventory.release)
     # Stable: several edits at one place stay in the order they were made.
     edits.sort(key=_START)
     return Plan(edits, renames, collisions, added, findings)

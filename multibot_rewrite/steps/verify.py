@@ -208,7 +208,9 @@ def nothing_to_add(it: Evidence) -> None:
     """No plugin is left with a default or hard-wired topic that another robot would share."""
     for item in insertions(it.result.served, it.result.declared, it.naming):
         file = it.inventory.document.file
-        raise ProofError(f"{file}: {without(item)} {item.old!r}: nothing was inserted")
+        raise ProofError(
+            f"{file}: {without(item, it.inventory.release)} {item.old!r}: nothing was inserted"
+        )
 
 
 def added_once(it: Evidence) -> None:

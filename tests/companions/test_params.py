@@ -754,3 +754,22 @@ def test_the_example_of_the_page_is_one(tmp_path: Path) -> None:
     assert "base: r1/mast_base" in text
     assert "motors: [r1_elbow]" in text
     assert "limits: {r1_elbow: {max: 1}}" in text
+
+
+def test_a_frame_that_a_node_makes_is_known() -> None:
+    """pose_broadcaster.cpp sends it; force_torque_sensor_broadcaster of the same file uses it."""
+    type_ = "force_torque_sensor_broadcaster/ForceTorqueSensorBroadcaster"
+    text = f"""\
+controller_manager:
+  ros__parameters:
+    pose: {{type: pose_broadcaster/PoseBroadcaster}}
+    force: {{type: {type_}}}
+pose:
+  ros__parameters: {{frame_id: base_link, pose_name: imu_sensor, tf: {{child_frame_id: flange}}}}
+force:
+  ros__parameters: {{sensor_name: imu_sensor, frame_id: flange}}
+"""
+    assert [it for it in made(text)[1] if it.code == "MF112"] == []
+    alone = text.replace("child_frame_id: flange", "child_frame_id: other")
+    (missing,) = (it for it in made(alone)[1] if it.code == "MF112")
+    assert (missing.line, "'flange'" in missing.message) == (8, True)

@@ -11,7 +11,7 @@ from paths import ROBOTS
 from multibot_rewrite.fleets.fleet import expected, make_fleet
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.rules.causes import how_to_remap
+from multibot_rewrite.graph.rules.causes import how_to_remap, why_other_name
 
 GZ = str(ROBOTS / "rover_gz.urdf")
 
@@ -29,7 +29,11 @@ def hint(of: Expectation, node: str) -> str:
 
 @pytest.mark.parametrize(
     ("release", "words"),
-    [("humble", "--ros-args -r /tf:=tf"), ("lyrical", '--controller-ros-args "-r /tf:=tf"')],
+    [
+        # On Humble, and made by the plugin of the description.
+        ("humble", "in the description: <remapping>/tf:=tf</remapping> of the plugin of "),
+        ("lyrical", '--controller-ros-args "-r /tf:=tf"'),
+    ],
 )
 def test_a_controllers_rule_is_for_its_spawner_since_that_takes_it(
     release: str, words: str
@@ -43,3 +47,41 @@ def test_a_components_rule_is_for_its_loading() -> None:
 
 def test_a_process_takes_it_as_it_is_started() -> None:
     assert "pass it with --ros-args -r /tf:=tf" in hint(plan("lyrical", "nav2"), "amcl")
+
+
+COSTMAP = "local_costmap/local_costmap"
+
+
+@pytest.mark.parametrize(
+    ("release", "stack", "words"),
+    [
+        ("jazzy", "nav2", "to /robot1/controller_server, whose process it is in: --ros-args -r "),
+        ("jazzy", "nav2_composed", "to /robot1/nav2_container, whose process it is in: --ros-args"),
+        ("lyrical", "nav2_composed", "remappings=[('local_costmap:/tf', '/robot1/tf')] of its "),
+    ],
+)
+def test_a_hosted_nodes_rule_is_for_what_its_host_is_started_with(
+    release: str, stack: str, words: str
+) -> None:
+    text = hint(plan(release, stack), COSTMAP)
+    assert words in text
+    assert "local_costmap:/tf" in text
+
+
+@pytest.mark.parametrize(
+    ("stack", "node", "words"),
+    [
+        ("nav2", "amcl", "--ros-args -r __ns:=/robot1"),
+        ("nav2_composed", "amcl", "namespace='/robot1' of its ComposableNode"),
+        ("nav2", COSTMAP, "/robot1/controller_server makes it"),
+    ],
+)
+def test_a_node_under_another_name_is_told_where_its_name_is_given(
+    stack: str, node: str, words: str
+) -> None:
+    of = plan("lyrical", stack)
+    ownership = SimpleNamespace(without_robot=lambda name, robot: name.removeprefix(f"/{robot}"))
+    view: Any = SimpleNamespace(
+        plan=of, places={}, robot_of={f"/robot1/{node}": "robot1"}, ownership=ownership
+    )
+    assert words in why_other_name(view, f"/robot1/{node}", f"/{node}").hint

@@ -23,6 +23,7 @@ PACKAGE = Path(multibot_rewrite.__file__).parent
 FLOORS = (
     ("bounded", "gc_pause", "lazy", "model", "nearest", "plural", "printable", "version"),
     ("findings", "rosnames", "naming", "config", "arguments", "releases"),
+    ("controller_ways",),
     ("rewriters",),
     ("readback", "steps"),
     ("checks", "sources", "remap"),

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import pytest
 
+from multibot_rewrite.controller_ways import CONTROLLER_WAYS
 from multibot_rewrite.naming import make_naming
-from multibot_rewrite.readback.controllers import CONTROLLER_WAYS
 from multibot_rewrite.releases import RELEASES, has_release
 from multibot_rewrite.remap.applied_rules import RunningNode, running_nodes
 from multibot_rewrite.remap.records import (

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
 from multibot_rewrite.cli.declared.fleet import BUILD, PLAN, REHEARSE, REMAP
-from multibot_rewrite.cli.declared.graph import CHECK, DOCTOR, LEARN, SNAPSHOT
+from multibot_rewrite.cli.declared.graph import CHECK, DOCTOR, LEARN, SNAPSHOT, ZENOH_FILES
 from multibot_rewrite.cli.declared.knowledge import (
     ARGUMENTS,
     COVERAGE,
@@ -35,6 +35,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             REMAP,
             SNAPSHOT,
             VOCABULARY_LOOKUP,
+            ZENOH_FILES,
         )
     }
 )

@@ -216,3 +216,53 @@ SNAPSHOT = Command(
     " 4 rclpy or its RMW is missing or does not start",
     more="The graph is settled when all of --expect are seen, or nothing changed for 3.5 s.",
 )
+ZENOH_FILES = Command(
+    "zenoh",
+    "zenoh",
+    "%(prog)s PLAN --router ENDPOINT -o FOLDER [options]",
+    "Write configurations of Zenoh's router and sessions that keep each robot to its own names.",
+    (
+        Example("multibot zenoh fleet.yaml --router tcp/localhost:7447 -o zenoh/"),
+        Example(
+            "multibot zenoh plan.yaml --router tls/10.0.0.1:7447 --keystore /opt/keys -o zenoh/",
+            "robots are told apart by their certificates",
+        ),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument("plan", "PLAN", "what multibot plan wrote, or a fleet file"),
+                value(
+                    "--router",
+                    metavar="ENDPOINT",
+                    about="where the fleet's router is, such as tcp/10.0.0.1:7447",
+                    type=values.zenoh_endpoint,
+                    required=True,
+                ),
+                value(
+                    "--keystore",
+                    metavar="FOLDER",
+                    about="the sros2 keystore, by its full path on the machines that use it: links are"
+                    " TLS, and the router tells robots apart by their enclaves (/robot1)",
+                    type=values.full_path,
+                ),
+                several(
+                    "--operator",
+                    "/NAME",
+                    "enclaves that may do anything: a fleet manager, RViz, multibot itself",
+                    [],
+                    values.full_names,
+                ),
+                *(it for it in LIVE.options if "--domain" in it.names),
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        output_group(output("write the configurations into that folder", required=True)),
+        GENERAL,
+    ),
+    "0 done; 2 wrong use or unreadable input",
+    more="Start the router with ZENOH_ROUTER_CONFIG_URI and each robot's nodes with"
+    " ZENOH_SESSION_CONFIG_URI: see docs/zenoh.md.",
+)

@@ -58,7 +58,7 @@ NODE_WORDS = (
     "params",
 )
 NODE_KEYS = (*NODE_WORDS, *FACT_KEYS)
-PARAM_KEYS = ("kind", "default", "list", "absolute", "deprecated", "note", *FACT_KEYS)
+PARAM_KEYS = ("kind", "default", "list", "absolute", "deprecated", "own", "note", *FACT_KEYS)
 # Undeclared names of these kinds stay as they are, so a wrong guess does no harm.
 SAFE_KINDS = ("link", "joint")
 _INDEX = "<index>"
@@ -70,7 +70,8 @@ class Param(NamedTuple):
 
     ``releases`` are release words (``multibot_rewrite.releases``), ``absolute`` those in which a
     relative topic in it is not resolved in the robot's namespace, ``deprecated`` those that warn of
-    it, both empty for none; ``source`` are the places where it can be read.
+    it, both empty for none; ``source`` are the places where it can be read. ``own`` is true for a
+    frame that the node itself makes, so no description has it.
     """
 
     path: str
@@ -82,6 +83,7 @@ class Param(NamedTuple):
     note: str = ""
     source: tuple[str, ...] = ()
     deprecated: str = ""
+    own: bool = False
 
 
 class Branch(NamedTuple):
@@ -268,6 +270,7 @@ def _param(path: str, item: YamlItem, absolute: str) -> Param:
         word_of(keys, "note"),
         source_of(keys),
         releases_of(keys, "deprecated"),
+        flag_of(keys, "own"),
     )
 
 

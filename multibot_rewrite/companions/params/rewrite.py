@@ -92,6 +92,7 @@ def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
     sections = identify_sections(found, context, known)
     pages = [(it, find_names(document, it, known)) for it in sections if not it.shared]
     others = [it for other in beside for it in raw_sections(other)]
+    job = job._replace(known=known._replace(sent=known.sent | _own_frames(pages)))
     made = [*_made(job, sections, pages, others), *controller_sections(job, found, others)]
     splices = [it for it in made if isinstance(it, Splice)]
     findings = [it for it in made if isinstance(it, Finding)]
@@ -113,6 +114,12 @@ def _made(
         yield from _about_names(job, section, names)
     yield from unclaimed_names(job, [names for _, names in pages])
     yield from default_lines(job, pages, others)
+
+
+def _own_frames(pages: Iterable[Page]) -> frozenset[str]:
+    """The frames that nodes of the file make themselves: no description has them."""
+    sites = (site for _, names in pages for site in names.sites)
+    return frozenset(it.value.lstrip("/") for it in sites if it.param and it.param.own)
 
 
 def _about_sections(

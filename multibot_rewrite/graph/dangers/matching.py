@@ -8,7 +8,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.dangers.seen import EVERYBODYS, Ends, Seen, is_viewer, nodes_of
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.rules.type_and_qos import STAMPED, qos_conflicts
-from multibot_rewrite.graph.snapshot import GraphEndpoint
+from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.remap.records import TOPIC
 
@@ -76,8 +76,8 @@ running: /robot1/amcl subscribes /robot1/scan sensor_msgs/msg/LaserScan best_eff
     line=2,
 )
 def qos_never_meets(seen: Seen) -> Iterator[Finding]:
-    """A subscriber that hears at least one of several publishers is left alone."""
-    for (kind, name), ends in seen.names.items():
+    """A subscriber that hears at least one of several publishers is left alone; Zenoh connects all."""
+    for (kind, name), ends in seen.names.items() if seen.graph.environment.rmw != ZENOH else ():
         if kind != TOPIC or name in EVERYBODYS or not ends.publishers:
             continue
         for end in ends.subscribers:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.graph.expectation import PlannedEndpoint, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.remap.records import ACTION, CALLS, PUBLISHES, SERVES, SUBSCRIBES
-from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
+from multibot_rewrite.remap.ways import COMPONENT, HOST, PLUGIN, SPAWNER
 from multibot_rewrite.rosnames import check_topic_name, expand
 
 # What a node does with a name, by the role of its endpoint.
@@ -109,15 +109,35 @@ def how_to_remap(view: View, planned: PlannedEndpoint) -> str:
     if not rule or planned.node in view.places:
         return ""
     parts = ", and one rule for each of its _action/ names" if planned.kind == ACTION else ""
-    source, _, target = rule.partition(":=")
-    way = dict(view.plan.ways).get(planned.node, "")
+    return f"; pass {how_to_pass(view, planned.node, rule, 'it')}{parts}"
+
+
+def how_to_pass(view: View, node: str, rule: str, what: str = "") -> str:
+    """Where a rule for a node stands, and how it is written there; ``what`` is what to call it."""
+    ways = dict(view.plan.ways)
+    way, _, taker = ways.get(node, "").partition(" ")
+    what = what or rule
+    if way == PLUGIN:
+        return f"{what} in the description: <remapping>{rule}</remapping> of the plugin of {taker}"
+    if way == HOST:
+        # In the process of another node a rule says whose it is.
+        led = f"{node.rpartition('/')[2]}:{rule}"
+        return f"{what} to {taker}, whose process it is in: {_as_written(ways.get(taker, ''), led)}"
     if way == SPAWNER:
-        return f'; pass it to its spawner: --controller-ros-args "-r {rule}"{parts}'
+        return f"{what} to its spawner: {_as_written(way, rule)}"
     if way == COMPONENT:
-        loaded = f"remappings=[({source!r}, {target!r})] of its ComposableNode"
-        return f"; pass it where it is loaded into its container: {loaded}{parts}"
-    launch = f"remappings=[({source!r}, {target!r})] in the launch file"
-    return f"; pass it with --ros-args -r {rule}, or with {launch}{parts}"
+        return f"{what} where it is loaded into its container: {_as_written(way, rule)}"
+    return f"{what} with {_as_written(way, rule)}"
+
+
+def _as_written(way: str, rule: str) -> str:
+    source, _, target = rule.partition(":=")
+    pair = f"remappings=[({source!r}, {target!r})]"
+    if way == SPAWNER:
+        return f'--controller-ros-args "-r {rule}"'
+    if way == COMPONENT:
+        return f"{pair} of its ComposableNode"
+    return f"--ros-args -r {rule}, or with {pair} in the launch file"
 
 
 def tf_rule(robot: PlannedRobot, topic: str) -> str:
@@ -138,7 +158,15 @@ def why_other_name(view: View, node: str, match: str) -> Cause:
     if plugin:
         missing = "namespace" if namespaced else "separate name for each robot"
         return caused(f"{match} is running: {plugin} has no {missing}, see {place}", place)
-    if namespaced:
+    way, _, taker = dict(view.plan.ways).get(node, "").partition(" ")
+    if way == HOST:
+        return Cause(f"{match} is running: {taker} makes it; start that as the plan says")
+    if namespaced and way == COMPONENT:
+        option, missing = f"namespace={f'/{robot}'!r} of its ComposableNode", "namespace"
+    elif way == COMPONENT:
+        name = node.rpartition("/")[2]
+        option, missing = f"name={name!r} of its ComposableNode", "name"
+    elif namespaced:
         option = f"namespace={robot!r} in the launch file, or --ros-args -r __ns:=/{robot}"
         missing = "namespace"
     else:

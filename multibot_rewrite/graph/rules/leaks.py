@@ -11,6 +11,7 @@ from multibot_rewrite.graph.rules.causes import (
     DOES,
     Cause,
     caused,
+    how_to_pass,
     names_without_rules,
     plugin_of,
     why_not_remapped,
@@ -85,7 +86,7 @@ def _why_leaked(view: View, node: str, name: str, planned: PlannedEndpoint | Non
         return caused(f"{plugin} has no namespace or remap rule for it, see {place}", place)
     robot = view.robot_of[node]
     target = f"{name}/{robot}" if view.ownership.robot_is_last else f"/{robot}{name}"
-    rule = f"--ros-args -r {name}:={target}"
+    rule = how_to_pass(view, node, f"{name}:={target}")
     return Cause(f"an absolute name in its code or parameters; pass {rule}")
 
 
@@ -121,7 +122,7 @@ def _wrong_tf_listeners(view: View) -> Iterator[Finding]:
         robot = view.ownership.robot(node) if f"/{LISTENER}" in node else ""
         if robot and home[robot] != "/tf" and (node, TOPIC, SUBSCRIBES, "/tf") in view.types:
             message = f"this tf listener subscribes to /tf, but tf of {robot} is on {home[robot]}"
-            cause = "pass the rule /tf:=tf to its whole process (--ros-args), not to one node in it"
+            cause = "pass the rule /tf:=tf to its whole process or container, not to one node in it"
             yield leaked_name.finding(message, cause, robot=robot, node=node, names=("/tf",))
 
 

@@ -1,0 +1,168 @@
+"""The plan of a fleet -> what each robot may say and hear in Zenoh: rules of access control. Pure.
+
+Source: zenoh ``DEFAULT_CONFIG.json5`` (access_control): a message passes where a rule's key expression
+includes its own. rmw_zenoh ``docs/design.md`` has the keys: a topic or service is
+``DOMAIN/NAME/TYPE/HASH``. What is latched is in the cache of an advanced publisher, whose keys go on
+with ``@adv`` (zenoh-ext ``advanced_publisher.rs``); ``**`` does not match a part that begins with @.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+from multibot_rewrite.graph.expectation import (
+    ALWAYS,
+    EVERYWHERE,
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+)
+from multibot_rewrite.graph.zenoh.tokens import SPACE
+from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVES
+
+Rule = dict[str, object]
+IN, OUT = "ingress", "egress"
+_SENDS = ["put", "delete", "reply", "declare_queryable"]
+_ASKS = ["declare_subscriber", "query"]
+_LIVELINESS = ["liveliness_token", "liveliness_query", "declare_liveliness_subscriber", "reply"]
+# What any node may send besides its own; of the clock there is one.
+_ANYBODY_SENDS = (*ALWAYS, "/diagnostics")
+
+
+class Rights(NamedTuple):
+    """The key expressions of a robot: its ``own``, and of the others those it sends and hears."""
+
+    robot: str
+    own: tuple[str, ...]
+    sends: tuple[str, ...]
+    hears: tuple[str, ...]
+
+
+def rights(plan: Expectation, domain: int) -> list[Rights]:
+    """What each robot of the plan may do in this domain.
+
+    All below its namespace is its own, unless another robot has names there too. Of all other names
+    it has those that its nodes have in the plan.
+    """
+    owner = {node: robot.name for robot in plan.robots for node in robot.nodes}
+    by_robot: dict[str, list[PlannedEndpoint]] = {robot.name: [] for robot in plan.robots}
+    for end in plan.endpoints:
+        if robot := owner.get(end.node):
+            by_robot[robot].append(end)
+    spaces = _own_spaces(plan, by_robot)
+    return [
+        _rights(robot, by_robot[robot.name], spaces.get(robot.name, ""), plan.shared_topics, domain)
+        for robot in plan.robots
+    ]
+
+
+def _own_spaces(plan: Expectation, by_robot: dict[str, list[PlannedEndpoint]]) -> dict[str, str]:
+    """The namespace that all nodes of a robot are in, where no other robot has a name."""
+    names = {
+        robot.name: [*robot.nodes, *(end.name for end in by_robot[robot.name])]
+        for robot in plan.robots
+    }
+    found = {}
+    for robot in plan.robots:
+        space = _common_space(robot.nodes)
+        others = (name for other, mine in names.items() if other != robot.name for name in mine)
+        if space and not any(name.startswith(space) for name in others):
+            found[robot.name] = space
+    return found
+
+
+def _common_space(nodes: Sequence[str]) -> str:
+    """``/robot1/`` for ``/robot1/amcl`` and ``/robot1/local_costmap/x``; empty for the root."""
+    common: list[str] = []
+    for parts in zip(*(node.split("/")[1:-1] for node in nodes), strict=False):
+        if len(set(parts)) > 1:
+            break
+        common.append(parts[0])
+    return f"/{'/'.join(common)}/" if common else ""
+
+
+def _rights(
+    robot: PlannedRobot,
+    ends: Iterable[PlannedEndpoint],
+    space: str,
+    shared: Iterable[str],
+    domain: int,
+) -> Rights:
+    """Every node may listen to tf and to what all robots share, whether or not the plan says so."""
+    # Without a namespace at least the parameter and lifecycle services of its nodes are its own.
+    own = [f"{domain}{space}**"] if space else [f"{domain}{it}/*/*/*" for it in robot.nodes]
+    sends: set[str] = set()
+    hears: set[str] = set()
+    for end in ends:
+        if not (space and end.name.startswith(space)):
+            (sends if end.role in (PUBLISHES, SERVES) else hears).add(_key(domain, end))
+    static = "/".join("tf_static" if word == "tf" else word for word in robot.tf.split("/"))
+    tf = () if space and robot.tf.startswith(space) else (robot.tf, static)
+    sends |= {f"{domain}{name}/*/*" for name in (*_ANYBODY_SENDS, *tf)}
+    hears |= {f"{domain}{name}/*/*" for name in (*EVERYWHERE, *shared, *tf)}
+    return Rights(robot.name, _latched(own), _latched(sorted(sends)), _latched(sorted(hears)))
+
+
+def _key(domain: int, end: PlannedEndpoint) -> str:
+    """An action has its services and topics below ``_action``."""
+    return f"{domain}{end.name}/_action/*/*/*" if end.kind == ACTION else f"{domain}{end.name}/*/*"
+
+
+def _latched(keys: Sequence[str]) -> tuple[str, ...]:
+    return (*keys, *(f"{key}/@adv/**" for key in keys))
+
+
+def robot_rules(given: Rights, domain: int, mirrored: bool = False) -> list[Rule]:
+    """The rules of a robot's own sessions; ``mirrored`` those of a router at the other end."""
+    out, back = (IN, OUT) if mirrored else (OUT, IN)
+    name = given.robot
+    found = [
+        _rule(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
+        _rule(f"{name}_sends", _SENDS, (out,), given.sends),
+        _rule(f"{name}_is_asked", _ASKS, (back,), given.sends),
+        _rule(f"{name}_hears", _SENDS, (back,), given.hears),
+        _rule(f"{name}_asks", _ASKS, (out,), given.hears),
+    ]
+    return [*found, graph_rule(f"{name}_graph", domain)]
+
+
+def graph_rule(name: str, domain: int) -> Rule:
+    """Everybody may know who is there: tokens of rmw_zenoh, and of what is latched."""
+    keys = (f"{SPACE}/{domain}/**", f"{domain}/**/@adv/**")
+    return _rule(name, _LIVELINESS, (OUT, IN), keys)
+
+
+def all_rule(name: str, domain: int) -> Rule:
+    """For who looks after all robots."""
+    keys = (f"{domain}/**", f"{domain}/**/@adv/**", f"{SPACE}/**")
+    return _rule(name, list(dict.fromkeys([*_SENDS, *_ASKS, *_LIVELINESS])), (OUT, IN), keys)
+
+
+def _rule(name: str, messages: Sequence[str], flows: Sequence[str], keys: Sequence[str]) -> Rule:
+    return {
+        "id": name,
+        "messages": list(messages),
+        "flows": list(flows),
+        "permission": "allow",
+        "key_exprs": list(keys),
+    }
+
+
+def access_control(parts: Iterable[tuple[dict[str, object], Sequence[Rule]]]) -> dict[str, object]:
+    """Who may do what, and nothing else: subjects with the rules of each."""
+    given = list(parts)
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": [rule for _, rules in given for rule in rules],
+        "subjects": [subject for subject, _ in given],
+        "policies": list(_policies(given)),
+    }
+
+
+def _policies(
+    given: Iterable[tuple[dict[str, object], Sequence[Rule]]],
+) -> Iterator[dict[str, object]]:
+    for subject, rules in given:
+        yield {"rules": [rule["id"] for rule in rules], "subjects": [subject["id"]]}

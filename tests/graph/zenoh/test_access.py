@@ -1,0 +1,164 @@
+"""What a plan lets each robot say and hear, as key expressions; expectations by hand."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from multibot_rewrite.cli.multibot import main
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
+from multibot_rewrite.graph.zenoh.access import Rights, rights, robot_rules
+from multibot_rewrite.graph.zenoh.configuration import Setup, configurations
+
+
+def made(*robots: tuple[str, str, str], ends: tuple[PlannedEndpoint, ...] = ()) -> Expectation:
+    """Robots as (name, node, tf topic)."""
+    planned = tuple(PlannedRobot(name, (node,), (), tf) for name, node, tf in robots)
+    return Expectation("both", planned, (), ("/clock", "/map"), (), ends)
+
+
+def end(node: str, kind: str, role: str, name: str) -> PlannedEndpoint:
+    return PlannedEndpoint(node, kind, role, name, "", "")
+
+
+def of(plan: Expectation, domain: int = 0) -> Rights:
+    return rights(plan, domain)[0]
+
+
+NAMESPACED = (("robot1", "/robot1/a", "/robot1/tf"), ("robot2", "/robot2/a", "/robot2/tf"))
+
+
+def test_a_namespace_is_the_robots_own() -> None:
+    given = of(made(*NAMESPACED), 7)
+    assert given.own == ("7/robot1/**", "7/robot1/**/@adv/**")
+    assert not any("robot" in key for key in (*given.sends, *given.hears))
+    assert "7/map/*/*" in given.hears and "7/map/*/*" not in given.sends
+
+
+def test_two_levels_of_namespaces() -> None:
+    robots = (("r1", "/fleet/r1/a", "/fleet/r1/tf"), ("r2", "/fleet/r2/a", "/fleet/r2/tf"))
+    assert of(made(*robots)).own[0] == "0/fleet/r1/**"
+
+
+def test_a_namespace_that_starts_like_another_is_another() -> None:
+    robots = (("robot1", "/robot1/a", "/robot1/tf"), ("robot10", "/robot10/a", "/robot10/tf"))
+    assert of(made(*robots)).own[0] == "0/robot1/**"
+
+
+def test_a_namespace_of_two_robots_is_nobodys_own() -> None:
+    robots = (("r1", "/fleet/a_r1", "/tf"), ("r2", "/fleet/a_r2", "/tf"))
+    ends = (end("/fleet/a_r1", "topic", "publishes", "/fleet/odom/r1"),)
+    given = of(made(*robots, ends=ends))
+    # Its parameter services, and what the plan has.
+    assert given.own == ("0/fleet/a_r1/*/*/*", "0/fleet/a_r1/*/*/*/@adv/**")
+    assert "0/fleet/odom/r1/*/*" in given.sends
+    assert "0/fleet/odom/r1/*/*" not in given.hears
+
+
+def test_names_outside_of_the_namespace_by_direction() -> None:
+    ends = (
+        end("/robot1/a", "topic", "publishes", "/report"),
+        end("/robot1/a", "topic", "subscribes", "/orders"),
+        end("/robot1/a", "service", "serves", "/stop"),
+        end("/robot1/a", "service", "calls", "/map_server/load"),
+        end("/robot1/a", "action", "calls", "/lift"),
+        end("/robot2/a", "topic", "publishes", "/secret"),
+    )
+    given = of(made(*NAMESPACED, ends=ends))
+    assert {"0/report/*/*", "0/stop/*/*", "0/stop/*/*/@adv/**"} <= set(given.sends)
+    assert {"0/orders/*/*", "0/map_server/load/*/*", "0/lift/_action/*/*/*"} <= set(given.hears)
+    assert {"0/report/*/*", "0/stop/*/*"}.isdisjoint(given.hears)
+    assert not any("secret" in key for key in (*given.sends, *given.hears))
+
+
+def test_tf_of_all_robots_is_heard_and_sent() -> None:
+    given = of(made(("r1", "/a_r1", "/tf/r1"), ("r2", "/a_r2", "/tf/r2")))
+    for keys in (given.sends, given.hears):
+        assert {"0/tf/r1/*/*", "0/tf_static/r1/*/*"} <= set(keys)
+        assert not any("r2" in key for key in keys)
+
+
+def test_a_router_has_the_flows_the_other_way_round() -> None:
+    given = of(made(*NAMESPACED))
+    flows = {str(it["id"]): it["flows"] for it in robot_rules(given, 0)}
+    mirrored = {str(it["id"]): it["flows"] for it in robot_rules(given, 0, mirrored=True)}
+    assert (flows["robot1_sends"], flows["robot1_hears"]) == (["egress"], ["ingress"])
+    assert (mirrored["robot1_sends"], mirrored["robot1_hears"]) == (["ingress"], ["egress"])
+    assert flows["robot1_own"] == mirrored["robot1_own"] == ["egress", "ingress"]
+
+
+def test_files_and_certificates() -> None:
+    setup = Setup("tcp/10.0.0.1:7000", 0, "/keys", ("/ops/desk",))
+    files = {
+        name: json.loads(data.partition(b"\n")[2])
+        for name, data in configurations(made(*NAMESPACED), setup)
+    }
+    assert list(files) == ["router.json5", "robot1.json5", "robot2.json5", "ops_desk.json5"]
+    router, robot = files["router.json5"], files["robot1.json5"]
+    assert router["listen"]["endpoints"] == ["tls/0.0.0.0:7000"]
+    assert robot["connect"]["endpoints"] == ["tls/10.0.0.1:7000"]
+    tls = robot["transport"]["link"]["tls"]
+    assert tls["connect_private_key"] == "/keys/enclaves/robot1/key.pem"
+    assert tls["enable_mtls"] is True
+    names = [it["cert_common_names"] for it in router["access_control"]["subjects"]]
+    assert names == [["/robot1"], ["/robot2"], ["/ops/desk"]]
+    assert router["access_control"]["default_permission"] == "deny"
+    assert "access_control" not in files["ops_desk.json5"]
+
+
+def test_without_certificates_the_router_lets_all_in() -> None:
+    """It cannot tell robots apart; their own files keep them apart."""
+    (_, router), (_, robot), _ = configurations(made(*NAMESPACED), Setup("tcp/h:1", 0))
+    assert b"access_control" not in router and b"tls" not in router
+    assert b'"default_permission": "deny"' in robot
+
+
+PLAN = "fixtures/graphs/plan.yaml"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--router", "tcp/h"], "write PROTOCOL/HOST:PORT"),
+        (["--router", "tcp/h:1", "--keystore", "keys"], "is not a full path"),
+        (["--router", "tcp/h:1", "--operator", "/ops"], "give --keystore as well"),
+        (
+            ["--router", "tcp/h:1", "--keystore", "/k", "--operator", "/robot1"],
+            "two of robots, operators and router are robot1",
+        ),
+        (["--router", "tcp/h:1", "--keystore", "/k", "--operator", "ops"], "not a full name"),
+        ([], "--router"),
+    ],
+)
+def test_wrong_use_is_one_line(
+    arguments: list[str],
+    said: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(Path(__file__).parents[3])
+    try:
+        code = main(["zenoh", PLAN, "-o", str(tmp_path / "out"), *arguments])
+    except SystemExit as ended:
+        code = int(str(ended.code))
+    shown = capsys.readouterr().err
+    assert (code, len(shown.splitlines())) == (2, 1)
+    assert said in shown
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_command_writes_a_file_each(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(Path(__file__).parents[3])
+    out = tmp_path / "zenoh"
+    command = ["zenoh", PLAN, "--router", "tcp/localhost:7447", "--domain", "3", "-o", str(out)]
+    assert main(command) == 0
+    assert sorted(it.name for it in out.iterdir()) == [
+        *("robot1.json5", "robot2.json5", "router.json5"),
+    ]
+    assert '"3/robot1/**"' in (out / "robot1.json5").read_text()
+    assert "2 robots" in capsys.readouterr().err
