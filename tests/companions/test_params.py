@@ -106,6 +106,15 @@ def test_one_key_may_hold_several_sections() -> None:
     assert made(source)[0] == source.replace("local_costmap:", "/robot1/local_costmap:", 1)
 
 
+def test_the_helpers_of_a_costmap_go_with_it() -> None:
+    """Layout postfix: files of older releases have their sections below the one key."""
+    inner = "    ros__parameters: {use_sim_time: true}\n"
+    source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
+    text, findings = made(source, L4)
+    assert text == source.replace("local_costmap:", "/robot1/local_costmap:", 1)
+    assert not findings
+
+
 def test_rcl_would_find_every_section() -> None:
     """The keys joined as rcl joins them are the full names that the nodes run under."""
     context = setting(L2)
