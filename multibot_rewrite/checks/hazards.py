@@ -15,6 +15,7 @@ from multibot_rewrite.naming import (
     TF_TOPICS,
     Naming,
 )
+from multibot_rewrite.rewriters.forms import IN_FRONT
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import split_remap
 from multibot_rewrite.steps.collect import SRDF, Host, Inventory
@@ -34,7 +35,7 @@ def prefix_only(inventory: Inventory, naming: Naming) -> Iterator[Problem]:
     if naming.affix == PREFIX or "sensor" not in naming.separators:
         return
     for claim in inventory.claims:
-        if claim.site.form == "prefix":
+        if claim.site.form in IN_FRONT:
             message = (
                 f"{claim.site.path} {claim.value!r} is put in front of names by the plugin, so a "
                 "postfix cannot be added"

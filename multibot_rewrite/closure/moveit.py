@@ -43,6 +43,13 @@ def moveit_gaps(
                 yield from _action(document, key, body, controller, node, str(at))
 
 
+def moved_joints(documents: Iterable[YamlText]) -> frozenset[str]:
+    """The joints of all controllers that MoveIt knows."""
+    managers = (it for document in documents for it in _managers(document.root))
+    bodies = (body for manager in managers for _, body in _controllers(manager))
+    return frozenset(str(it.value) for body in bodies for it in _joints(body))
+
+
 def _controllers(manager: yaml.Node) -> Iterator[tuple[yaml.ScalarNode, yaml.Node]]:
     below = {key.value: (key, value) for key, value in pairs(manager)}
     yield from (below[str(it.value)] for it in _names(manager) if it.value in below)

@@ -11,6 +11,7 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.closing_bridges import bridge_findings
 from multibot_rewrite.fleets.closing_controllers import controller_findings
+from multibot_rewrite.fleets.closing_semantics import semantic_findings
 from multibot_rewrite.fleets.closing_topics import topic_findings
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -123,6 +124,7 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         known_before = {it.key for it in old}
         yield from _trees(robot, (it for it in now if it.key not in known_before), ERROR)
         yield from topic_findings(robot, before, after)
+        yield from semantic_findings(plan, robot, before, after)
         yield from bridge_findings(plan, robot, texts)
 
 

@@ -34,7 +34,7 @@ def commands_file(
         yield from (*poses.findings, *findings)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
         rows += [f"{command(it)}\n" for it in poses.transforms]
-        rows += [spawn.either(it, robot) for it in spawned]
+        rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
         rows += [*(f"{teleop.command(it)}\n" for it in teleop.teleops(one)), "```\n"]
         for pose in poses.initial:

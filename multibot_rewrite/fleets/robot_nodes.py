@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import LaunchOrder
+from multibot_rewrite.evidence.launched import without_robot
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.evidence.spawners import Spawned
@@ -19,13 +21,14 @@ from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
 
+MOVE_GROUP = "move_group"
 # What decides the nodes of a robot.
-NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...]]
+NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str]
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Robots for which this is equal run the same nodes."""
-    return spec.stacks, spec.companions.get("params", ()), spec.launch
+    return spec.stacks, spec.companions.get("params", ()), spec.launch, spec.srdf
 
 
 class RobotEvidence(NamedTuple):
@@ -45,14 +48,26 @@ def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> R
     Raises InputError for a parameter file that cannot be read.
     """
     parameters = load_known_nodes(file.parameters, file.distro)
-    own = tuple(given_nodes(params_of(spec).values(), parameters))
+    read = given_nodes(params_of(spec).values(), parameters)
+    own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
     nodes, findings = nodes_with(launched, stack, given, known)
+    whole = launched is not None and launched.whole
+    nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     marked, shared = apart(nodes, file)
     return RobotEvidence(given, known, marked, (*notes, *findings, *shared), spawned)
+
+
+def _of_srdf(
+    spec: RobotSpec, nodes: Iterable[NodeFacts], known: Mapping[str, NodeFacts]
+) -> Iterator[NodeFacts]:
+    """The node that reads an SRDF may run, where neither a stack nor a launch file says so."""
+    if spec.srdf and MOVE_GROUP not in {it.known or it.name for it in nodes}:
+        file = os.path.basename(spec.srdf)
+        yield known[MOVE_GROUP]._replace(when=f"its SRDF is {file}", origin=f"{spec.srdf}:1")
 
 
 def _known(given: Iterable[GivenNode], file: FleetFile) -> dict[str, NodeFacts]:

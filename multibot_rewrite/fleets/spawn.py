@@ -53,6 +53,15 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     return tuple(made), tuple(findings)
 
 
+def is_simulated(robot: RewrittenRobot) -> bool:
+    """May Gazebo run it? Not if its ros2_control drives hardware and nothing in it is for Gazebo."""
+    root = robot.member.inventory.document.root
+    gazebo = any(
+        it.find("plugin") is not None or it.find("sensor") is not None for it in root.iter("gazebo")
+    )
+    return gazebo or root.tag == "sdf" or next(root.iter("ros2_control"), None) is None
+
+
 def spawn(robot: RewrittenRobot, topic: str = "") -> Spawn:
     """How one robot is spawned; ``topic`` is that of its description if it is not the usual one."""
     spec = robot.spec

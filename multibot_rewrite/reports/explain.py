@@ -10,6 +10,7 @@ from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import Claim, Site
 from multibot_rewrite.naming import FRAME_KINDS, PREFIX, TOPIC_KINDS, Naming
 from multibot_rewrite.reports.paths import tag_path
+from multibot_rewrite.rewriters.forms import IN_FRONT
 from multibot_rewrite.rewriters.insert import Insertion, without
 from multibot_rewrite.rewriters.spelling import ROBOT_SLOT, ResolvedName, respelled
 from multibot_rewrite.rewriters.text import text_of
@@ -79,7 +80,7 @@ def _reasons(
     declared = inventory.declared
     if claim.site.form == "collision":
         yield "a collision, named after its link by the conversion to SDF"
-    if claim.site.form == "prefix" and naming.affix != PREFIX:
+    if claim.site.form in IN_FRONT and naming.affix != PREFIX:
         yield "the plugin puts it in front of names, so a postfix cannot be added"
         return
     for name in names:

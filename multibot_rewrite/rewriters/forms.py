@@ -38,6 +38,8 @@ class NamePart(NamedTuple):
     matched: Kinds = ()
 
 
+# The consumer puts what they find in front of names: a postfix cannot be there.
+IN_FRONT = ("prefix", "lettered")
 Form = Callable[[str, Kinds, Declared], tuple[NamePart, ...]]
 
 
@@ -53,6 +55,13 @@ def prefixed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ..
     """What the consumer puts in front of names, nothing at all included."""
     name = value.strip()
     return (NamePart(value.index(name), name, kinds, False, kinds[:1]),)
+
+
+def lettered(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
+    """A prefix behind a letter that the consumer drops."""
+    name = value.strip()
+    at = value.index(name) + 1
+    return (NamePart(at, name[1:], kinds, False, kinds[:1]),) if name else ()
 
 
 def listed(value: str, kinds: Kinds, declared: Declared) -> tuple[NamePart, ...]:
@@ -238,6 +247,7 @@ FORMS: dict[str, Form] = {
     "transport": transport,
     "regex": of_names(regex),
     "prefix": prefixed,
+    "lettered": lettered,
     "remap": remap,
     "argument": remap,
     "collision": nothing,

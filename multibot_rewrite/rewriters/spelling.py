@@ -17,7 +17,7 @@ from multibot_rewrite.naming import (
     removal,
     spelled,
 )
-from multibot_rewrite.rewriters.forms import FORMS, Declared, Kinds, NamePart
+from multibot_rewrite.rewriters.forms import FORMS, IN_FRONT, Declared, Kinds, NamePart
 from multibot_rewrite.rewriters.scopes import in_scope, scope_of
 
 ROBOT_SLOT = "\0"
@@ -84,7 +84,7 @@ def names_in(claim: Claim, declared: Declared) -> tuple[NamePart, ...]:
 def is_reached(claim: Claim, naming: Naming) -> bool:
     """Can the naming change this value? No postfix can be where the consumer wants a prefix."""
     site = claim.site
-    if site.form != "prefix":
+    if site.form not in IN_FRONT:
         return True
     return naming.affix == PREFIX and bool(claim.value or takes_empty(site))
 
@@ -96,7 +96,7 @@ def takes_empty(site: Site) -> bool:
 
 def spell_default(site: Site, value: str, declared: Declared, naming: Naming) -> Spelling:
     """What changes in a value that would be at a site if the file had it."""
-    if site.form == "prefix" and naming.affix != PREFIX:
+    if site.form in IN_FRONT and naming.affix != PREFIX:
         return ()
     result = []
     for part in FORMS[site.form](value, site.kinds, declared):

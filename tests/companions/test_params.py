@@ -111,8 +111,10 @@ def test_the_helpers_of_a_costmap_go_with_it() -> None:
     inner = "    ros__parameters: {use_sim_time: true}\n"
     source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
     text, findings = made(source, L4)
-    assert text == source.replace("local_costmap:", "/robot1/local_costmap:", 1)
-    assert not findings
+    keys = [line.strip(" :") for line in text.splitlines() if line.endswith(":")]
+    assert keys[0] == "/robot1/local_costmap"
+    assert {"local_costmap", "local_costmap_client"} <= set(keys)
+    assert "MF101" not in codes(findings)
 
 
 def test_rcl_would_find_every_section() -> None:

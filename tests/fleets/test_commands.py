@@ -59,3 +59,30 @@ def test_the_tables_of_a_build_say_the_same(tmp_path: Path) -> None:
     exec(made["remappings.py"], namespace)
     assert "diff_drive_controller" not in namespace["NODES"]["robot2"]
     assert "diff_drive_controller" in namespace["SPAWNERS"]["robot2"]
+
+
+HARDWARE = """\
+<ros2_control name="arm" type="system">
+  <hardware><plugin>acme_driver/Arm</plugin></hardware>
+</ros2_control>
+"""
+
+
+@pytest.mark.parametrize(
+    ("inside", "spawned"),
+    [
+        ("", True),
+        (HARDWARE, False),
+        (f'{HARDWARE}<gazebo reference="base_link"><mu1>1</mu1></gazebo>', False),
+        (f'{HARDWARE}<gazebo><plugin name="p" filename="libacme.so"/></gazebo>', True),
+    ],
+)
+def test_a_robot_that_has_nothing_for_gazebo_is_not_spawned(
+    inside: str, spawned: bool, tmp_path: Path
+) -> None:
+    (tmp_path / "arm.urdf").write_text(
+        f'<robot name="arm"><link name="base_link"/>{inside}</robot>'
+    )
+    (tmp_path / "fleet.yaml").write_text("robots: [{name: robot1, description: arm.urdf}]\n")
+    made = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode()
+    assert ("ros_gz_sim create" in made) == spawned

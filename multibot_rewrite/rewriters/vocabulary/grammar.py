@@ -56,6 +56,7 @@ FORMS = (
     "transport",
     "regex",
     "prefix",
+    "lettered",
     "remap",
     "argument",
     "collision",
