@@ -116,7 +116,7 @@ HOMES: tuple[Home, ...] = (
         "what a robot's files say of its nodes",
         (
             "evidence.nodes",
-            "evidence.launched",
+            "evidence.launch_findings",
             "fleets.launched_files",
             "fleets.shared_nodes",
             "fleets.closing",

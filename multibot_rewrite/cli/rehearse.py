@@ -18,6 +18,7 @@ from multibot_rewrite.graph.live.child import RUN_STUBS, RosUnusable, observe, r
 from multibot_rewrite.graph.live.request import Request, to_text
 from multibot_rewrite.graph.rehearsal import (
     StubNode,
+    bridge_stub,
     split_over_processes,
     stub_nodes,
     to_order,
@@ -38,7 +39,10 @@ def run(options: argparse.Namespace) -> int:
     _check_use(options)
     made = fleet.build(options)
     plan, table = expected(made), fleet.findings(options, made)
-    nodes = list(stub_nodes(made.table, _edges(options, made), _left_out(options)))
+    nodes = [
+        *stub_nodes(made.table, _edges(options, made), _left_out(options)),
+        *bridge_stub(plan.topics),
+    ]
     environ = stage(options.domain)
     try:
         with _running(split_over_processes(nodes), environ) as replaced:

@@ -57,17 +57,24 @@ class LaunchedNode(NamedTuple):
 
 
 class LaunchNote(NamedTuple):
-    """Something of a launch file whose nodes are not known, and why."""
+    """Something of a launch file whose nodes are not known, and why; with ``parameters`` the node is
+    known, and what a parameter file sets for it is not."""
 
     place: Place
     message: str
+    parameters: bool = False
 
 
 class LaunchGraph(NamedTuple):
-    """What launch files start; with notes the nodes may not be all."""
+    """What launch files start."""
 
     nodes: tuple[LaunchedNode, ...] = ()
     notes: tuple[LaunchNote, ...] = ()
+
+    @property
+    def whole(self) -> bool:
+        """Are these all nodes?"""
+        return all(it.parameters for it in self.notes)
 
 
 def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
@@ -108,7 +115,7 @@ def order_of(text: str) -> LaunchOrder:
 def graph_of(text: str) -> LaunchGraph:
     """The graph that ``to_json`` wrote."""
     nodes, notes = json.loads(text)
-    found = (LaunchNote(Place(*place), message) for place, message in notes)
+    found = (LaunchNote(Place(*place), *rest) for place, *rest in notes)
     return LaunchGraph(
         tuple(_node(dict(zip(_FIELDS, it, strict=True))) for it in nodes), tuple(found)
     )

@@ -17,69 +17,17 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.evidence.launch_findings import launch_findings
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
-from multibot_rewrite.findings.finding import NOTE, WARNING, Finding
-from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import NodeFacts
 from multibot_rewrite.rosnames import expand
 
-_ROBOTS = """\
-robots:
-  - {name: robot1, description: robot.urdf}
-  - {name: robot2, description: robot.urdf}
-"""
-_AMCL = "structure:\n  nodes:\n    /amcl: {pkg: nav2_amcl, exec: amcl, node_name: amcl}\n"
-NOT_LAUNCHED = declare(
-    "MF821",
-    "node-not-launched",
-    NOTE,
-    what="A stack has a node that none of the robot's launch files starts; it is left out of the plan.",
-    why="The launch files say what runs. A plan with another node would report it as missing.",
-    fix="Nothing, if the launch files are right. Else start the node, or name its launch file, too.",
-    bad=f"launch: system_model.yaml\nstack: [robot_localization]\n{_ROBOTS}",
-    good=f"launch: system_model.yaml\n{_ROBOTS}",
-    formats=("fleet",),
-    beside={"system_model.yaml": _AMCL},
-)
-NOT_KNOWN = declare(
-    "MF822",
-    "launched-node-not-known",
-    NOTE,
-    what="A launch file starts a node that is not known: the plan has its name, and nothing of its "
-    "topics, services and frames.",
-    why="What it publishes and subscribes to is not remapped and not checked: two robots may share it.",
-    fix="Describe it in a file of nodes (docs/stacks.md), or run multibot learn beside it.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"{_ROBOTS}launch: known.yaml\n",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /d: {pkg: my_driver, exec: d, node_name: d}\n",
-        "known.yaml": _AMCL,
-    },
-)
-NOT_WHOLE = declare(
-    "MF823",
-    "launch-not-whole",
-    WARNING,
-    what="A part of a launch file cannot be read here, or is decided only at run time.",
-    why="The nodes that it starts are not in the plan, unless a stack has them.",
-    fix="Source the workspace that has the package, or give the folder of its sources as root; name a "
-    "stack for what only a run decides.",
-    bad=f"launch: system_model.yaml\n{_ROBOTS}",
-    good=f"launch: known.yaml\n{_ROBOTS}",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "system_model.yaml": "structure:\n  nodes:\n    /d: {exec: ./start.sh}\n",
-        "known.yaml": _AMCL,
-    },
-)
 _TF = ("/tf", "/tf_static")
 _CAMEL = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 # The name of a file for what a launch file gives itself.
@@ -132,7 +80,7 @@ def with_launched(
     graph = graph._replace(notes=(*graph.notes, *notes))
     pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
-    left = [] if graph.notes else [it for it in stack if _is_left(it, nodes)]
+    left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
     # A node that every robot has, such as robot_state_publisher, may be launched under another name.
     gone |= {it.known for it in nodes.values() if it.known} - {
@@ -143,13 +91,14 @@ def with_launched(
     inside = [*hosted, *(it for it in kept if it.host)]
     given = list(_controllers(spawned, pairs, words, parameters))
     given += [it for pair in pairs for it in _given(pair, inside, words, parameters)]
+    unknown = [(it.node, it.facts.name) for it in pairs if not it.known]
     return Launched(
         (*kept, *nodes.values(), *hosted),
         tuple({it.name: it for it in reversed(given)}.values()),
         {it.facts.name: it.node for it in pairs},
         {_stripped(it.full_name.strip("/"), words): it for it in spawned},
-        not graph.notes,
-        tuple(_findings(graph, pairs, left)),
+        graph.whole,
+        tuple(launch_findings(graph, unknown, left)),
     )
 
 
@@ -189,6 +138,8 @@ def _pair(
         name=_below(it.namespace, name, words),
         endpoints=tuple(end._replace(remapped="") for end in facts.endpoints),
         known=facts.known or facts.name if base else "",
+        # A node that usually serves all robots, in the namespace of one, is that robot's.
+        shared=facts.shared and not _is_of_robot(it.namespace, words),
         when=it.later or unnamed,
         container=_below(it.container, "", words),
         origin=_origin(it.place),
@@ -208,6 +159,10 @@ def _base(
     by_word = (node for node in of_package if wanted & {node.name, *node.nodl})
     chosen = known.get(named) if named else None
     return next(of_stack, None) or chosen or next(by_word, None)
+
+
+def _is_of_robot(namespace: str, words: Collection[str]) -> bool:
+    return namespace.strip("/").partition("/")[0] in words
 
 
 def _below(namespace: str, name: str, words: Collection[str]) -> str:
@@ -284,9 +239,9 @@ def _given(
     documents = [_document(it) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
-        name, manager = _stripped(it.name, words), _stripped(it.manager, words)
-        if name in names or manager == pair.facts.name:
-            yield _placed(it, pair.node.place)._replace(name=name, manager=manager)
+        mine = without_robot(it, words)
+        if mine.name in names or mine.manager == pair.facts.name:
+            yield _placed(mine, pair.node.place)
 
 
 def _placed(given: GivenNode, place: Place) -> GivenNode:
@@ -296,6 +251,12 @@ def _placed(given: GivenNode, place: Place) -> GivenNode:
         for name, it in given.values.items()
     }
     return given._replace(values=values, place=place if given.place.file == _OWN else given.place)
+
+
+def without_robot(given: GivenNode, words: Collection[str]) -> GivenNode:
+    """A node of a file that is for one robot, without the namespace of that robot."""
+    name, manager = (_stripped(it, words) for it in (given.name, given.manager))
+    return given._replace(name=name, manager=manager)
 
 
 def _stripped(name: str, words: Collection[str]) -> str:
@@ -326,26 +287,3 @@ def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str)
         target = targets.get(expand(it.name, above, name), it.name)
         ends.append(it._replace(remapped=target) if target != it.name else it)
     return node._replace(endpoints=tuple(ends))
-
-
-def _findings(
-    graph: LaunchGraph, pairs: Iterable[_Pair], left: Iterable[NodeFacts]
-) -> Iterator[Finding]:
-    for note in graph.notes:
-        hint = "the nodes that it starts are not in the plan"
-        yield NOT_WHOLE.finding(note.message, hint, **_place(note.place))
-    for it in pairs:
-        if not it.known:
-            message = f"node {it.facts.name} ({it.node.package} {it.node.executable}) is not known"
-            hint = "describe it in a file of nodes (docs/stacks.md); the plan has its name alone"
-            yield NOT_KNOWN.finding(message, hint, **_place(it.node.place))
-    for node in left:
-        if not node.when:
-            message = f"{node.name} of {node.origin} is not launched; it is left out"
-            hint = "leave out the stack, or name the launch file that starts it, too"
-            place = Place(next((it.place.file for it in graph.nodes), ""), 1)
-            yield NOT_LAUNCHED.finding(message, hint, **_place(place))
-
-
-def _place(place: Place) -> dict[str, object]:
-    return {"file": place.file, "line": place.line, "column": 1}

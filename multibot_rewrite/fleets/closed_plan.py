@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
+from multibot_rewrite.fleets.bridged import BOTH, once
 from multibot_rewrite.fleets.closing import closing
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.fleet import Fleet
@@ -13,8 +15,10 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.robot_groups import group_robots
+from multibot_rewrite.fleets.systems import BRIDGE_FILE, bridge_ends
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.expectation import PlannedTopic
 
 # Rules about a file that names what the robot does not have.
 NAMES_NOTHING = frozenset(
@@ -34,7 +38,18 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         found = [it for it in made if isinstance(it, Finding)]
         found += (it for robot in few.robots for it in robot.findings)
         gaps = gaps_of(plan, fleet, texts, found)
-        return fleet._replace(gaps=gaps)
+        rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
+        return fleet._replace(gaps=gaps, bridged=bridged_by(texts_of(rows)))
+
+
+def bridged_by(texts: Iterable[OutputText]) -> tuple[PlannedTopic, ...]:
+    """What the bridge files among the texts carry."""
+    files = [it for it in texts if it.path.rpartition("/")[2] == BRIDGE_FILE]
+    rows = (end for it in files for end in bridge_ends(read_yaml(it.text.encode(), it.path)))
+    return once(
+        PlannedTopic(end.name, bridge=(end.role,) if end.role else BOTH, type=end.type)
+        for end in rows
+    )
 
 
 def texts_of(files: Iterable[OutputFile]) -> list[OutputText]:

@@ -9,14 +9,22 @@ from typing import NamedTuple
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.bridged import bridged_as
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
-from multibot_rewrite.graph.expectation import Expectation, expect, named_frames, vacuous
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedTopic,
+    expect,
+    named_frames,
+    vacuous,
+)
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import Naming, Policy, make_naming
+from multibot_rewrite.remap.bridged_topics import bridged_topics
 from multibot_rewrite.remap.node_library import with_included
 from multibot_rewrite.remap.nodl.facts import KnownNodes, nodes_of
 from multibot_rewrite.remap.nodl.lookup import find_interfaces
@@ -38,7 +46,7 @@ class Fleet(NamedTuple):
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
-    ``gaps`` what is open in the robots."""
+    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -50,6 +58,7 @@ class Fleet(NamedTuple):
     tags: dict[str, str]
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
+    bridged: tuple[PlannedTopic, ...] = ()
 
 
 def make_fleet(
@@ -89,7 +98,10 @@ def make_fleet(
     members = [member(it, it.data, it.robot) for it in found]
     fleet = assemble(members, runs.nodes, make_naming(**policy), release)
     table = with_meetings(fleet.table, members, fleet.naming)
-    return fleet._replace(table=table._replace(problems=(*table.problems, *runs.findings)))
+    table = table._replace(problems=(*table.problems, *runs.findings))
+    topics, _ = bridged_topics(fleet.inventories, fleet.naming)
+    own = topics if any(it.robot for it in topics) else ()
+    return fleet._replace(table=table, bridged=bridged_as(own))
 
 
 def facts_of(
@@ -223,4 +235,4 @@ def expected(fleet: Fleet) -> Expectation:
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
-    return plan._replace(release=fleet.table.release, gaps=fleet.gaps)
+    return plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)

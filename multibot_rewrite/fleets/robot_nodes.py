@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_records import LaunchOrder
+from multibot_rewrite.evidence.launched import without_robot
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.evidence.spawners import Spawned
@@ -47,7 +48,8 @@ def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> R
     Raises InputError for a parameter file that cannot be read.
     """
     parameters = load_known_nodes(file.parameters, file.distro)
-    own = tuple(given_nodes(params_of(spec).values(), parameters))
+    read = given_nodes(params_of(spec).values(), parameters)
+    own = tuple(without_robot(it, spec.words) for it in read)
     known, stack = _known(own, file), stack_nodes(spec, file)
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)

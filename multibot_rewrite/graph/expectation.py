@@ -61,13 +61,16 @@ class PlannedTopic(NamedTuple):
 
     ``senders`` are patterns of the nodes that may publish it, empty where any may; with
     ``one_sender`` only one node at a time does. ``qos`` are policies with the word that each publisher
-    offers, both as in ``snapshot.Qos``.
+    offers, both as in ``snapshot.Qos``. ``bridge`` is what a ros_gz_bridge does with it: publishes,
+    subscribes, both, or nothing; ``type`` is its type then.
     """
 
     name: str
     senders: tuple[str, ...] = ()
     one_sender: bool = False
     qos: tuple[tuple[str, str], ...] = ()
+    bridge: tuple[str, ...] = ()
+    type: str = ""
 
 
 class Expectation(NamedTuple):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from sys import intern
 from typing import Any
 
@@ -17,12 +17,12 @@ from multibot_rewrite.graph.expectation import (
 from multibot_rewrite.graph.plan_gaps import gap_value, read_gaps
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
-from multibot_rewrite.remap.records import KINDS, ROLES
+from multibot_rewrite.remap.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
 from multibot_rewrite.remap.yaml_with_lines import unknown
 
 KEYS = ("layout", "shared_nodes", "shared_topics", "shared_frames", "robots")
 ROBOT_KEYS = ("tf", "frames", "nodes")
-TOPIC_KEYS = ("senders", "one_sender", "qos")
+TOPIC_KEYS = ("senders", "one_sender", "qos", "bridge", "type")
 # Policies whose value is a word.
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
@@ -75,7 +75,7 @@ def _robot_value(robot: PlannedRobot, rows: Rows) -> dict[str, object]:
 
 
 def _topic_value(topic: PlannedTopic) -> dict[str, object]:
-    given = {"senders": topic.senders, "one_sender": topic.one_sender, "qos": dict(topic.qos)}
+    given = {key: getattr(topic, key) for key in TOPIC_KEYS} | {"qos": dict(topic.qos)}
     return {key: value for key, value in given.items() if value}
 
 
@@ -151,21 +151,37 @@ def _read_nodes(given: object, place: str) -> tuple[tuple[str, ...], list[Planne
 
 def _read_topics(given: object, file: str) -> Iterator[PlannedTopic]:
     for name, value in _mapping(given or {}, (), file, "topics").items():
-        what = f"topics.{name}"
-        topic = _mapping(value, (), file, what)
-        _known(topic, TOPIC_KEYS, f"{file}: {what}")
-        qos = _mapping(topic.get("qos", {}), (), file, f"{what}.qos")
-        _known(qos, QOS_KEYS, f"{file}: {what}.qos")
-        one = topic.get("one_sender", False)
-        if not isinstance(one, bool) or not all(isinstance(it, str) for it in qos.values()):
-            wrong = "one_sender" if not isinstance(one, bool) else "qos"
-            raise InputError(f"{file}: {what}.{wrong}: write {_FORMS[wrong]}")
-        senders = _texts(topic.get("senders", []), f"{file}: {what}.senders")
-        words = tuple((policy, word.upper()) for policy, word in qos.items())
-        yield PlannedTopic(_full_name(name, f"{file}: topics"), senders, one, words)
+        place = f"{file}: topics.{name}"
+        topic = _mapping(value, (), file, f"topics.{name}")
+        _known(topic, TOPIC_KEYS, place)
+        qos = topic.get("qos", {})
+        for key, right in _RIGHT.items():
+            if key in topic and not right(topic[key]):
+                raise InputError(f"{place}.{key}: write {_FORMS[key]}")
+        _known(qos, QOS_KEYS, f"{place}.qos")
+        yield PlannedTopic(
+            _full_name(name, f"{file}: topics"),
+            _texts(topic.get("senders", []), f"{place}.senders"),
+            topic.get("one_sender", False),
+            tuple((policy, word.upper()) for policy, word in qos.items()),
+            tuple(topic.get("bridge", ())),
+            topic.get("type", ""),
+        )
 
 
-_FORMS = {"one_sender": "true or false", "qos": "words, as {durability: transient_local}"}
+_ENDS = [[PUBLISHES], [SUBSCRIBES], [PUBLISHES, SUBSCRIBES]]
+_RIGHT: Mapping[str, Callable[[Any], bool]] = {
+    "one_sender": lambda it: isinstance(it, bool),
+    "qos": lambda it: isinstance(it, dict) and all(isinstance(word, str) for word in it.values()),
+    "bridge": lambda it: it in _ENDS,
+    "type": lambda it: isinstance(it, str),
+}
+_FORMS = {
+    "one_sender": "true or false",
+    "qos": "words, as {durability: transient_local}",
+    "bridge": "[publishes], [subscribes] or both",
+    "type": "a type, as sensor_msgs/msg/LaserScan",
+}
 
 
 def _known(given: Mapping[str, Any], keys: tuple[str, ...], place: str) -> None:

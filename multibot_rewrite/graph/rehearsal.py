@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedTopic
 from multibot_rewrite.graph.transforms import Edge, Edges
 from multibot_rewrite.remap.applied_rules import (
     RunningNode,
@@ -100,6 +100,17 @@ def stub_nodes(
         )
 
 
+def bridge_stub(topics: Iterable[PlannedTopic]) -> Iterator[tuple[str, StubNode]]:
+    """The bridge to a simulator that a plan needs, if it needs one."""
+    rows = [
+        StubEndpoint(TOPIC, role, topic.name, topic.type, False)
+        for topic in topics
+        for role in topic.bridge
+    ]
+    if rows:
+        yield "", StubNode("ros_gz_bridge", (), (), tuple(rows), ())
+
+
 def _as_started(node: NodeTable, host: str | None) -> tuple[str, str]:
     """The namespace and the other name that a node is given; ``host`` is the namespace of its host.
 
@@ -144,7 +155,8 @@ def split_over_processes(nodes: Iterable[tuple[str, StubNode]]) -> list[list[Stu
 def with_substitutes(plan: Expectation, replaced: Mapping[str, str]) -> Expectation:
     """The plan with the types that replace others; an action without its type becomes its parts."""
     endpoints = [end for planned in plan.endpoints for end in _substituted(planned, replaced)]
-    return plan._replace(endpoints=tuple(endpoints))
+    topics = (it._replace(type=replaced.get(it.type, it.type)) for it in plan.topics)
+    return plan._replace(endpoints=tuple(endpoints), topics=tuple(topics))
 
 
 def _substituted(

@@ -179,3 +179,22 @@ def test_a_line_of_ros2_run_has_package_and_executable() -> None:
     )
     assert ros2_run(["ros2", "service", "call", "/a", "b"]) is None
     assert ros2_run(["ros2", "run", "acme"]) is None
+
+
+def test_a_node_in_the_namespace_of_a_robot_is_that_robots_alone() -> None:
+    """Usually one RViz and one bridge serve all robots; a launch file may start one for each."""
+    own = started("ros_gz_bridge", "parameter_bridge", "gz", namespace="/robot1")
+    assert runs(launched(own))["gz"].shared is False
+    outside = started("ros_gz_bridge", "parameter_bridge", "gz", namespace="/gazebo")
+    assert runs(launched(outside))["gazebo/gz"].shared is True
+
+
+def test_the_nodes_are_all_known_where_only_a_parameter_file_is_not() -> None:
+    note = LaunchNote(AT, "the parameter file 'p.yaml' is not there", parameters=True)
+    found = launched(AMCL, stacks=("robot_localization",), notes=(note,))
+    assert set(runs(found)) == {"amcl", PUBLISHER}
+    assert sorted(it.code for it in found.findings) == ["MF821", "MF823"]
+    assert "without what the file sets" in " ".join(it.hint for it in found.findings)
+    graph = LaunchGraph((AMCL,), (note,))
+    assert graph_of(to_json(graph)) == graph
+    assert graph.whole

@@ -14,6 +14,7 @@ from fleet_folder import SMALL, fleet_folder, mixed
 from lxml import etree
 
 from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.fleet import expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
@@ -32,6 +33,22 @@ def made(folder: Path, text: str, **files: str) -> dict[str, str]:
 def fleet(request: pytest.FixtureRequest, tmp_path: Path) -> tuple[str, dict[str, str]]:
     layout, affix = request.param
     return layout, made(tmp_path, mixed(layout, affix))
+
+
+def test_a_section_in_the_namespace_of_its_robot_is_for_that_robot(tmp_path: Path) -> None:
+    """Clearpath's generators write the sections of controllers below the robot's namespace."""
+    section = "{ros__parameters: {base: {type: diff_drive_controller/DiffDriveController}}}"
+    text = f"/r1:\n  controller_manager: {section}\n  base: {{ros__parameters: {{rate: 1}}}}\n"
+    robot = "{name: r1, description: base.urdf, companions: {params: own.yaml}}"
+    folder = fleet_folder(
+        tmp_path,
+        f"layout: L1\nstack: ros2_control\nrobots: [{robot}]\n",
+        base__urdf="<robot name='r'><link name='base_link'/></robot>",
+        own__yaml=text,
+    )
+    plan = expected(plan_fleet(read_fleet(str(folder), "", {})).fleet)
+    assert {"/r1/controller_manager", "/r1/base"} <= {*plan.robots[0].nodes}
+    assert [it for it in plan.robots[0].nodes if it.startswith("/r1/r1")] == []
 
 
 def spell(layout: str, name: str, word: str, separator: str = "/") -> str:

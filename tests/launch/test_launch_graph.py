@@ -141,7 +141,8 @@ def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
         OpaqueFunction(function=lambda context: [Node(package="acme", executable="f")]),
         TimerAction(period=5.0, actions=[Node(package="acme", executable="t")]),
         RegisterEventHandler(OnProcessExit(on_exit=[Node(package="acme", executable="e")])),
-        RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: [])),
+        RegisterEventHandler(OnProcessIO(on_stdout=lambda event: None)),
+        RegisterEventHandler(OnShutdown(on_shutdown=[Node(package="acme", executable="end")])),
         LifecycleNode(package="acme", executable="l", name="l", namespace=""),
         ExecuteProcess(cmd=["ros2 run acme r", "--ros-args", "-r", "__node:=n", "-r", "a:=b"]),
         ExecuteProcess(cmd=["rm", "-rf", "build"]),""",
@@ -156,6 +157,14 @@ def test_functions_run_and_what_starts_later_says_so(tmp_path: Path) -> None:
     assert (graph.nodes[-1].name, graph.nodes[-1].remappings) == ("n", (("a", "b"),))
     (note,) = graph.notes
     assert (note.place.line, "run time" in note.message) == (NAMES + 4, True)
+
+
+@in_launch
+def test_a_node_without_its_parameter_file_is_known(tmp_path: Path) -> None:
+    """launch_ros warns of the file and starts the node (``_perform_substitutions`` of Node)."""
+    graph = read(tmp_path, 'Node(package="acme", executable="d", parameters=["none.yaml"]),')
+    assert [it.executable for it in graph.nodes] == ["d"]
+    assert ([it.parameters for it in graph.notes], graph.whole) == ([True], True)
 
 
 @in_launch

@@ -88,7 +88,16 @@ def as_planned(plan: Expectation) -> Snapshot:
     ]
     nodes = [GraphNode(node, "") for robot in plan.robots for node in robot.nodes]
     edges = [edge for robot in plan.robots for edge in robot_edges(robot)]
+    ends += bridge(plan)
     return sent(Snapshot(tuple(nodes), tuple(ends), tuple(edges), environment()))
+
+
+def bridge(plan: Expectation) -> Iterable[GraphEndpoint]:
+    """The ends of a bridge that carries what the plan has for it."""
+    for topic in plan.topics:
+        for role in topic.bridge:
+            node = "/ros_gz_bridge"
+            yield GraphEndpoint(TOPIC, role, topic.name, topic.type, "", node, None, "")
 
 
 def robot_edges(robot: PlannedRobot) -> Iterator[GraphFrame]:

@@ -9,6 +9,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     shared topic NAME, shared frame NAME    what all robots use
     topic NAME from NODES [QOS ...]     who may publish a topic, and what they offer
     topic NAME from one node            only one node at a time publishes it
+    topic NAME over a bridge that ROLE TYPE     what a ros_gz_bridge has to do
     one of NODES                        one of these nodes runs
     transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
 
@@ -45,6 +46,7 @@ FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
 TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
+BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S+)")
 ONE_OF = re.compile(r"one of (.+)")
 ROBOT = re.compile(r"robot\d+")
 PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
@@ -80,7 +82,9 @@ def read_danger(text: str) -> tuple[Snapshot, Owners]:
 
 
 def _is_known(line: str) -> bool:
-    return any(it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, ONE_OF))
+    return any(
+        it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, BRIDGED, ONE_OF)
+    )
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -107,7 +111,13 @@ def read_plan(lines: list[str]) -> Expectation:
         tuple(shared["topic"]),
         tuple(shared["frame"]),
         tuple(_planned_endpoint(*words[:4]) for words in _words(NODE, lines) if words[1]),
-        topics=tuple(_planned_topic(*words) for words in _words(TOPIC_OF, lines)),
+        topics=(
+            *(_planned_topic(*words) for words in _words(TOPIC_OF, lines)),
+            *(
+                PlannedTopic(name, bridge=(role,), type=type_)
+                for name, role, type_ in _words(BRIDGED, lines)
+            ),
+        ),
         one_of=tuple(tuple(words[0].split(", ")) for words in _words(ONE_OF, lines)),
     )
 

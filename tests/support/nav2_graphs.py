@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from graph_cases import bridge
 from paths import ROBOTS
 
 from multibot_rewrite.cli import multibot
@@ -105,7 +106,7 @@ def healthy(plan: Expectation) -> Snapshot:
     frames = (frame for robot in plan.robots for frame in _chain(robot))
     return Snapshot(
         tuple(GraphNode(node, node) for node in nodes),
-        (*planned, *usual),
+        (*planned, *usual, *bridge(plan)),
         tuple(frames),
         environment(),
     )

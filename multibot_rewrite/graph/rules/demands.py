@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedTopic
+from multibot_rewrite.graph.rules.causes import DOES
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+
+# How the nodes of ros_gz_bridge are called.
+_BRIDGES = ("bridge", "parameter_bridge")
 
 
 @graph_rule(
@@ -154,8 +159,7 @@ def no_alternative_runs(view: View) -> Iterator[Finding]:
     """A robot of which nothing runs has a finding of its own."""
     for group in view.plan.one_of:
         robot = _robot_of(view, group)
-        absent = robot and view.seen.keys().isdisjoint(view.robots[robot].nodes)
-        if not absent and view.seen.keys().isdisjoint(group):
+        if not (robot and _absent(view, robot)) and view.seen.keys().isdisjoint(group):
             message = f"none of {shorten(group, SEVERAL)} is in the graph; the plan has one of them"
             yield no_alternative_runs.finding(
                 message, "start one of them", robot=robot, names=group
@@ -190,6 +194,81 @@ def several_alternatives_run(view: View) -> Iterator[Finding]:
             hint = f"stop {shorten(running[1:], SEVERAL)}"
             about = {"robot": _robot_of(view, group), "node": running[0], "names": tuple(running)}
             yield several_alternatives_run.finding(message, hint, **about)
+
+
+@graph_rule(
+    "MG126",
+    "bridged-topic-missing",
+    ERROR,
+    absence=True,
+    drawn="missing",
+    what="A topic that a ros_gz_bridge has to carry has no publisher (GZ_TO_ROS) or no subscription"
+    " (ROS_TO_GZ) of its type. It is a warning where nothing at all is bridged: robots may be real.",
+    why="The simulated robot does not move, or its sensor is never seen: `/robot2/cmd_vel` is"
+    " published, and nobody passes it on to the simulator.",
+    fix="Start a bridge with the file that `multibot build` wrote for the robot, or add the row to"
+    " yours. For real robots remove the topics from the plan.",
+    bad="""\
+planned: topic /robot1/scan over a bridge that publishes sensor_msgs/msg/LaserScan
+planned: topic /robot1/cmd_vel over a bridge that subscribes geometry_msgs/msg/Twist
+as planned: /robot1/robot_state_publisher
+running: /robot1/ros_gz_bridge publishes /robot1/scan sensor_msgs/msg/LaserScan
+""",
+    good="""\
+planned: topic /robot1/scan over a bridge that publishes sensor_msgs/msg/LaserScan
+planned: topic /robot1/cmd_vel over a bridge that subscribes geometry_msgs/msg/Twist
+as planned: /robot1/robot_state_publisher
+running: /robot1/ros_gz_bridge publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: /robot1/ros_gz_bridge subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    line=2,
+)
+def bridged_topic_missing(view: View) -> Iterator[Finding]:
+    """One finding for a robot; one for all where nothing is bridged."""
+    rows = [(topic, role) for topic in view.plan.topics for role in topic.bridge]
+    missing = [(topic, role) for topic, role in rows if not _is_carried(view, topic, role)]
+    if missing and len(missing) == len(rows):
+        running = not all(_absent(view, it.name) for it in view.plan.robots)
+        yield from [_not_carried(view, "", missing, WARNING)] * running
+        return
+    by_robot: dict[str, list[tuple[PlannedTopic, str]]] = defaultdict(list)
+    for topic, role in missing:
+        by_robot[view.ownership.robot(topic.name)].append((topic, role))
+    for robot, own in by_robot.items():
+        if not (robot and _absent(view, robot)):
+            yield _not_carried(view, robot, own, ERROR)
+
+
+def _absent(view: View, robot: str) -> bool:
+    """A robot of which nothing runs has a finding of its own."""
+    return view.seen.keys().isdisjoint(view.robots[robot].nodes)
+
+
+def _is_carried(view: View, topic: PlannedTopic, role: str) -> bool:
+    """Whether anything does with a topic what a bridge has to do."""
+    ends = (it for it in view.by_name.get(topic.name, ()) if (it.kind, it.role) == (TOPIC, role))
+    return any(topic.type in ("", it.type) for it in ends)
+
+
+def _not_carried(
+    view: View, robot: str, rows: Sequence[tuple[PlannedTopic, str]], level: str
+) -> Finding:
+    topic, role = rows[0]
+    more = f"; so it is with {len(rows) - 1} more of the bridge" if len(rows) > 1 else ""
+    type_ = f" with the type {topic.type}" if topic.type else ""
+    verb = DOES[role]
+    message = f"nothing {verb} {topic.name}{type_}, which a ros_gz_bridge has to carry{more}"
+    names = tuple(dict.fromkeys(it.name for it, _ in rows))
+    hint = f"{_bridges_there(view, robot)}; for a real robot remove it from topics of the plan"
+    return bridged_topic_missing.finding(message, hint, level=level, robot=robot, names=names)
+
+
+def _bridges_there(view: View, robot: str) -> str:
+    bridges = [it for it in view.seen if it.rpartition("/")[2].endswith(_BRIDGES)]
+    own = [it for it in bridges if view.ownership.robot(it) == robot] or bridges
+    if not own:
+        return "no ros_gz_bridge is in the graph: start one with the robot's bridge.yaml"
+    return f"add the row to the file of {shorten(own)}"
 
 
 def _robot_of(view: View, nodes: Iterable[str]) -> str:

@@ -38,9 +38,9 @@ class Visit(NamedTuple):
     place: Place
     later: str = ""
 
-    def note(self, message: str) -> None:
-        """Keep what is not known here."""
-        self.notes.append(LaunchNote(self.place, message))
+    def note(self, message: str, parameters: bool = False) -> None:
+        """Keep what is not known here: nodes, or only ``parameters`` of one."""
+        self.notes.append(LaunchNote(self.place, message, parameters))
 
 
 def failure(error: BaseException) -> str:
@@ -174,7 +174,7 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
     except Exception as error:
         # A value may be the output of a program, such as a description: no name is in it.
         if not isinstance(given, dict):
-            here.note(f"a parameter file is not known: {failure(error)}")
+            here.note(f"a parameter file is not known: {failure(error)}", parameters=True)
         return
     if isinstance(found, dict):
         yield _values(found)
@@ -210,7 +210,7 @@ def _given(
 
 def _file(path: str, here: Visit) -> Iterator[ParameterText]:
     if not os.path.isfile(path) or os.path.getsize(path) > _LIMIT:
-        here.note(f"the parameter file {path!r} is not there")
+        here.note(f"the parameter file {path!r} is not there", parameters=True)
         return
     source = source_of(path, here.context)
     with open(path, encoding="utf-8", errors="replace") as file:

@@ -125,6 +125,8 @@ def _later(entity: Any, seen: Visit) -> Iterable[Any] | None:
         return None
     timer = _is(entity, "TimerAction")
     handler = entity if timer else entity.event_handler
+    if _is(handler, "OnShutdown"):
+        return None
     actions = entity.actions if timer else _flat(handler.describe()[1])
     word = "after a time" if timer else f"at an event ({type(handler).__name__})"
     if not timer and not actions:

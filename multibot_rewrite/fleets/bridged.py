@@ -1,0 +1,31 @@
+"""What a ros_gz_bridge has to carry, as what a plan says of topics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from multibot_rewrite.graph.expectation import PlannedTopic
+from multibot_rewrite.remap.bridged_topics import BridgedTopic
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
+
+# With nothing said, a row goes both ways.
+BOTH = (PUBLISHES, SUBSCRIBES)
+_ROLES = {"GZ_TO_ROS": (PUBLISHES,), "ROS_TO_GZ": (SUBSCRIBES,)}
+
+
+def bridged_as(topics: Iterable[BridgedTopic]) -> tuple[PlannedTopic, ...]:
+    """The topics that descriptions have, each once."""
+    return once(
+        PlannedTopic(it.ros, bridge=_ROLES.get(it.direction, BOTH), type=it.ros_type)
+        for it in topics
+    )
+
+
+def once(topics: Iterable[PlannedTopic]) -> tuple[PlannedTopic, ...]:
+    """Each topic once, with all that a bridge does with it."""
+    found: dict[str, PlannedTopic] = {}
+    for topic in topics:
+        first = found.setdefault(topic.name, topic)
+        roles = tuple(it for it in BOTH if it in {*first.bridge, *topic.bridge})
+        found[topic.name] = first._replace(bridge=roles)
+    return tuple(found.values())
