@@ -72,10 +72,10 @@ def _check_suggest(options: argparse.Namespace) -> None:
 
 
 def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
-    findings = chosen(options, seen.findings)
-    failed = _report(options, seen, findings)
     for line in survey(seen):
         note(options, line)
+    findings = chosen(options, seen.findings)
+    failed = _report(options, seen, findings)
     caveats = doubts(seen.graph)
     for caveat in caveats:
         say(f"incomplete: {caveat.message}", PROGRAM)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.graph.dangers import words
+from multibot_rewrite.graph.dangers.names import alike
 from multibot_rewrite.graph.dangers.seen import (
     Ends,
     Seen,
     and_then,
     at_work,
+    is_viewer,
     last_word,
     nodes_of,
     robots_of,
@@ -61,6 +63,59 @@ def command_for_several_robots(seen: Seen) -> Iterator[Finding]:
             message = f"{and_then(robots)} all obey {name}: {shorten(nodes)}"
             cause = own_namespace(seen, name, robots[0])
             yield command_for_several_robots.finding(message, cause, node=nodes[0], names=(name,))
+
+
+@danger_rule(
+    "MG308",
+    "command-to-nobody",
+    ERROR,
+    absence=True,
+    drawn="leak",
+    what="A node sends velocities, a goal or a start pose that no node reads, while robots obey nearly"
+    " the same name.",
+    why="The joystick does nothing, RViz's goal is ignored, and there is no error message.",
+    fix="Start the sender in the robot's namespace, or pass the remap rule of the hint.",
+    bad="""\
+running: /joystick publishes /cmd_vel geometry_msgs/msg/Twist
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+    good="""\
+running: /joystick publishes /joy_vel geometry_msgs/msg/Twist
+running: /robot1/twist_mux subscribes /joy_vel geometry_msgs/msg/Twist
+running: /robot1/driver subscribes /robot1/cmd_vel geometry_msgs/msg/Twist
+running: /robot1/controller_server publishes /robot1/cmd_vel geometry_msgs/msg/Twist
+""",
+)
+def command_to_nobody(seen: Seen) -> Iterator[Finding]:
+    """Where the other name has no sender, its reader is the finding; what RViz offers is a note."""
+    obeyed = {
+        name: ends
+        for (kind, name), ends in seen.names.items()
+        if kind == TOPIC and ends.publishers and at_work(ends.subscribers)
+    }
+    for (kind, name), ends in seen.names.items():
+        plain = seen.plain(name)
+        order = words.moves(plain, ends.type) or words.is_pose_order(plain, ends.type)
+        if kind != TOPIC or not order or not ends.publishers or at_work(ends.subscribers):
+            continue
+        same = [it for it, other in obeyed.items() if other.type == ends.type]
+        robots = [it for it in same if seen.plain(it) == name]
+        meant = next(iter(robots), "") or alike(name, same, ends.type)
+        if meant:
+            yield _unread(seen, ends, meant, len(robots))
+
+
+def _unread(seen: Seen, ends: Ends, meant: str, robots: int) -> Finding:
+    node = nodes_of(ends.publishers)[0]
+    reader = nodes_of(at_work(seen.names[TOPIC, meant].subscribers))[0]
+    message = f"publishes {ends.name}, which nobody reads; {reader} reads {meant}"
+    several = f" (or that of another of the {robots} robots)" if robots > 1 else ""
+    cause = f"start it in the robot's namespace, or pass the rule {ends.name}:={meant}{several}"
+    level = NOTE if is_viewer(node) else ERROR
+    return command_to_nobody.finding(
+        message, cause, level=level, robot=seen.robot(node), node=node, names=(ends.name, meant)
+    )
 
 
 @danger_rule(

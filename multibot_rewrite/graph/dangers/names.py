@@ -8,11 +8,13 @@ from collections.abc import Callable, Iterable, Iterator
 from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.graph.dangers.seen import (
     EVERYBODYS,
+    TF,
     Ends,
     Seen,
     and_then,
     is_viewer,
     nodes_of,
+    robots_of,
 )
 from multibot_rewrite.graph.rules.causes import in_namespaces_above
 from multibot_rewrite.graph.rules.declaration import danger_rule
@@ -57,7 +59,7 @@ def topic_names_miss(seen: Seen) -> Iterator[Finding]:
     }
     unheard = {name: it for name, it in published.items() if not it.subscribers}
     for (kind, name), ends in seen.names.items():
-        if kind != TOPIC or ends.publishers or name in EVERYBODYS:
+        if kind != TOPIC or ends.publishers or name in EVERYBODYS or ends.type == TF:
             continue
         for end in _each_node(ends.subscribers):
             if is_viewer(end.node):
@@ -84,9 +86,10 @@ def _published_instead(
         # Its own robot has it: whether or not others read it as well.
         own = [it for it in published if seen.robot(it) == robot and seen.plain(it) == end.name]
         return next((it for it in own if published[it].type == end.type), "")
-    same = {name: it for name, it in unheard.items() if it.type == end.type}
-    bare = [it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name)]
-    return next(iter(bare), "") or alike(end.name, same, end.type)
+    same = [name for name, it in published.items() if it.type == end.type]
+    bare = (it for it in same if owner and not seen.robot(it) and it == seen.plain(end.name))
+    unread = (it for it in bare if it in unheard)
+    return next(unread, "") or alike(end.name, same, end.type)
 
 
 def alike(name: str, known: Iterable[str], type_: str) -> str:
@@ -102,7 +105,8 @@ def alike(name: str, known: Iterable[str], type_: str) -> str:
     parts = name.split("/")
     for at in (1, len(parts) - 1):
         near = dict(_with_other_word(parts, at, names))
-        found = nearest(parts[at], near, MISTYPED)
+        swapped = (it for it in near if sorted(it) == sorted(parts[at]))
+        found = next(swapped, "") or nearest(parts[at], near, MISTYPED)
         if found:
             return near[found]
     return ""
@@ -201,7 +205,7 @@ def _served_instead(seen: Seen, end: GraphEndpoint) -> str:
     "MG305",
     "service-of-two-nodes",
     ERROR,
-    what="Several nodes serve a service or action of the same name.",
+    what="Nodes of several robots serve a service of the same name, or several nodes the same action.",
     why="A request is answered by any of them, and a goal reaches all: two robots drive to it.",
     fix="Use a relative name, or a remap rule, so that each robot has its own.",
     bad="""\
@@ -214,10 +218,11 @@ running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/N
 """,
 )
 def service_of_two_nodes(seen: Seen) -> Iterator[Finding]:
-    """Of two nodes with one name the nodes are the finding."""
+    """Of two nodes with one name the nodes are the finding; two filters of robot_localization in one
+    robot both serve `set_pose`, which is how they are made."""
     for (kind, name), ends in seen.names.items():
         nodes = nodes_of(ends.servers)
-        if len(nodes) > 1:
+        if len(nodes) > 1 and (kind == ACTION or len(robots_of(seen, nodes)) > 1):
             what = "action" if kind == ACTION else SERVICE
             message = f"{and_then(nodes)} both serve the {what} {name}"
             cause = "an absolute name in their code or parameters: make it relative, or remap it"

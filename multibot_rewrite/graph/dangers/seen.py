@@ -19,6 +19,7 @@ VIEWERS = (
 )  # fmt: skip
 _VIEWER = re.compile("|".join(map(translate, VIEWERS)))
 # Names that every node has or may have, whatever it does.
+TF = "tf2_msgs/msg/TFMessage"
 EVERYBODYS = ("/rosout", "/parameter_events", "/diagnostics", "/diagnostics_agg", "/bond", "/clock")
 
 
@@ -58,6 +59,7 @@ class Tree(NamedTuple):
     """The transforms on a tf topic and its tf_static; ``topic`` is the tf topic.
 
     ``senders`` are the nodes that publish there: a transform does not say which of them sent it.
+    ``listeners`` subscribe to the tf topic.
     """
 
     topic: str
@@ -103,7 +105,7 @@ def _trees(graph: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
     topics: dict[str, list[Ends]] = defaultdict(list)
     edges: dict[str, list[GraphFrame]] = defaultdict(list)
     for ends in names:
-        if ends.type == "tf2_msgs/msg/TFMessage":
+        if ends.type == TF:
             topics[tree_topic(ends.name)].append(ends)
     for frame in graph.frames:
         edges[tree_topic(frame.topic)].append(frame)
@@ -111,7 +113,7 @@ def _trees(graph: Snapshot, names: Iterable[Ends]) -> Iterator[Tree]:
         own = topics.get(topic, ())
         heard = (node for frame in edges.get(topic, ()) for node in frame.publishers)
         senders = (*(end.node for it in own for end in it.publishers), *heard)
-        listeners = (end.node for it in own for end in it.subscribers)
+        listeners = (end.node for it in own if it.name == topic for end in it.subscribers)
         yield Tree(topic, tuple(edges.get(topic, ())), unique(senders), unique(listeners))
 
 

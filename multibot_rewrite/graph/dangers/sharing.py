@@ -8,6 +8,7 @@ from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.dangers import words
 from multibot_rewrite.graph.dangers.seen import (
     EVERYBODYS,
+    TF,
     Ends,
     Seen,
     and_then,
@@ -19,8 +20,6 @@ from multibot_rewrite.graph.dangers.seen import (
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.wording import shorten
 from multibot_rewrite.remap.records import TOPIC
-
-TF = "tf2_msgs/msg/TFMessage"
 
 
 def own_namespace(seen: Seen, name: str, robot: str) -> str:

@@ -125,7 +125,8 @@ def tf_tree_in_pieces(seen: Seen) -> Iterator[Finding]:
                 if plain[it] in bases and seen.owners.frames.get(it, "") == robot
             ]
             roots = {root_of(it, above) for it in own}
-            if not own or root_of(odom, above) in roots:
+            # In a circle there is no root.
+            if not own or root_of(odom, above) in {*roots, *above}:
                 continue
             found = next(iter(roots))
             message = (

@@ -102,7 +102,12 @@ def robots_frames_collide(seen: Seen) -> Iterator[Finding]:
         named = {seen.owners.frames.get(edge.child, "") for edge in tree.edges}
         nameless = [robot for robot in robots if robot not in named]
         doubled = {seen.owners.plain_frames.get(it, "") for it in _named_frames(seen, tree)}
-        both = bare and (len(nameless) > 1 or (len(robots) > 1 and doubled & set(bare)))
+        # Who sends on another robot's topic is a finding of its own.
+        both = (
+            bare
+            and not seen.robot(tree.topic)
+            and (len(nameless) > 1 or (not nameless and doubled & set(bare)))
+        )
         if not both and not (bare and twice):
             continue
         listed = shorten(bare, SEVERAL)
@@ -113,7 +118,7 @@ def robots_frames_collide(seen: Seen) -> Iterator[Finding]:
             )
         else:
             message = f"two nodes of one name send the same frames on {tree.topic}: {listed}"
-        cause = _either(seen, tree, robots)
+        cause = _either(tree, robots)
         yield robots_frames_collide.finding(message, cause, names=tuple(bare))
 
 
@@ -129,17 +134,16 @@ def _bare_frames(seen: Seen, tree: Tree) -> list[str]:
 
 
 def _named_frames(seen: Seen, tree: Tree) -> Iterator[str]:
-    return (edge.child for edge in tree.edges if seen.owners.frames.get(edge.child))
+    frames = (it for edge in tree.edges for it in (edge.child, edge.parent))
+    return (it for it in frames if seen.owners.frames.get(it))
 
 
-def _either(seen: Seen, tree: Tree, robots: Sequence[str]) -> str:
+def _either(tree: Tree, robots: Sequence[str]) -> str:
     namespaced = any(node.startswith(f"/{robot}/") for robot in robots for node in tree.senders)
-    if namespaced:
-        own = "-r /tf:=tf -r /tf_static:=tf_static for every node of a robot"
-    else:
-        own = "a namespace for each robot, with -r /tf:=tf -r /tf_static:=tf_static"
+    rules = "pass -r /tf:=tf -r /tf_static:=tf_static to every node of a robot"
+    own = rules if namespaced else f"give each robot a namespace and {rules}"
     senders = shorten(tree.senders, SEVERAL)
-    return f"{own}, or frames with the robot's name (urdf-postfix). Senders: {senders}"
+    return f"{own}, or put its name into its frames (urdf-postfix); the senders are {senders}"
 
 
 @danger_rule(

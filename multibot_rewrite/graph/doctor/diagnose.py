@@ -9,7 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.check import inconclusive_where_in_doubt
 from multibot_rewrite.graph.dangers.find import find_dangers
-from multibot_rewrite.graph.dangers.seen import Owners
+from multibot_rewrite.graph.dangers.seen import TF, Owners
 from multibot_rewrite.graph.doctor.robots import GuessedRobot, guess_robots, owners_of
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import Snapshot
@@ -17,8 +17,6 @@ from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
-
-TF = "tf2_msgs/msg/TFMessage"
 
 
 class Diagnosis(NamedTuple):

@@ -41,12 +41,16 @@ _NUMBER = re.compile(r"\d+")
 
 class GuessedRobot(NamedTuple):
     """A robot as it shows: its name, its namespace (empty without one), its word in frames with its
-    separator: ``robot1/`` before a frame, ``/robot1`` behind it, empty without one."""
+    separator: ``robot1/`` before a frame, ``/robot1`` behind it, empty without one.
+
+    ``only_frames``: topics and nodes have no word for it, whatever theirs are called.
+    """
 
     name: str
     namespace: str
     before: str = ""
     behind: str = ""
+    only_frames: bool = False
 
 
 def guess_robots(graph: Snapshot) -> tuple[GuessedRobot, ...]:
@@ -134,7 +138,7 @@ def _by_frames(frames: Iterable[str]) -> Iterator[GuessedRobot]:
         (separator, first), words = max(several.items(), key=lambda it: len(it[1]))
         for word in sorted(words):
             before, behind = (word + separator, "") if first else ("", separator + word)
-            yield GuessedRobot(word, "", before, behind)
+            yield GuessedRobot(word, "", before, behind, True)
 
 
 def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:
@@ -152,7 +156,9 @@ def with_frames(robot: GuessedRobot, frames: Iterable[str]) -> GuessedRobot:
 def owners_of(graph: Snapshot, robots: Iterable[GuessedRobot]) -> Owners:
     """Whose each name of the graph is."""
     known = tuple(robots)
-    by_word = {it.namespace or it.name: it for it in known} | {it.name: it for it in known}
+    there = [it for it in known if not it.only_frames]
+    by_word = {it.namespace or it.name: it for it in there}
+    by_word |= {it.name: it for it in there}
     ends = (name for end in graph.endpoints for name in (end.name, end.node))
     senders = (node for edge in graph.frames for node in (*edge.publishers, edge.topic))
     names = unique((*(node.name for node in graph.nodes), *ends, *senders))

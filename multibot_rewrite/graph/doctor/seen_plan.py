@@ -25,8 +25,7 @@ _PARAMETERS = ("rcl_interfaces/", "type_description_interfaces/")
 def seen_plan(seen: Diagnosis) -> Expectation:
     """The plan: all nodes but tools, all names but what every node has."""
     nodes = unique(node.name for node in seen.graph.nodes if not is_tool(node.name))
-    robots = seen.robots or (NAMELESS,)
-    planned = tuple(_robot(seen, robot, nodes) for robot in robots)
+    planned = tuple(_robot(seen, robot, nodes) for robot in robots_to_plan(seen))
     planned = tuple(robot for robot in planned if robot.nodes)
     owned = {node for robot in planned for node in robot.nodes}
     shared = tuple(node for node in nodes if node not in owned)
@@ -43,6 +42,11 @@ def seen_plan(seen: Diagnosis) -> Expectation:
     )
 
 
+def robots_to_plan(seen: Diagnosis) -> tuple[GuessedRobot, ...]:
+    """The robots that nodes belong to; one for all nodes where no node shows whose it is."""
+    return tuple(it for it in seen.robots if not it.only_frames) or (NAMELESS,)
+
+
 def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> PlannedRobot:
     """Frames without a robot's name are those of the robot on whose topic they are."""
     names, frames = seen.owners.names, seen.owners.frames
@@ -55,7 +59,8 @@ def _robot(seen: Diagnosis, robot: GuessedRobot, nodes: Iterable[str]) -> Planne
         for edge in seen.graph.frames
         for it in (edge.child, edge.parent)
         if frames.get(it) == robot.name
-        or (not frames.get(it) and tree_topic(edge.topic) == tf and (tf != shared or not mine))
+        or not mine
+        or (not frames.get(it) and tree_topic(edge.topic) == tf != shared)
     }
     return PlannedRobot(
         robot.name,

@@ -13,7 +13,7 @@ from multibot_rewrite.graph.dangers.tf_topics import root_of
 from multibot_rewrite.graph.dangers.transforms import WORLD
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis
 from multibot_rewrite.graph.doctor.robots import GuessedRobot
-from multibot_rewrite.graph.doctor.seen_plan import NAMELESS, seen_plan
+from multibot_rewrite.graph.doctor.seen_plan import NAMELESS, robots_to_plan, seen_plan
 from multibot_rewrite.graph.learning.learn import learn
 from multibot_rewrite.graph.learning.nodes_file import to_yaml as nodes_to_yaml
 from multibot_rewrite.graph.plan_file import to_yaml as plan_to_yaml
@@ -42,7 +42,7 @@ HEAD = """\
 
 def suggestion(seen: Diagnosis, library: NodeLibrary) -> dict[str, str]:
     """The files by name."""
-    robot, *_ = seen.robots or (NAMELESS,)
+    robot, *_ = robots_to_plan(seen)
     nodes = _nodes(seen, robot)
     learned = [it for it in nodes if not it.endswith(f"/{STATE_PUBLISHER}")]
     files = {
@@ -68,10 +68,11 @@ def _nodes(seen: Diagnosis, robot: GuessedRobot) -> list[str]:
 
 
 def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str]:
-    namespaced = any(robot.namespace for robot in seen.robots)
+    robots = robots_to_plan(seen)
+    namespaced = any(robot.namespace for robot in robots)
     fallback = LAYOUTS[0] if namespaced else LAYOUTS[-1]
     yield f"layout: {(seen.layout or fallback).name}"
-    if any(robot.before for robot in seen.robots):
+    if any(robot.before for robot in robots):
         yield "affix: prefix"
     yield f"description: {DESCRIPTION}"
     if learned:
@@ -81,7 +82,7 @@ def _fleet(seen: Diagnosis, nodes: Sequence[str], learned: bool) -> Iterator[str
     if stacks:
         yield f"stack: [{', '.join(stacks)}]"
     yield "robots:"
-    for robot in seen.robots or (NAMELESS,):
+    for robot in robots:
         yield f"  - {{name: {robot.name.replace('/', '_')}}}"
 
 

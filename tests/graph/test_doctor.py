@@ -1,0 +1,259 @@
+"""The doctor: silent where nothing is wrong, each seeded fault found with its cause, no plan needed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from graph_cases import environment, sent
+from graph_faults import FAULTS, Fault, nav
+from graph_faults_page import lines
+from healthy_systems import (
+    CLOCK,
+    SCAN,
+    SYSTEMS,
+    TF,
+    TWIST,
+    nav2_with_tools,
+    plan,
+    simulated,
+    single,
+    started,
+    with_ends,
+    with_node,
+)
+from paths import ROOT
+
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.findings.finding import INCONCLUSIVE
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.doctor.diagnose import diagnose, survey
+from multibot_rewrite.graph.doctor.robots import guess_robots
+from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
+from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, to_json
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
+
+EMPTY = Snapshot((), (), (), environment())
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_healthy_system_has_no_finding(name: str) -> None:
+    assert [str(it) for it in diagnose(SYSTEMS[name]()).findings] == []
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
+def test_a_fault_is_found_with_its_cause(fault: Fault) -> None:
+    found = diagnose(fault.change(fault.system())).findings
+    said = [str(it) for it in found if (it.code, it.level) == (fault.code, fault.level)]
+    assert any(all(word in line for word in fault.words) for line in said), list(map(str, found))
+    # One fault is not ten findings.
+    assert {it.code for it in found} <= {fault.code, *fault.also}
+
+
+def test_there_are_faults_enough() -> None:
+    assert len(FAULTS) >= 60
+    assert len({it.name for it in FAULTS}) == len(FAULTS)
+
+
+def test_the_page_of_faults_is_that_of_today() -> None:
+    assert (ROOT / "docs" / "graph-faults.md").read_text() == "".join(f"{it}\n" for it in lines())
+
+
+# ---------------------------------------------------------------- whose names
+
+
+@pytest.mark.parametrize(
+    ("system", "names", "layout"),
+    [
+        (lambda: nav2_with_tools("L1"), ["robot1", "robot2"], "tf-per-robot"),
+        (lambda: nav2_with_tools("L2"), ["robot1", "robot2"], "frames-per-robot"),
+        (lambda: nav2_with_tools("L3"), ["robot1", "robot2"], "both"),
+        (lambda: started(("nav2",), "L4"), ["robot1", "robot2"], "postfix"),
+        (SYSTEMS["namespaces of two levels"], ["fleet_a/robot1", "fleet_b/robot1"], "tf-per-robot"),
+        (SYSTEMS["a robot with two arms, no namespaces"], ["left", "right"], ""),
+        (single, [], ""),
+        (lambda: EMPTY, [], ""),
+    ],
+)
+def test_the_robots_and_their_layout(
+    system: Callable[[], Snapshot], names: list[str], layout: str
+) -> None:
+    seen = diagnose(system())
+    assert [it.name for it in seen.robots] == names
+    assert (seen.layout.name if seen.layout else "") == layout
+
+
+def test_parts_of_a_robot_are_no_robots() -> None:
+    """Cameras and costmaps have namespaces with topics like a robot's."""
+    graph = single()
+    for part in ("camera_left", "camera_right", "zed_front", "local_costmap"):
+        ends = [(PUBLISHES, f"/{part}/{it}", TWIST) for it in ("odom", "joint_states")]
+        graph = with_node(graph, f"/{part}/node", *ends)
+    assert guess_robots(graph) == ()
+
+
+def test_a_robot_that_has_just_started_is_one_by_its_number() -> None:
+    graph = with_node(nav2_with_tools(), "/robot3/lidar", (PUBLISHES, "/robot3/scan", SCAN))
+    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2", "robot3"]
+
+
+def test_names_to_which_nobody_listens_are_no_robot() -> None:
+    ends = [(PUBLISHES, f"/robot_2/{it}", TWIST) for it in ("cmd_vel", "odom")]
+    graph = with_node(nav2_with_tools(), "/fleet_manager", *ends)
+    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
+
+
+def test_the_frames_of_robots_called_otherwise_than_their_namespace() -> None:
+    graph = nav2_with_tools("L1")
+    seen = diagnose(graph)
+    assert seen.owners.names["/robot1/scan"] == "robot1"
+    assert seen.owners.plain_names["/robot1/scan"] == "/scan"
+    assert seen.owners.names["/fleet_manager"] == ""
+
+
+def test_a_name_within_a_word_is_no_robots() -> None:
+    """``/robot11`` is not robot1's, nor is a topic that only contains the letters."""
+    graph = with_node(nav2_with_tools(), "/robot11_scanner", (PUBLISHES, "/myrobot1/scan", SCAN))
+    owners = diagnose(graph).owners
+    assert (owners.names["/robot11_scanner"], owners.names["/myrobot1/scan"]) == ("", "")
+
+
+# ---------------------------------------------------------------- close to a fault, and none
+
+
+def test_one_robot_may_have_plain_frames_beside_robots_that_have_not() -> None:
+    """The first robot kept its description: nothing meets."""
+    graph = nav2_with_tools("L2")
+    frames = [
+        it._replace(
+            child=it.child.removesuffix("/robot1"), parent=it.parent.removesuffix("/robot1")
+        )
+        for it in graph.frames
+    ]
+    assert diagnose(graph._replace(frames=tuple(frames))).findings == ()
+
+
+def test_two_controllers_that_take_turns_are_one_sender() -> None:
+    graph = nav2_with_tools()
+    for node in ("behavior_server", "controller_server", "docking_server"):
+        graph = with_ends(graph, f"/robot1/{node}", (PUBLISHES, "/robot1/cmd_vel", TWIST))
+    assert diagnose(graph).findings == ()
+
+
+def test_a_bag_that_is_played_to_a_viewer_alone_is_what_bags_are_for() -> None:
+    player = with_node(
+        EMPTY, "/rosbag2_player", (PUBLISHES, "/robot1/scan", SCAN), (PUBLISHES, "/tf", TF)
+    )
+    player = with_node(player, "/rviz2", (SUBSCRIBES, "/robot1/scan", SCAN))
+    assert diagnose(player).findings == ()
+
+
+def test_tools_on_another_clock_are_none_of_a_robot() -> None:
+    graph = with_ends(simulated("robot1"), "/rosbag2_recorder", (SUBSCRIBES, "/clock", CLOCK))
+    assert diagnose(graph).findings == ()
+
+
+def test_a_dock_that_no_robot_owns_may_be_on_a_shared_tf() -> None:
+    graph = nav2_with_tools("L2")
+    dock = GraphFrame("dock", "map", "/tf_static", True, ())
+    assert diagnose(sent(graph._replace(frames=(*graph.frames, dock)))).findings == ()
+
+
+def test_what_is_not_seen_may_be_missing_only_in_the_view() -> None:
+    fault = next(it for it in FAULTS if it.code == "MG501")
+    graph = fault.change(fault.system())
+    doubt = Caveat("not-settled", True, "still changing")
+    partial = graph._replace(environment=graph.environment._replace(caveats=(doubt,)))
+    assert {it.level for it in diagnose(partial).findings} == {INCONCLUSIVE}
+
+
+# ---------------------------------------------------------------- the plan of what is seen
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_the_plan_of_what_is_seen_is_fulfilled_by_it(name: str) -> None:
+    graph = SYSTEMS[name]()
+    written = to_yaml(seen_plan(diagnose(graph)))
+    read = from_yaml(written.encode(), "plan.yaml")
+    # A frame of a sensor that no description has, and one robot's frames in a plan without.
+    assert [str(it) for it in check(read, graph) if it.level == "error"] == []
+
+
+def test_the_layout_and_tf_topics_are_told() -> None:
+    said = list(survey(diagnose(nav2_with_tools("L1"))))
+    assert said[0] == "2 robots by their namespaces: robot1, robot2"
+    assert "tf-per-robot (L1" in said[1]
+    assert "tf on /robot1/tf: 3 nodes of robot1" in said
+
+
+# ---------------------------------------------------------------- the command
+
+
+def saved(folder: Path, graph: Snapshot) -> str:
+    (folder / "graph.json").write_bytes(to_json(graph))
+    return str(folder / "graph.json")
+
+
+def faulty(code: str, level: str = "error") -> Snapshot:
+    fault = next(it for it in FAULTS if (it.code, it.level) == (code, level))
+    return fault.change(fault.system())
+
+
+def test_a_healthy_system_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, nav())]) == 0
+    out, err = capsys.readouterr()
+    assert out == "" and err.endswith("multibot: 0 findings: nothing wrong seen\n")
+
+
+@pytest.mark.parametrize(
+    ("graph", "more", "code"),
+    [
+        (faulty("MG402"), [], 1),
+        (faulty("MG312", "warning"), [], 0),
+        (faulty("MG312", "warning"), ["--fail-on", "warning"], 1),
+        (faulty("MG402"), ["--ignore", "MG402"], 0),
+        (faulty("MG402"), ["--select", "MG3"], 0),
+    ],
+)
+def test_the_exit_code(graph: Snapshot, more: list[str], code: int, tmp_path: Path) -> None:
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph), *more]) == code
+
+
+def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
+    doubt = Caveat("not-settled", True, "still changing")
+    graph = nav()._replace(environment=environment(doubt))
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
+
+
+def test_the_page_and_the_pictures(tmp_path: Path) -> None:
+    graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
+    given = ["--report", str(page), "--dot", str(tmp_path / "a.dot"), "-q"]
+    assert multibot.main(["doctor", "--snapshot", graph, *given]) == 1
+    assert "MG402" in page.read_text() and (tmp_path / "a.dot").exists()
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_what_is_suggested_is_taken(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    graph, folder = saved(tmp_path, SYSTEMS[name]()), tmp_path / "first"
+    assert multibot.main(["doctor", "--snapshot", graph, "--suggest", str(folder)]) == 0
+    assert multibot.main(["check", str(folder / "plan.yaml"), "--snapshot", graph]) == 0
+    fleet, planned = str(folder / "fleet.yaml"), str(tmp_path / "plan.yaml")
+    assert multibot.main(["plan", fleet, "-o", planned]) == 0, capsys.readouterr().err
+
+
+def test_a_suggestion_replaces_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "fleet.yaml").write_text("mine")
+    given = ["--snapshot", saved(tmp_path, nav()), "--suggest", str(tmp_path)]
+    assert multibot.main(["doctor", *given]) == 2
+    assert "fleet.yaml is there already" in capsys.readouterr().err
+    assert (tmp_path / "fleet.yaml").read_text() == "mine"
+
+
+def test_a_plan_of_the_same_fleet_is_not_needed() -> None:
+    """What the doctor calls healthy is so by its plan, too: only tools are not planned."""
+    found = check(plan(("nav2",), "L1"), nav())
+    assert {it.code for it in found} <= {"MG108"}

@@ -1,0 +1,121 @@
+"""The doctor before real nodes: a healthy fleet, and faults put into it while it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from importlib.util import find_spec
+from typing import NamedTuple
+
+import live_commands
+import live_fleet
+import live_graphs
+import pytest
+import tf2_build
+from graph_cases import sent
+from graph_faults import FAULTS, LIVE, Fault, nav, shared_tf
+from healthy_systems import SYSTEMS
+
+from multibot_rewrite.graph.snapshot import Snapshot
+
+pytestmark = pytest.mark.live
+
+AT_ONCE, ROUNDS = 3, 20
+# Of each robot these are played; of a full system hundreds of endpoints more, which take their time.
+PLAYED = (
+    "robot_state_publisher", "diff_drive", "lidar_driver", "joint_states", "amcl", "map_server",
+    "lifecycle_manager_localization", "collision_monitor", "controller_server", "local_costmap",
+    "rviz2", "servo_node",
+)  # fmt: skip
+HEALTHY = (
+    "two arms with MoveIt",
+    "SLAM with two filters and GPS",
+    "five robots on simulated time",
+    "namespaces of two levels",
+    "one robot",
+)
+PATIENTLY = ("--timeout", "40", "-v")
+
+
+class Outcome(NamedTuple):
+    code: int
+    found: frozenset[str]
+    said: str
+
+
+@pytest.fixture(scope="module")
+def needed(tf2: Mapping[str, str]) -> Mapping[str, str]:
+    """What makes rclpy's children know tf2_msgs; a loud skip where one of the two is missing."""
+    pytest.importorskip("rclpy", reason="no rclpy: pip install '.[ros]'", exc_type=ImportError)
+    if not tf2 and not find_spec("tf2_msgs"):
+        pytest.skip(f"tf2_msgs is not there and not built: {tf2_build.missing()}")
+    return tf2
+
+
+def looked_at(at: int, graph: Snapshot, more: Mapping[str, str]) -> Outcome:
+    """What the command says while nodes play the graph."""
+    domain = live_commands.domain(at)
+    env = {**live_fleet.environ(domain), **more}
+    with live_fleet.running(domain, *live_graphs.processes(graph), **more):
+        done = live_commands.multibot("doctor", *PATIENTLY, env=env)
+    lines = [line.partition(": ")[2].split() for line in done.stdout.splitlines()]
+    codes = frozenset(words[1] for words in lines if len(words) > 1)
+    return Outcome(done.returncode, codes, done.stdout + done.stderr)
+
+
+def small(graph: Snapshot, healthy: Snapshot) -> Snapshot:
+    """The graph with the nodes that are played, and those that the healthy system has not."""
+    known = {it.name for it in healthy.nodes}
+    left_out = {it for it in known if it.rpartition("/")[2] not in PLAYED}
+    return sent(
+        graph._replace(
+            nodes=tuple(it for it in graph.nodes if it.name not in left_out),
+            endpoints=tuple(it for it in graph.endpoints if it.node not in left_out),
+        )
+    )
+
+
+def ill(fault: Fault) -> Snapshot:
+    healthy = fault.system()
+    return small(fault.change(healthy), healthy)
+
+
+def side_by_side(graphs: Sequence[Snapshot], more: Mapping[str, str]) -> list[Outcome]:
+    with ThreadPoolExecutor(AT_ONCE) as pool:
+        return list(pool.map(lambda it: looked_at(20 + it[0] % 50, it[1], more), enumerate(graphs)))
+
+
+def test_the_first_fault_live_and_no_fault(needed: Mapping[str, str]) -> None:
+    fault = next(it for it in FAULTS if it.name == LIVE[0])
+    well, wrong = side_by_side([small(nav(), nav()), ill(fault)], needed)
+    assert (well.code, well.found) == (0, frozenset()), well.said
+    assert (wrong.code, wrong.found) == (1, {fault.code}), wrong.said
+    assert all(word in wrong.said for word in fault.words), wrong.said
+
+
+@pytest.mark.deep
+def test_faults_in_running_systems(needed: Mapping[str, str]) -> None:
+    faults = [it for it in FAULTS if it.name in LIVE]
+    assert len(faults) == len(LIVE) >= 20
+    outcomes = side_by_side([ill(it) for it in faults], needed)
+    odd = [
+        f"{fault.name}: {outcome.said}"
+        for fault, outcome in zip(faults, outcomes, strict=True)
+        if fault.code not in outcome.found
+        or not outcome.found <= {fault.code, *fault.also}
+        or not all(word in outcome.said for word in fault.words)
+    ]
+    assert odd == [], "\n".join(odd)
+
+
+@pytest.mark.deep
+def test_healthy_systems_live(needed: Mapping[str, str]) -> None:
+    graphs = [nav(), shared_tf(), *(SYSTEMS[name]() for name in HEALTHY)]
+    outcomes = side_by_side(graphs, needed)
+    assert [it.said for it in outcomes if it.code or it.found] == []
+
+
+@pytest.mark.deep
+def test_no_false_finding_in_twenty_rounds(needed: Mapping[str, str]) -> None:
+    outcomes = side_by_side([small(nav(), nav())] * ROUNDS, needed)
+    assert [it.said for it in outcomes if it.code or it.found] == []

@@ -1,0 +1,95 @@
+"""The page of seeded faults: ``python tests/support/graph_faults_page.py > docs/graph-faults.md``."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from functools import cache
+from typing import NamedTuple
+
+from graph_faults import FAULTS, LIVE, Fault, nav, shared_tf, simulation
+from healthy_systems import SYSTEMS, plan
+
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.plural import plural
+
+HEAD = """\
+# Seeded faults
+
+Made by `python tests/support/graph_faults_page.py > docs/graph-faults.md`. Each row is a fault that was
+put into a system in which nothing was wrong (`tests/support/graph_faults.py`): what `multibot doctor`
+finds without a plan, its exit code, whether the finding names who did it and what to do (*cause*), and
+which codes `multibot check` adds with the plan of the system. `-`: nothing more than in the healthy
+system; no entry: the system has no plan.
+*Live*: played by real nodes as well (`tests/graph/test_live_doctor.py`).
+"""
+# The systems that are those of a plan.
+PLANS = {
+    nav: lambda: plan(("nav2",), "L1"),
+    shared_tf: lambda: plan(("nav2",), "L2"),
+    simulation: lambda: plan(("nav2",), "L1", ("robot1", "robot2", "robot3")),
+}
+
+
+class Outcome(NamedTuple):
+    """What came of a fault."""
+
+    found: bool
+    code: str
+    level: str
+    exit: int
+    cause: bool
+    checked: str
+
+
+def outcome(fault: Fault) -> Outcome:
+    """Look at the faulty system with and without its plan."""
+    graph = fault.change(fault.system())
+    findings = diagnose(graph).findings
+    hits = [it for it in findings if it.code == fault.code and it.level == fault.level]
+    named = any(all(word in str(it) for word in fault.words) for it in hits)
+    failed = any(it.level == ERROR for it in findings)
+    return Outcome(bool(hits), fault.code, fault.level, int(failed), named, _checked(fault, graph))
+
+
+def _checked(fault: Fault, graph: Snapshot) -> str:
+    if fault.system not in PLANS:
+        return ""
+    planned = PLANS[fault.system]()
+    before = _healthy_findings(planned, fault.system())
+    new = {it.code for it in check(planned, graph) if it not in before}
+    return ", ".join(sorted(new)) or "-"
+
+
+@cache
+def _healthy_findings(planned: Expectation, graph: Snapshot) -> frozenset[Finding]:
+    return frozenset(check(planned, graph))
+
+
+def lines() -> Iterator[str]:
+    """The page."""
+    yield HEAD
+    found = [(fault, outcome(fault)) for fault in FAULTS]
+    causes = sum(it.cause for _, it in found)
+    yield f"{plural(len(found), 'fault')}, {sum(it.found for _, it in found)} found, {causes} with the"
+    yield f"cause; {len(LIVE)} of them live. {len(SYSTEMS)} healthy systems: 0 findings each."
+    yield ""
+    yield "| fault | doctor | level | exit | cause | live | check |"
+    yield "|---|---|---|--:|---|---|---|"
+    for fault, it in found:
+        code = it.code if it.found else "not found"
+        live = "yes" if fault.name in LIVE else ""
+        cause = "yes" if it.cause else "no"
+        yield f"| {fault.name} | {code} | {it.level} | {it.exit} | {cause} | {live} | {it.checked} |"
+    yield ""
+    yield "Healthy systems:"
+    yield ""
+    yield from (f"- {name}" for name in SYSTEMS)
+
+
+if __name__ == "__main__":
+    sys.stdout.write("".join(f"{line}\n" for line in lines()))

@@ -1,0 +1,90 @@
+"""A graph of records, played by real nodes: what ``live_fleet`` is told to start for it.
+
+Endpoints whose type is not installed here are left out, and actions: their clients and servers need it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+
+LISTS = {
+    PUBLISHES: "publishers",
+    SUBSCRIBES: "subscriptions",
+    SERVES: "services",
+    CALLS: "clients",
+}
+TF = "tf2_msgs/msg/TFMessage"
+# Every node of rclpy has them by itself.
+_OWN = ("/rosout", "/parameter_events")
+
+
+def processes(graph: Snapshot) -> list[list[dict[str, Any]]]:
+    """One process for each first namespace; a second node of a name is in a process of its own."""
+    ends: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    for end in graph.endpoints:
+        if _can_be_played(end):
+            ends[end.node].append(end)
+    frames = _frames(graph)
+    groups: dict[str, list[dict[str, Any]]] = defaultdict(list)
+    seen: Counter[str] = Counter()
+    for node in graph.nodes:
+        seen[node.name] += 1
+        space = node.name.split("/")[1] if node.name.count("/") > 1 else ""
+        group = f"{space} {seen[node.name]}"
+        groups[group].append(_node(node, ends[node.name], frames.get(node.name, [])))
+    return list(groups.values())
+
+
+def _can_be_played(end: GraphEndpoint) -> bool:
+    return end.name not in _OWN and end.kind != "action" and bool(end.type) and _is_there(end.type)
+
+
+@cache
+def _is_there(type_: str) -> bool:
+    module, _, name = type_.replace("/", ".").rpartition(".")
+    if type_ == TF:
+        return True
+    try:
+        return hasattr(import_module(module), name)
+    except ImportError:
+        return False
+
+
+def _node(node: GraphNode, ends: list[GraphEndpoint], frames: list[Any]) -> dict[str, Any]:
+    space, _, name = node.name.rpartition("/")
+    sent = {topic for topic, *_ in frames}
+    lists: dict[str, list[Any]] = {it: [] for it in LISTS.values()}
+    for end in dict.fromkeys(ends):
+        if end.role != PUBLISHES or end.name not in sent:
+            lists[LISTS[end.role]].append([end.name, _word(end.type), *_words(end)])
+    return {"name": name, "namespace": space or "/", "bare": True, **lists, "frames": frames}
+
+
+def _word(type_: str) -> str:
+    return "TFMessage" if type_ == TF else type_
+
+
+def _words(end: GraphEndpoint) -> Iterator[str]:
+    if end.qos and end.qos.reliability == "BEST_EFFORT":
+        yield "best_effort"
+    if end.qos and end.qos.durability == "TRANSIENT_LOCAL":
+        yield "latched"
+
+
+def _frames(graph: Snapshot) -> dict[str, list[list[Any]]]:
+    """By node: topic, static or not, edges; a frame is sent by the first node on its topic."""
+    found: dict[str, dict[tuple[str, bool], list[list[str]]]] = defaultdict(dict)
+    for it in graph.frames:
+        sender = next(iter(it.publishers), "")
+        found[sender].setdefault((it.topic, it.static), []).append([it.parent, it.child])
+    return {
+        node: [[topic, static, *edges] for (topic, static), edges in own.items()]
+        for node, own in found.items()
+    }
