@@ -10,13 +10,13 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.evidence.claims import Claimed, claims_of
+from multibot_rewrite.evidence.claims import Claimed, claimed_twice, claims_of
 from multibot_rewrite.evidence.hardware import Exported
-from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.remap.records import NodeFacts
 
-INTERFACE = "interface"
+INTERFACE, TWICE = "interface", "claimed twice"
 PLACEHOLDER = re.compile(r"<|\$\(|\{")
 
 
@@ -43,9 +43,22 @@ def interface_gaps(
             key = (INTERFACE, str(at), it.kind, str(number))
             where = it.place or controller.place
             name = f"{it.kind} interface {it.name}"
-            yield Gap(
-                INTERFACE, name, controller.name, key, where, near, places.get((it.kind, near))
-            )
+            there = places.get((it.kind, near)) or _beside(it.name, exports)
+            yield Gap(INTERFACE, name, controller.name, key, where, near, there)
+
+
+def _beside(name: str, exports: Iterable[Exported]) -> Place | None:
+    """Where another interface of the same joint, sensor or gpio is."""
+    owner = name.rpartition("/")[0]
+    return next((it.place for it in exports if it.name.rpartition("/")[0] == owner), None)
+
+
+def twice_gaps(given: Sequence[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[Gap]:
+    """Command interfaces that a controller claims by two of its parameters: it is not activated."""
+    for it in (it for it in given if it.manager and it.known in known):
+        for claim, first in claimed_twice(known[it.known].claims, it):
+            key = (TWICE, it.known, claim.name)
+            yield Gap(TWICE, claim.name, it.name, key, claim.place, "", first)
 
 
 def _claims(controller: GivenNode, known: Mapping[str, NodeFacts]) -> Iterator[Claimed]:

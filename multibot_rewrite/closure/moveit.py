@@ -38,7 +38,7 @@ def moveit_gaps(
         for at, (key, body) in enumerate(_controllers(manager)):
             yield from _of_one(document, key, body, declared, str(at))
             controller = declared.get(str(key.value).rpartition("/")[2])
-            if controller and controller.known in known:
+            if controller and controller.known in known and not controller.unknown_type:
                 node = known[controller.known]
                 yield from _action(document, key, body, controller, node, str(at))
 
@@ -123,11 +123,11 @@ def _action(
     }
     row = {it.value: value for it, value in pairs(body) if isinstance(value, yaml.ScalarNode)}
     given, type_ = row.get("action_ns"), row.get("type")
-    if not served or given is None or type_ is None:
+    if given is None or type_ is None:
         return
-    first = next(iter(served))
     if given.value not in served:
-        wrong, name, near = given, f"action {key.value}/{given.value}", f"{key.value}/{first}"
+        wrong, name = given, f"action {key.value}/{given.value}"
+        near = next((f"{key.value}/{it}" for it in served), "")
     elif served[given.value].rpartition("/")[2] != type_.value:
         wrong, name = type_, f"{key.value}/{given.value} as {type_.value}"
         near = served[given.value].rpartition("/")[2]

@@ -52,8 +52,10 @@ class End(NamedTuple):
 def topic_gaps(ends: Sequence[End], more: Iterable[End] = ()) -> Iterator[Gap]:
     """What the nodes of a robot need and nothing sends. ``more`` are ends of nodes for all robots."""
     given = [it for it in ends if it.role in GIVES]
+    # What a node reads already is not what it misses.
+    read = {(it.node, it.name) for it in ends if it.role in NEEDS}
     for it in _needed(ends, more, sent=False):
-        near = _near(it, given)
+        near = _near(it, [other for other in given if (it.node, other.name) not in read])
         where = (near.place or near.at) if near else None
         name = near.name if near else ""
         yield Gap(it.kind, it.name, it.node, it.key, it.place, name, where, it.at)

@@ -17,7 +17,7 @@ from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.remap.conditions import Values, holds
 from multibot_rewrite.remap.records import Claim
 
-TYPE = "type"
+TYPE, COMMAND = "type", "command"
 _PART = re.compile(
     r"<(?P<names>[^<>=+]+)(?:\+(?P<after>[^<>=]*))?(?P<default>=[^<>]*)?>"
     r"|\[(?P<first>\d+)\.\.(?P<last>\d+)\]|\[(?P<words>[^\[\]]+)\]"
@@ -56,6 +56,18 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
                     (claim.kind, made.text), Claimed(claim.kind, made.text, made.place)
                 )
     yield from found.values()
+
+
+def claimed_twice(claims: Iterable[Claim], node: GivenNode) -> Iterator[tuple[Claimed, Place]]:
+    """Command interfaces that two parameters of a controller name; the second with the place of the
+    first."""
+    values, first = {**node.values, TYPE: Given(node.type, node.place)}, dict[str, Place]()
+    for claim in (it for it in claims if it.kind == COMMAND):
+        for made in _names(claim.template, _Made("", claim.condition, None), values):
+            if made.place and holds(made.condition, _lookup(values)):
+                other = first.setdefault(made.text, made.place)
+                if other != made.place:
+                    yield Claimed(claim.kind, made.text, made.place), other
 
 
 def _lookup(values: Mapping[str, Given]) -> Values:

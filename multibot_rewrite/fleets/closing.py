@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from multibot_rewrite.closure.frames import frame_gaps, tree_gaps, unsent_gaps
+from multibot_rewrite.closure.frames import Sender, frame_gaps, tree_gaps, unsent_gaps
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
@@ -114,8 +114,8 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         evidence = plan.evidence[node_sources(robot.spec)]
         before, library = system_before(robot, evidence), evidence.known
         after = system_after(robot, fleet, texts, known)
-        yield from controller_findings(robot, before, after, library)
-        yield from _frames(robot, frame_gaps(before.given, library, before.sent))
+        yield from controller_findings(robot, before, after, library, texts)
+        yield from _frames(robot, frame_gaps(before.given, library, before.sent), before.senders)
         old = list(tree_gaps(edges_in(robot.member.source.root), before.senders))
         yield from _trees(robot, old, WARNING)
         joints = edges_in(robot.member.source.root)
@@ -128,11 +128,18 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         yield from bridge_findings(plan, robot, texts)
 
 
-def _frames(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:
+def _frames(
+    robot: RewrittenRobot, gaps: Iterable[Gap], senders: Sequence[Sender]
+) -> Iterator[Finding]:
+    others = (it for it in senders if it.place and it.edges)
+    sent = next((f"; {it.node} ({it.place}) sends {it.edges[0].child}" for it in others), "")
     for it in gaps:
         both = f"{it.node} and {it.near} ({it.near_place}) are" if it.near else f"{it.node} is"
         message = f"nothing sends frame {it.name} of {robot.spec.name}: {both} told not to"
-        hint = "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
+        hint = (
+            "let one node send it: the controller (enable_odom_tf) or the filter (publish_tf)"
+            + sent
+        )
         # Another node, which no file names, may send what one alone does not.
         yield at_gap(NOBODY_SENDS, robot, it, message, hint, ERROR if it.near else WARNING)
 

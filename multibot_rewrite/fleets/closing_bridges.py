@@ -12,9 +12,9 @@ from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.bridge_merge import as_spawned
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
-from multibot_rewrite.fleets.gap_findings import at_gap, meant
+from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
 from multibot_rewrite.fleets.member import line_of
-from multibot_rewrite.fleets.output_values import OutputText, line_in_source
+from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.systems import BRIDGE_FILE
 from multibot_rewrite.remap.bridged_topics import bridged_topics
@@ -67,8 +67,7 @@ def bridge_findings(
         if text.path != f"{robot.spec.name}/{BRIDGE_FILE}" or not text.sources:
             continue
         for it in bridge_gaps(read_yaml(text.text.encode(), text.path), topics):
-            source = line_in_source(text, it.place.line) if it.place else None
-            at = it._replace(place=Place(*source)) if source else it
+            at = in_source(it, [text])
             yield at_gap(NO_GZ_TOPIC, robot, at, _message(robot, it), _hint(it), WARNING)
 
 

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.closure.interfaces import interface_gaps
+from multibot_rewrite.closure.interfaces import interface_gaps, twice_gaps
 from multibot_rewrite.closure.lists import list_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.closure.undeclared import undeclared_gaps
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.gap_findings import at_gap, meant
+from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
+from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.systems import System
 from multibot_rewrite.remap.records import NodeFacts
@@ -126,6 +127,34 @@ arm_controller:
     formats=("params",),
     beside={"robot.urdf": _ARM},
 )
+CLAIMED_TWICE = declare(
+    "MF808",
+    "interface-claimed-twice",
+    WARNING,
+    what="Two parameters of a controller name the same joint, so it claims a command interface twice.",
+    why="An interface is claimed once: the controller is not activated, or one wheel is driven twice.",
+    fix="Name another joint in one of them.",
+    bad="""\
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    left_wheel_names: [elbow]
+    right_wheel_names: [elbow]
+""",
+    good="""\
+controller_manager:
+  ros__parameters:
+    drive: {type: diff_drive_controller/DiffDriveController}
+drive:
+  ros__parameters:
+    left_wheel_names: [elbow]
+    right_wheel_names: [wrist]
+""",
+    line=7,
+    formats=("params",),
+)
 NOT_LISTED = declare(
     "MF819",
     "listed-name-without-parameters",
@@ -152,13 +181,27 @@ collision_monitor:
 
 
 def controller_findings(
-    robot: RewrittenRobot, before: System, after: System, known: Mapping[str, NodeFacts]
+    robot: RewrittenRobot,
+    before: System,
+    after: System,
+    known: Mapping[str, NodeFacts],
+    texts: Sequence[OutputText],
 ) -> Iterator[Finding]:
-    """What is open in a robot's controllers and lists of parameters, before and after the rewrite."""
+    """What is open in a robot's controllers and lists of parameters, before and after the rewrite;
+    ``texts`` are the files that were made."""
     old, new = (list(interface_gaps(it.given, known, it.exports)) for it in (before, after))
-    yield from _interfaces(robot, old, new)
+    yield from _interfaces(robot, old, [in_source(it, texts) for it in new])
+    for it in twice_gaps(before.given, known):
+        message = f"{it.node} of {robot.spec.name} claims {it.name} by two parameters"
+        yield at_gap(
+            CLAIMED_TWICE,
+            robot,
+            it,
+            message,
+            f"name another joint, the first is at {it.near_place}",
+        )
     old, new = (list(moveit_gaps(it.moveit, it.given, known)) for it in (before, after))
-    yield from _moveit(robot, old, new)
+    yield from _moveit(robot, old, [in_source(it, texts) for it in new])
     for it in undeclared_gaps(before.given, known):
         message = (
             f"{it.name} has parameters of a controller that {robot.spec.name} does not declare"

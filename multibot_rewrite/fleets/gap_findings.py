@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
+from multibot_rewrite.fleets.output_values import OutputText, line_in_source
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 
 
@@ -17,6 +19,15 @@ def meant(gap: Gap) -> str:
         return f"see {gap.near_place}" if gap.near_place else "name one that is there"
     where = f" ({gap.near_place})" if gap.near_place else ""
     return f"did you mean {gap.near}{where}?"
+
+
+def in_source(gap: Gap, texts: Iterable[OutputText]) -> Gap:
+    """The gap with its place in the file that the user wrote: what is made may not be written."""
+    place = gap.place
+    for text in texts:
+        if place and place.file == text.path and text.sources:
+            return gap._replace(place=Place(*line_in_source(text, place.line)))
+    return gap
 
 
 def at_gap(

@@ -88,13 +88,15 @@ def _of_two_nodes(
     for it in sent:
         child = it.edge.child
         other = first.setdefault(child, it)
-        if other.by == it.by or child in reported:
+        # Two joints have one child in a closed loop of an SDF, which is no tree.
+        looped = robot.member.source.root.tag != "robot" or other.edge == it.edge
+        if (other.by == it.by and (it.by != DESCRIPTION or looped)) or child in reported:
             continue
         reported.add(child)
         apart = other.edge.parent != it.edge.parent
         below = f" below {other.edge.parent} and {it.edge.parent}" if apart else ""
-        both = f"{other.by} and {it.by}"
-        message = f"frame {child} of {robot.spec.name} is published{below} by both {both}"
+        both = f"both {other.by} and {it.by}" if other.by != it.by else f"two joints of {it.by}"
+        message = f"frame {child} of {robot.spec.name} is published{below} by {both}"
         first_file, first_line = _place(robot, other, files)
         see = f"{other.by}: {first_file}:{first_line}"
         hint = f"only one node may publish a frame: remove one, or switch its transform off; {see}"

@@ -5,45 +5,24 @@ What each break does at run time is said here, from the sources of the nodes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import re
 from pathlib import Path
 
 import pytest
+from closed_arm import ARM_FILES
 from closed_robot import FILES
-
-from multibot_rewrite.findings.finding import NOTE, Finding
-from multibot_rewrite.fleets.build import make_outputs
-from multibot_rewrite.fleets.closed_plan import closed_plan
-from multibot_rewrite.fleets.fleet_file import read_fleet
-from multibot_rewrite.fleets.fleet_plan import plan_fleet
+from closure_findings import found
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
-# What a build tells of the odometry of this robot in some layouts, and is no gap.
-BESIDE = ("MF125", "MF7", "MB", "MR")
+# Findings about one line: a name that is in no file, or a plugin of another name.
+ONE_LINE = ("MB8", "MF112", "MF127", "MF510", "MF802")
+PLACE = re.compile(r"\w+\.(urdf|yaml):\d+")
 
 
-def found(
-    folder: Path, files: dict[str, str], layout: str = "frames-per-robot"
-) -> tuple[list[Finding], list[Finding]]:
-    """What a build says, and what a plan says."""
-    for name, text in files.items():
-        (folder / name).write_text(text)
-    fleet = folder / "fleet.yaml"
-    fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
-    plan = plan_fleet(read_fleet(str(fleet), "", {}))
-    problems = plan.fleet.table.problems
-    built = {*problems, *make_outputs(plan).findings}
-    planned = {*problems, *closed_plan(plan).gaps}
-    return _gaps(built), _gaps(planned)
-
-
-def _gaps(every: Iterable[Finding]) -> list[Finding]:
-    return [it for it in every if it.level != NOTE and not it.code.startswith(BESIDE)]
-
-
+@pytest.mark.parametrize("files", [FILES, ARM_FILES], ids=["rover", "arm"])
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_robot_that_closes(layout: str, tmp_path: Path) -> None:
-    assert found(tmp_path, FILES, layout) == ([], [])
+def test_a_robot_that_closes(layout: str, files: dict[str, str], tmp_path: Path) -> None:
+    assert found(tmp_path, files, layout) == ([], [])
 
 
 BREAKS = [
@@ -53,14 +32,6 @@ BREAKS = [
     # The hardware lacks what the controller claims.
     ("rover.urdf", '      <command_interface name="velocity"/>\n', "", "MF811", 9, ""),
     ("rover.urdf", 'state_interface name="position"', 'state_interface name="pos"', "MF811", 9, ""),
-    (
-        "controllers.yaml",
-        "enable_odom_tf: false",
-        "position_feedback: false\n    enable_odom_tf: false",
-        "",
-        0,
-        "",
-    ),
     # The filter's odometry is not that of the controller's parameters: nothing joins the two.
     ("ekf.yaml", "base_link_frame: base_link", "base_link_frame: base_lnk", "MF813", 15, ""),
     # Nobody sends odom -> base_link.
@@ -169,21 +140,205 @@ BREAKS = [
         20,
         "",
     ),
+    # Both wheels are one joint.
+    (
+        "controllers.yaml",
+        "[right_wheel_joint]",
+        "[left_wheel_joint]",
+        "MF808",
+        10,
+        "controllers.yaml:9",
+    ),
+    # A link with two joints above it: two static transforms.
+    (
+        "rover.urdf",
+        '<link name="finger_link"/>\n',
+        '<link name="finger_link"/>\n  <joint name="second" type="fixed"><parent link="lidar_link"/>'
+        '<child link="imu_link"/></joint>\n',
+        "MF607",
+        15,
+        "rover.urdf:8",
+    ),
+    # The filter sends the transform of a link that the description has.
+    (
+        "ekf.yaml",
+        "base_link_frame: base_link",
+        "base_link_frame: lidar_link",
+        "MF607",
+        1,
+        "rover.urdf:19",
+    ),
+    # The filter of the map sends map -> odom, and nothing odom -> base_link.
+    ("ekf.yaml", "world_frame: odom\n", "world_frame: map\n", "MF813", 15, ""),
+    # The costmap's source and its plugin are called otherwise than their parameters.
+    ("nav2.yaml", "sources: scan\n", "sources: scn\n", "MF819", 11, "nav2.yaml:12"),
+    (
+        "nav2.yaml",
+        "plugins: [obstacle_layer]",
+        "plugins: [obstacl_layer]",
+        "MF819",
+        8,
+        "nav2.yaml:10",
+    ),
+    # The bridge of an IMU, reversed, or of another type.
+    ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MF816", 2, "rover.urdf:43"),
+    ("bridge.yaml", "gz.msgs.IMU", "gz.msgs.Magnetometer", "MF816", 2, "rover.urdf:43"),
+    ("bridge.yaml", "msg/Imu", "msg/MagneticField", "MF818", 4, "bridge.yaml:1"),
+    # twist_mux has a topic that nobody sends.
+    (
+        "nav2.yaml",
+        "{topic: cmd_vel_smoothed, timeout",
+        "{topic: nav_vel, timeout",
+        "MF812",
+        25,
+        "/cmd_vel",
+    ),
+    (
+        "moveit.yaml",
+        "follow_joint_trajectory",
+        "follow_trajectory",
+        "MF815",
+        5,
+        "controllers.yaml:6",
+    ),
 ]
 
 
-@pytest.mark.parametrize(("file", "old", "new", "code", "line", "other"), BREAKS)
+# The same for an arm with sensors.
+ARM_BREAKS = [
+    # The SRDF names what the URDF has not.
+    (
+        "arm.srdf",
+        '<joint name="finger_joint"/>',
+        '<joint name="fingr_joint"/>',
+        "MB804",
+        3,
+        "finger_joint",
+    ),
+    ("arm.srdf", 'tip_link="tool_link"', 'tip_link="tol_link"', "MB803", 2, "tool_link"),
+    ("arm.srdf", 'name="elbow_joint" value', 'name="elbo_joint" value', "MB804", 6, "elbow_joint"),
+    # A broadcaster of a sensor that the hardware has not.
+    ("controllers.yaml", "sensor_name: tool_imu", "sensor_name: imu", "MF811", 20, "arm.urdf:36"),
+    (
+        "controllers.yaml",
+        "sensor_name: wrist_ft",
+        "sensor_name: tcp_fts",
+        "MF811",
+        22,
+        "arm.urdf:48",
+    ),
+    ("arm.urdf", '<sensor name="wrist_ft">', '<sensor name="tool_ft">', "MF811", 22, "arm.urdf:48"),
+    ("arm.urdf", '<state_interface name="torque.z"/>', "", "MF811", 22, "arm.urdf:52"),
+    ("controllers.yaml", "joint: finger_joint", "joint: grip_joint", "MF811", 18, "arm.urdf:31"),
+    # The filter reads the topic of a broadcaster under its usual name.
+    (
+        "sensors.yaml",
+        "imu_broadcaster/imu",
+        "imu_sensor_broadcaster/imu",
+        "MF812",
+        3,
+        "controllers.yaml:7",
+    ),
+    ("controllers.yaml", "imu_broadcaster", "imu_sensor", "MF812", 3, "controllers.yaml:7"),
+    # Sources that nobody sends: behind a laser filter, of joint_state_publisher.
+    ("sensors.yaml", "topic: scan_filtered", "topic: scan_filtred", "MF812", 15, "sensors.yaml:7"),
+    ("sensors.yaml", "[joint_states]", "[arm_joint_states]", "MF812", 17, "controllers.yaml:4"),
+    # The laser filter reads scan.
+    (
+        "bridge.yaml",
+        "ros_topic_name: scan",
+        "ros_topic_name: scan_raw",
+        "MF812",
+        7,
+        "bridge.yaml:1",
+    ),
+    # A source in the list is called otherwise than its parameters.
+    ("sensors.yaml", "sources: [front]", "sources: [frnt]", "MF819", 14, "sensors.yaml:15"),
+    # The row of the bridge is for the other direction, for another type, or for another topic.
+    ("bridge.yaml", "GZ_TO_ROS", "ROS_TO_GZ", "MF816", 2, "arm.urdf:57"),
+    ("bridge.yaml", "gz.msgs.LaserScan", "gz.msgs.PointCloudPacked", "MF816", 2, "arm.urdf:57"),
+    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MF510", 1, "sensor_msgs/msg/LaserScan"),
+    ("bridge.yaml", "msg/LaserScan", "msg/PointCloud2", "MF818", 7, "bridge.yaml:1"),
+    ("arm.urdf", "<topic>scan</topic>", "<topic>lidar</topic>", "MF816", 2, "arm.urdf:57"),
+    # MoveIt uses a joint of another controller, an action that is not served, or another type of it.
+    (
+        "moveit.yaml",
+        "joints: [shoulder_joint, elbow_joint]",
+        "joints: [shoulder_joint, finger_joint]",
+        "MF815",
+        6,
+        "controllers.yaml:13",
+    ),
+    (
+        "moveit.yaml",
+        "action_ns: gripper_cmd",
+        "action_ns: follow_joint_trajectory",
+        "MF815",
+        9,
+        "controllers.yaml:6",
+    ),
+    ("moveit.yaml", "GripperCommand", "FollowJointTrajectory", "MF815", 8, "controllers.yaml:6"),
+    ("moveit.yaml", "hand_controller]", "hand_controler]", "MF815", 2, "moveit.yaml:7"),
+    (
+        "controllers.yaml",
+        "position_controllers/GripperActionController",
+        "forward_command_controller/ForwardCommandController",
+        "MF815",
+        9,
+        "controllers.yaml:6",
+    ),
+    # A controller with parameters that no manager has.
+    (
+        "controllers.yaml",
+        "    arm_controller: {type: joint_trajectory_controller/JointTrajectoryController}\n",
+        "",
+        "MF815",
+        3,
+        "controllers.yaml:5",
+    ),
+    ("controllers.yaml", "arm_controller:\n  ros", "arm_controler:\n  ros", "MF810", 11, "yaml:5"),
+    # A joint that is twice in the list of a controller, so another one has none.
+    (
+        "controllers.yaml",
+        "joints: [shoulder_joint, elbow_joint]",
+        "joints: [shoulder_joint, shoulder_joint]",
+        "MF815",
+        6,
+        "controllers.yaml:13",
+    ),
+    (
+        "controllers.yaml",
+        "frame_id: tool_link}\nft",
+        "frame_id: tol_link}\nft",
+        "MF112",
+        20,
+        "tool_link",
+    ),
+]
+
+
+EVERY = [*((FILES, *it) for it in BREAKS), *((ARM_FILES, *it) for it in ARM_BREAKS)]
+
+
+@pytest.mark.parametrize(("files", "file", "old", "new", "code", "line", "other"), EVERY)
 def test_a_break_is_found_with_its_lines(
-    file: str, old: str, new: str, code: str, line: int, other: str, tmp_path: Path
+    files: dict[str, str],
+    file: str,
+    old: str,
+    new: str,
+    code: str,
+    line: int,
+    other: str,
+    tmp_path: Path,
 ) -> None:
-    assert old in FILES[file]
-    both = found(tmp_path, {**FILES, file: FILES[file].replace(old, new)})
-    if not code:
-        assert both == ([], [])
-        return
+    assert old in files[file]
+    both = found(tmp_path, {**files, file: files[file].replace(old, new)})
     for broken in both:
         alike = (it for it in broken if it.code == code)
         first = min(alike, key=lambda it: (it.line, it.message), default=None)
         assert first, broken
         assert first.line == line
         assert other in first.hint
+        # What only a stack has is in no file.
+        one_line = code.startswith(ONE_LINE) or other.startswith("/")
+        assert one_line or PLACE.search(f"{first.message} {first.hint}"), first

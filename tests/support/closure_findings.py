@@ -1,0 +1,34 @@
+"""What is open in the robots of a fleet, by a build and by a plan."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from multibot_rewrite.findings.finding import NOTE, Finding
+from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.closed_plan import closed_plan
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
+
+# What a build tells of the odometry of these robots in some layouts, and is no gap.
+BESIDE = ("MF110", "MF125", "MF7", "MB4", "MR")
+
+
+def found(
+    folder: Path, files: dict[str, str], layout: str = "frames-per-robot"
+) -> tuple[list[Finding], list[Finding]]:
+    """What a build says, and what a plan says."""
+    for name, text in files.items():
+        (folder / name).write_text(text)
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(f"layout: {layout}\n{files['fleet.yaml']}")
+    plan = plan_fleet(read_fleet(str(fleet), "", {}))
+    problems = plan.fleet.table.problems
+    built = {*problems, *make_outputs(plan).findings}
+    planned = {*problems, *closed_plan(plan).gaps}
+    return _gaps(built), _gaps(planned)
+
+
+def _gaps(every: Iterable[Finding]) -> list[Finding]:
+    return [it for it in every if it.level != NOTE and not it.code.startswith(BESIDE)]
