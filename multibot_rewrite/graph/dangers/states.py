@@ -65,7 +65,7 @@ def _manager(seen: Seen, node: str) -> str:
 
 @danger_rule(
     "MG512",
-    "interface-claimed-twice",
+    "interface-commanded-twice",
     ERROR,
     what="Active controllers of two controller managers of one robot command the same interface."
     " Asked for by `--state`.",
@@ -80,7 +80,7 @@ running: /robot1/controller_manager controls joint1/position by arm_controller
 running: /robot1/gripper/controller_manager controls finger/position by gripper_controller
 """,
 )
-def interface_claimed_twice(seen: Seen) -> Iterator[Finding]:
+def interface_commanded_twice(seen: Seen) -> Iterator[Finding]:
     """One controller manager refuses it by itself."""
     claims: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
     for it in seen.states:
@@ -94,7 +94,7 @@ def interface_claimed_twice(seen: Seen) -> Iterator[Finding]:
             who = " and ".join(f"{name} of {node}" for node, name in found.items())
             message = f"{interface} is commanded by {who}"
             cause = "two controller managers for one robot: stop one, or unload its controller"
-            yield interface_claimed_twice.finding(
+            yield interface_commanded_twice.finding(
                 message, cause, robot=robot, node=next(iter(found)), names=(interface,)
             )
 
