@@ -16,7 +16,7 @@ from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple
 
 from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
-from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, Caveat, Snapshot, from_json
+from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, ZENOH, Caveat, Snapshot, from_json
 from multibot_rewrite.graph.states import NodeState, Question, from_message
 from multibot_rewrite.model import MultibotError
 
@@ -180,6 +180,8 @@ def _explain(code: int, output: str, environ: Mapping[str, str]) -> str:
     if code == RMW_MISMATCH:
         wanted = environ.get("RMW_IMPLEMENTATION", "")
         remedy = "unset it, or install that RMW"
+        if wanted == ZENOH:
+            remedy += ", or ask its router: --zenoh tcp/localhost:7447"
         return f"RMW_IMPLEMENTATION={wanted!r} is not available to this rclpy; {remedy}"
     if code == ENDED:
         return (
