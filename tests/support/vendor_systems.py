@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import yaml
 from vendor_sources import WITHOUT, install, packages_below, sources_folder
 
-from multibot_rewrite.fleets.fleet import expected
+from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.expectation import Expectation
@@ -75,13 +75,15 @@ class Started(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A system: the nodes that its launch files start, its plan without and with them."""
+    """A system: the nodes that its launch files start, its plan without and with them, and the
+    fleet of the latter."""
 
     name: str
     before: str
     started: Mapping[str, Started]
     own: Expectation
     launched: Expectation
+    fleet: Fleet
 
 
 def read_vendors() -> Vendors:
@@ -180,7 +182,7 @@ def _positional(words: Iterable[str]) -> Iterator[str]:
             yield word
 
 
-def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Expectation:
+def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Fleet:
     """The plan of two robots by the vendor's files, with its launch files or without."""
     work = Path(words["work"])
     robots = []
@@ -191,7 +193,7 @@ def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -
     fleet = {"layout": "tf-per-robot", "distro": system["release"], "robots": robots}
     file = work / "fleet.yaml"
     file.write_text(yaml.safe_dump({**fleet, **filled(system["fleet"], words)}, sort_keys=False))
-    return expected(plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet)
+    return plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet
 
 
 def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
@@ -210,11 +212,12 @@ def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
             for robot in (ROBOT, OTHER):
                 prepare(system, {**words, "robot": robot})
             nodes = {it.name: it for it in started(system, vendors, words)}
-            plans = [planned(system, words, launch) for launch in (False, True)]
+            own, launched = (planned(system, words, launch) for launch in (False, True))
         finally:
             os.environ.clear()
             os.environ.update(before)
-    return Outcome(name, str(system.get("before", "")), nodes, *plans)
+    plans = (expected(own), expected(launched))
+    return Outcome(name, str(system.get("before", "")), nodes, *plans, launched)
 
 
 def nodes_of(plan: Expectation) -> dict[str, bool]:
