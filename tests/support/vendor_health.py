@@ -34,7 +34,9 @@ def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Fi
         kind = kind_of(it, short, release, kinds)
         if kind and short in known:
             declared.add(it.name)
-            ends += endpoints(kind, known[short], placed(it, short, rules.get(it.name, ())), release)
+            ends += endpoints(
+                kind, known[short], placed(it, short, rules.get(it.name, ())), release
+            )
     owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
     seen = Snapshot(tuple(GraphNode(it, it) for it in owners), tuple(ends), (), environment())
     return tuple(check(_of(found.launched, declared), seen))
@@ -71,5 +73,3 @@ def _of(plan: Expectation, nodes: Iterable[str]) -> Expectation:
     mine = tuple(nodes)
     ends = tuple(it for it in plan.endpoints if it.node.startswith(mine))
     return plan._replace(endpoints=ends)
-
-

@@ -91,6 +91,8 @@ def read_vendors() -> Vendors:
     parts = [yaml.safe_load(it.read_text()) for it in sorted(HERE.glob("vendors/*.yaml"))]
     merged: dict[str, dict[str, Any]] = {key: {} for key in Vendors._fields}
     for part in parts:
+        for system in part["systems"].values():
+            system.setdefault("uses", list(part["sources"]))
         for key, rows in part.items():
             merged[key] |= rows or {}
     return Vendors(**merged)
@@ -123,7 +125,7 @@ def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str
     """The nodes of one robot, by the real launch."""
     rows = [row for line in filled(system["launch"], words) for row in _recorded(line)]
     below = filled(system.get("below", ""), words)
-    nodes = [it for row in rows for it in _nodes(row, vendors.named)]
+    nodes = [it for row in rows for it in started_by(row, vendors.named)]
     found = [_below(it, below) for it in nodes]
     also = filled(system.get("simulator", {}), words)
     return [*found, *(Started(f"/{words['robot']}/{name}", by) for name, by in also.items())]
@@ -141,7 +143,7 @@ def _recorded(line: str) -> list[dict[str, Any]]:
     return found
 
 
-def _nodes(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
+def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
     """The nodes of a program: it may have several, and a spawner has its controllers."""
     by = f"{row['package']}/{row['executable']}"
     if not row["package"] or row["executable"] in _PASSING:
@@ -194,6 +196,11 @@ def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -
     file = work / "fleet.yaml"
     file.write_text(yaml.safe_dump({**fleet, **filled(system["fleet"], words)}, sort_keys=False))
     return plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet
+
+
+def missing(system: Mapping[str, Any], folder: Path) -> list[str]:
+    """The checkouts that a system needs and that are not there."""
+    return [it for it in system["uses"] if not (folder / it).is_dir()]
 
 
 def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
@@ -282,6 +289,10 @@ def main(words: list[str]) -> int:
         return 2
     vendors = read_vendors()
     names = [it for it in words if not it.startswith("--")] or list(vendors.systems)
+    lacking = {it for name in names for it in missing(vendors.systems[name], folder)}
+    if lacking:
+        print(f"{folder} lacks {', '.join(sorted(lacking))}", file=sys.stderr)
+        return 2
     text = page([outcome(it, vendors, folder) for it in names])
     if "--write" in words:
         PAGE.write_text(text)
