@@ -36,9 +36,11 @@ NO_NAME = "the launch file gives it no name"
 
 
 class Programs(NamedTuple):
-    """Executables whose node is called otherwise, and those that are no node of a robot."""
+    """Executables whose node is known under another word, those whose node has another name, and those
+    that are no node of a robot."""
 
     nodes: Mapping[str, str]
+    names: Mapping[str, str]
     passing: Collection[str]
 
 
@@ -65,7 +67,7 @@ def programs() -> Programs:
     """Those of ``launch_programs.yaml``."""
     text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
     data = load_yaml(text)
-    return Programs(data["nodes"], frozenset(data["passing"]))
+    return Programs(data["nodes"], data["names"], frozenset(data["passing"]))
 
 
 def with_launched(
@@ -131,9 +133,10 @@ def _pair(
     words: Collection[str],
 ) -> _Pair:
     base = _base(it, stack, known)
-    name = it.name or (base.name if base else it.executable.rpartition(":")[2])
+    own = programs().names.get(f"{it.package}/{it.executable}") or (base.name if base else "")
+    name = it.name or own or it.executable.rpartition(":")[2]
     facts = base or NodeFacts(name, it.package, ())
-    unnamed = NO_NAME if not it.name and base is None else ""
+    unnamed = "" if it.name or own else NO_NAME
     found = facts._replace(
         name=_below(it.namespace, name, words),
         endpoints=tuple(end._replace(remapped="") for end in facts.endpoints),

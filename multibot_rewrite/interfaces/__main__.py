@@ -2,7 +2,7 @@
 
 Each FOLDER is a checkout of a tag or commit and is called REPOSITORY@VERSION. The table is printed;
 with ``--compare RELEASE``, the differences to the nodes that are known of that release, and nodes
-beside them that ``nodes.txt`` does not have.
+beside them that ``nodes.txt`` does not have; with ``--nodl NODE``, the NoDL document of that node.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 from multibot_rewrite.interfaces.checkouts import read_folder
 from multibot_rewrite.interfaces.compare import difference_of, differences
 from multibot_rewrite.interfaces.known_nodes import extracted, unlisted
+from multibot_rewrite.interfaces.nodl_files import nodl_of
 from multibot_rewrite.interfaces.records import joined
 from multibot_rewrite.interfaces.scope import indexed
 from multibot_rewrite.interfaces.table import to_table
@@ -29,14 +30,23 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument("folders", nargs="+", type=Path, metavar="FOLDER")
     parser.add_argument("--compare", choices=RELEASES, metavar="RELEASE")
+    parser.add_argument("--nodl", metavar="NODE")
     given = parser.parse_args(arguments)
     try:
-        source = joined([read_folder(folder) for folder in sorted(given.folders)])
+        return _printed(given)
     except UsageError as error:
         print(f"interfaces: {error}", file=sys.stderr)
         return 2
-    index = indexed(source)
+
+
+def _printed(given: argparse.Namespace) -> int:
+    index = indexed(joined([read_folder(folder) for folder in sorted(given.folders)]))
     facts = tuple(extracted(index))
+    if given.nodl:
+        made = nodl_of(given.nodl, facts)
+        sys.stdout.write(made.text)
+        sys.stderr.writelines(f"interfaces: NoDL has no form for {it}\n" for it in made.left_out)
+        return 0
     if given.compare:
         new = map(difference_of, unlisted(index))
         rows = sorted({*differences(facts, built_in(given.compare)), *new})

@@ -106,6 +106,17 @@ def test_one_key_may_hold_several_sections() -> None:
     assert made(source)[0] == source.replace("local_costmap:", "/robot1/local_costmap:", 1)
 
 
+def test_the_helpers_of_a_costmap_go_with_it() -> None:
+    """Layout postfix: files of older releases have their sections below the one key."""
+    inner = "    ros__parameters: {use_sim_time: true}\n"
+    source = f"local_costmap:\n  local_costmap:\n{inner}  local_costmap_client:\n{inner}"
+    text, findings = made(source, L4)
+    keys = [line.strip(" :") for line in text.splitlines() if line.endswith(":")]
+    assert keys[0] == "/robot1/local_costmap"
+    assert {"local_costmap", "local_costmap_client"} <= set(keys)
+    assert "MF101" not in codes(findings)
+
+
 def test_rcl_would_find_every_section() -> None:
     """The keys joined as rcl joins them are the full names that the nodes run under."""
     context = setting(L2)

@@ -198,3 +198,24 @@ def test_the_nodes_are_all_known_where_only_a_parameter_file_is_not() -> None:
     graph = LaunchGraph((AMCL,), (note,))
     assert graph_of(to_json(graph)) == graph
     assert graph.whole
+
+
+@pytest.mark.parametrize(
+    ("package", "executable", "name"),
+    [
+        ("joy_linux", "joy_linux_node", "joy_node"),
+        ("diagnostic_aggregator", "aggregator_node", "analyzers"),
+        ("turtlebot3_node", "turtlebot3_ros", "turtlebot3_node"),
+        ("turtlebot4_diagnostics", "diagnostics_updater", "turtlebot4_diagnostics"),
+        ("clearpath_diagnostics", "diagnostics_updater", "clearpath_diagnostics_updater"),
+        ("joy2twist", "joy2twist", "joy2twist_node"),
+    ],
+)
+def test_a_node_without_a_name_has_that_of_its_code(
+    package: str, executable: str, name: str
+) -> None:
+    """Names as the constructors of the nodes have them, read in the vendors' sources."""
+    found = runs(launched(started(package, executable)))
+    assert found[name].when == ""
+    assert found[name].package == package
+    assert runs(launched(started("acme", "driver")))["driver"].when
