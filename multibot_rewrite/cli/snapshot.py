@@ -23,6 +23,7 @@ from multibot_rewrite.graph.snapshot import (
     incomplete,
     to_json,
 )
+from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import (
     ACTION,
@@ -67,6 +68,8 @@ def run(options: argparse.Namespace) -> int:
 
 def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
+    if options.snapshot and (options.expect or options.topic):
+        raise UsageError("--expect and --topic are for the live graph, leave out --merge")
     if options.output not in (None, STANDARD):
         check_folder(options.output)
         check_target(options.output, options.snapshot)

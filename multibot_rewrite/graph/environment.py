@@ -182,6 +182,9 @@ def _nothing(asked: DiscoverySettings) -> str:
         where += f", peers {' '.join(asked.static_peers)}"
     elif asked.range == "LOCALHOST":
         remedy += " For robots on other machines set ROS_STATIC_PEERS"
+    else:
+        remedy += " On other machines they may be hidden: multicast is lost, or they are on range"
+        remedy += " LOCALHOST; set ROS_STATIC_PEERS, or take the snapshot there"
     return f"no node was seen ({where}); {remedy}"
 
 

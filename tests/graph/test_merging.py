@@ -143,6 +143,7 @@ def test_the_command_joins_and_check_takes_all(
     ("arguments", "said"),
     [
         (["snapshot", "--merge", "gone.json"], "gone.json"),
+        (["snapshot", "--merge", "a.json", "--expect", "/x"], "leave out --merge"),
         (["snapshot", "--merge"], "expected at least one argument"),
         (["snapshot", "--merge", "a.json", "-o", "a.json"], "a.json is a file that is read"),
         (["snapshot", "--merge", "a.json", "--zenoh", "tcp/h:1"], "two sources"),

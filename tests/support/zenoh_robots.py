@@ -79,14 +79,20 @@ class Robot(NamedTuple):
         return f"@ros2_lv/{self.domain}/{self.session.zid()}/{node}/{number}/{kind}/%"
 
     @contextmanager
-    def sends(self, topic: str, *edges: tuple[str, str], latched: bool = False) -> Iterator[None]:
+    def sends(
+        self,
+        topic: str,
+        *edges: tuple[str, str],
+        latched: bool = False,
+        gid: bytes = b"g",
+        period: float = PERIOD,
+    ) -> Iterator[None]:
         """Transforms on a topic: latched once in a cache, others again and again."""
         from zenoh import ext
 
         key = f"{self.domain}/{topic.strip('/')}/{TF_TYPE}/{TF_HASH}"
         data = tf_message(*edges)
-        gid = topic.encode().ljust(16, b"g")[:16]
-        attachment = struct.pack("<qqB", 1, 2, 16) + gid
+        attachment = struct.pack("<qqB", 1, 2, 16) + gid.ljust(16, b"g")
         if latched:
             cache = ext.CacheConfig(max_samples=1)
             publisher = ext.declare_advanced_publisher(self.session, key, cache=cache)
@@ -97,7 +103,7 @@ class Robot(NamedTuple):
         stop = threading.Event()
 
         def send() -> None:
-            while not stop.wait(PERIOD):
+            while not stop.wait(period):
                 self.session.put(key, data, attachment=attachment)
 
         thread = threading.Thread(target=send)

@@ -30,7 +30,7 @@ from multibot_rewrite.graph.pictures.states import MISSING, STATES
 from multibot_rewrite.graph.pictures.svg import MEANINGS, Ids, group_svg, safe, tree_svg
 from multibot_rewrite.graph.pictures.text import counted
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree
-from multibot_rewrite.graph.snapshot import QUIET
+from multibot_rewrite.graph.snapshot import QUIET, ZENOH
 from multibot_rewrite.graph.watching import Verdict
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS
@@ -250,12 +250,15 @@ def _environment(scene: Scene) -> Iterator[str]:
     around = scene.environment
     why = "no more changes" if around.settled == QUIET else around.settled
     server = around.discovery_server or "none"
-    rows = (
-        ("domain", str(around.domain)),
+    ways = (
         ("discovery range", around.range),
         ("static peers", " ".join(around.static_peers) or "none"),
-        ("RMW", around.rmw),
         ("discovery server", f"{server}{', super client' if around.super_client else ''}"),
+    )
+    rows = (
+        ("domain", str(around.domain)),
+        ("RMW", around.rmw),
+        *((("router", server),) if around.rmw == ZENOH else ways),
         ("participants", str(around.participants)),
         ("observed for", f"{around.seconds:.1f} s ({why})"),
     )

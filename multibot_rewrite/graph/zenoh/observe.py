@@ -86,7 +86,7 @@ def _look(session: RouterSession, request: Request, router: Router, started: flo
         keys, complete = session.tokens(router.key())
     seen = _read(keys)
     tf = ZenohTf(session, router.domain)
-    tf.listen(tokens.endpoints(seen.tokens))
+    tf.listen(tokens.endpoints(seen.tokens), request.timeout - (time.monotonic() - started))
     settled = _settled(keys, request.expected)
     caveats = [*_strays(session, seen.tokens, router)] if complete else [_cut_short(router)]
     seconds = time.monotonic() - started
@@ -153,6 +153,8 @@ def _watch(
     end = session.follow_tokens(
         router.key(), lambda key, up: there.add(key) if up else there.discard(key)
     )
+    # At once, so that the first view is whole.
+    there.update(session.tokens(router.key())[0])
     shown: object = None
     while (now := time.monotonic() - started) < request.timeout:
         session.deliver()

@@ -54,16 +54,14 @@ class RouterSession(NamedTuple):
         return found, complete
 
     def follow_tokens(self, key: str, changed: Callable[[str, bool], None]) -> Callable[[], None]:
-        """``changed`` gets each token that is there, comes or goes; returns what ends it."""
+        """``changed`` gets each token that comes or goes; returns what ends it."""
 
         def arrived(sample: Any) -> None:
             there = sample.kind == self.zenoh.SampleKind.PUT
             self.inbox.append((changed, (str(sample.key_expr), there)))
 
         liveliness = self.session.liveliness()
-        end: Callable[[], None] = liveliness.declare_subscriber(
-            key, arrived, history=True
-        ).undeclare
+        end: Callable[[], None] = liveliness.declare_subscriber(key, arrived).undeclare
         return end
 
     def subscribe(

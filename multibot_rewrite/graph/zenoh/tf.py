@@ -38,17 +38,17 @@ class ZenohTf:
         self._publishers = Counter(end.name for end in ends)
         self.subscriptions.update(ends, False)
 
-    def listen(self, endpoints: Iterable[GraphEndpoint]) -> None:
-        """Subscribe, and wait until every publisher has spoken, for a bounded time."""
+    def listen(self, endpoints: Iterable[GraphEndpoint], seconds: float) -> None:
+        """Subscribe, and wait until every publisher has spoken, ``seconds`` at the longest."""
         self.update(endpoints)
         began = time.monotonic()
-        while self._publishers and self._waiting(time.monotonic() - began):
+        while self._publishers and self._waiting(time.monotonic() - began, seconds):
             time.sleep(POLL_SECONDS)
             self._session.deliver()
 
-    def _waiting(self, passed: float) -> bool:
+    def _waiting(self, passed: float, seconds: float) -> bool:
         silent = any(len(self._spoken[it]) < many for it, many in self._publishers.items())
-        return passed < (TF_LONGEST_SECONDS if silent else TF_SECONDS)
+        return passed < min(seconds, TF_LONGEST_SECONDS if silent else TF_SECONDS)
 
     def _subscribe(
         self, topic: str, type_: str, latched: bool, callback: Callback

@@ -173,6 +173,7 @@ def test_the_router_refuses_by_certificate(
         assert arrives(operator, two, own, own)
         assert not arrives(lawless, operator, own, key("/robot1/odom"))
         assert not arrives(two, lawless, key("/robot2/odom"), key("/parameter_events"))
+        assert arrives(two, operator, key("/rosout"), key("/robot2/odom"))
         serve = key("/robot2/reset")
         two.declare_queryable(serve, lambda query: query.reply(serve, b"done"))
         assert [it.ok is not None for it in operator.get(serve, timeout=SECONDS)] == [True]

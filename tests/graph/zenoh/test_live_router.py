@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -100,10 +101,11 @@ def test_another_version_of_a_type_is_found_and_other_qos_is_none(
         there.end(8, "/", "rviz2", "MP", "/robot1/cmd_vel", STRING, qos=best_effort)
         there.end(8, "/", "rviz2", "MS", "/robot1/odom", STRING, qos=reliable)
         assert check(plan, address, 4) == 0
+        main(["doctor", "--zenoh", address, "--domain", "4"])
         there.end(8, "/", "rviz2", "MS", "/robot2/odom", STRING, hash=TF_HASH)
         assert check(plan, address, 4) == 1
     shown = capsys.readouterr().out
-    assert "MG107" not in shown
+    assert "MG107" not in shown and "MG307" not in shown
     assert "MG106 topic /robot2/odom has 2 versions of std_msgs/msg/String" in shown
 
 
@@ -122,6 +124,17 @@ def test_tf_is_heard_latched_and_not(address: str) -> None:
     }
     assert {it.publishers for it in graph.frames} == {("/robot1/drive",)}
     assert not incomplete(graph)
+
+
+def test_a_slow_sender_of_tf_is_waited_for(address: str) -> None:
+    """Each publisher is told by its gid, so a fast one does not end the look for a slow one."""
+    with fleet(address, 14) as there:
+        for number, name in ((0, "robot1"), (1, "robot2")):
+            there.end(number, f"/{name}", "drive", "MP", "/tf", TF_TYPE, hash=TF_HASH)
+        fast = there.sends("/tf", ("odom", "base"), gid=b"1")
+        with fast, there.sends("/tf", ("map", "odom"), gid=b"2", period=1.0):
+            graph = seen(address, 14)
+    assert {(it.parent, it.child) for it in graph.frames} == {("odom", "base"), ("map", "odom")}
 
 
 @pytest.mark.deep
@@ -200,3 +213,26 @@ def test_a_session_configuration_is_a_router(tmp_path: Path, address: str) -> No
     file.write_text("{ connect: 3 }")
     with pytest.raises(InputError, match=r"session\.json5: no session configuration of Zenoh"):
         seen(str(file), 13)
+
+
+@pytest.mark.deep
+def test_a_graph_that_goes_on_changing_is_shown_as_changing(address: str) -> None:
+    with fleet(address, 15) as there:
+        graphs = watch(Request(20.0), Router(address, 15))
+        next(graphs)
+        stop = threading.Event()
+
+        def change() -> None:
+            number = 100
+            while not stop.wait(0.02):
+                there.node(number, "/", f"node{number}")
+                number += 1
+
+        thread = threading.Thread(target=change)
+        thread.start()
+        changing = next(it for it in graphs if it.environment.settled == CHANGING)
+        stop.set()
+        thread.join()
+        quiet = next(it for it in graphs if it.environment.settled != CHANGING)
+        graphs.close()
+    assert len(quiet.nodes) >= len(changing.nodes) > 2
