@@ -139,7 +139,11 @@ HOMES: tuple[Home, ...] = (
         ),
         GRAPH_INTRO,
     ),
-    Home("MG2", "tf", ("graph.rules.transforms", "graph.rules.frame_names")),
+    Home(
+        "MG2",
+        "tf",
+        ("graph.rules.transforms", "graph.rules.frame_names", "graph.rules.frames_heard"),
+    ),
     Home(
         "MG3",
         "dangers of any system: nodes, names, commands, data",

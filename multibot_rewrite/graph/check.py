@@ -18,6 +18,7 @@ from multibot_rewrite.graph.rules import (
     demands,
     endpoints,
     frame_names,
+    frames_heard,
     leaks,
     nodes,
     publishers,
@@ -27,7 +28,17 @@ from multibot_rewrite.graph.rules import (
 from multibot_rewrite.graph.rules.comparison import View, make_view
 from multibot_rewrite.graph.snapshot import Caveat, Snapshot, incomplete
 
-_MODULES = (nodes, endpoints, leaks, type_and_qos, publishers, demands, transforms, frame_names)
+_MODULES = (
+    nodes,
+    endpoints,
+    leaks,
+    type_and_qos,
+    publishers,
+    demands,
+    transforms,
+    frame_names,
+    frames_heard,
+)
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 WAITED_FOR = "expected-not-seen"

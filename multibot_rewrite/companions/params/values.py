@@ -185,9 +185,10 @@ local_costmap:
 
 
 def _topic(job: ParamsJob, section: ParamSection, site: NameSite) -> Iterator[Splice | Finding]:
-    result = spell_topic(
-        job.context, section.path, site.kind, site.value, _reach(job, section, site), job.facts
-    )
+    # A pattern such as /**/amcl is for the node of that name.
+    node = section.path.rpartition("/")[2] if section.wild else section.path
+    reach = _reach(job, section, site)
+    result = spell_topic(job.context, node, site.kind, site.value, reach, job.facts)
     yield from _replaced(job, site, result.text)
     if result.wrong_target:
         message = f"{site.key.value}: remap rules turn {result.text} into {result.wrong_target}"

@@ -10,7 +10,7 @@ from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.causes import Cause, caused, plugin_of, tf_rule
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.rules.ownership import SEPARATORS
+from multibot_rewrite.graph.rules.name_variants import name_variants
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
@@ -119,21 +119,12 @@ def _disconnected(
     ownership = view.frame_ownership
     for root in roots:
         plain = ownership.without_robot(root, robot.name)
-        variants = _name_variants(plain, root, ownership.tag(robot.name))
+        variants = name_variants(plain, root, ownership.tag(robot.name))
         # Under one of these names the root is in the tree.
         other = next((name for name in variants if name in children), "")
         if other:
             cause = f"{other} and {root} are one frame with two names: see the other findings"
     return disconnected_tf_tree.finding(message, cause, robot=robot.name, names=tuple(roots))
-
-
-def _name_variants(plain: str, frame: str, tag: str) -> Iterator[str]:
-    """Wrong names of a frame: without the robot's name, and with the name added once more."""
-    if plain != frame:
-        yield plain
-    for separator in ("/", *SEPARATORS):
-        yield f"{tag}{separator}{frame}"
-        yield f"{frame}{separator}{tag}"
 
 
 @graph_rule(

@@ -1,0 +1,119 @@
+"""Rule about planned frames in no transform: no joint states, or another robot's description."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence, Set
+
+from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.graph.expectation import PlannedRobot
+from multibot_rewrite.graph.rules.comparison import View
+from multibot_rewrite.graph.rules.declaration import graph_rule
+from multibot_rewrite.graph.rules.name_variants import name_variants
+from multibot_rewrite.graph.rules.tf_trees import frames_in
+from multibot_rewrite.graph.transforms import STATE_PUBLISHER
+from multibot_rewrite.graph.wording import shorten
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+
+JOINT_STATES = "sensor_msgs/msg/JointState"
+
+
+@graph_rule(
+    "MG208",
+    "frame-not-received",
+    ERROR,
+    absence=True,
+    drawn="missing",
+    what="A frame of a robot is in its description or sent by its nodes, by the plan, and no transform"
+    " with it is received.",
+    why="RViz shows a robot without wheels, and every look-up of the frame fails. Where no frame comes"
+    " at all, robot_state_publisher may have the description of another robot.",
+    fix="Start what sends it: joint_state_publisher or joint_state_broadcaster for moving joints, the"
+    " odometry for `odom`, robot_state_publisher with the robot's own description for the others.",
+    bad="""\
+planned: frames of robot1 on /tf: base_link/robot1, wheel/robot1
+as planned: /robot1/robot_state_publisher publishes /tf
+running: transform odom/robot1 -> base_link/robot1 on /tf
+""",
+    good="""\
+planned: frames of robot1 on /tf: base_link/robot1, wheel/robot1
+as planned: /robot1/robot_state_publisher publishes /tf
+running: transform odom/robot1 -> base_link/robot1 on /tf
+running: transform base_link/robot1 -> wheel/robot1 on /tf
+""",
+)
+def frame_not_received(view: View) -> Iterator[Finding]:
+    """One finding for a robot whose senders all run. Where no transform was received at all, tf may
+    not have been looked at."""
+    senders = _senders(view) if view.graph.frames else {}
+    trees = _trees_of(view)
+    for robot in view.plan.robots:
+        needed = senders.get(robot.name, set()) - view.may_miss
+        if not needed or not needed <= view.seen.keys():
+            continue
+        heard = trees.get(robot.name, ())
+        missing = [it for it in robot.frames if not _is_heard(view, robot, it, heard)]
+        if missing:
+            yield _not_received(view, robot, missing)
+
+
+def _senders(view: View) -> Mapping[str, set[str]]:
+    """By robot: its planned nodes that publish its tf."""
+    topics = {robot.name: _tf_topics(robot) for robot in view.plan.robots}
+    found: dict[str, set[str]] = defaultdict(set)
+    for node, kind, role, name in view.planned:
+        robot = view.robot_of.get(node, "")
+        if robot and (kind, role) == (TOPIC, PUBLISHES) and name in topics[robot]:
+            found[robot].add(node)
+    return found
+
+
+def _tf_topics(robot: PlannedRobot) -> tuple[str, str]:
+    return robot.tf, "/".join("tf_static" if it == "tf" else it for it in robot.tf.split("/"))
+
+
+def _trees_of(view: View) -> Mapping[str, list[Set[str]]]:
+    """By robot: the frames on its tf topic, and on others where it sends: those have a finding of
+    their own."""
+    found: dict[str, list[Set[str]]] = defaultdict(list)
+    for tree in view.trees:
+        frames = frozenset(frames_in(tree))
+        for robot in {*tree.home, *tree.robots}:
+            found[robot].append(frames)
+    return found
+
+
+def _is_heard(view: View, robot: PlannedRobot, frame: str, heard: Sequence[Set[str]]) -> bool:
+    if any(frame in frames for frames in heard):
+        return True
+    plain = view.frame_ownership.without_robot(frame, robot.name)
+    variants = [*name_variants(plain, frame, view.frame_ownership.tag(robot.name))]
+    return any(not frames.isdisjoint(variants) for frames in heard)
+
+
+def _not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> Finding:
+    several = f"{len(missing)} of the {len(robot.frames)} frames of {robot.name} are"
+    what = several if len(missing) > 1 else f"frame {missing[0]} of {robot.name} is"
+    message = f"{what} in no transform: {shorten(missing)}"
+    hint = _why_not_received(view, robot, missing)
+    return frame_not_received.finding(message, hint, robot=robot.name, names=tuple(missing))
+
+
+def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> str:
+    if len(missing) == len(robot.frames):
+        publisher = next((it for it in robot.nodes if STATE_PUBLISHER in it), STATE_PUBLISHER)
+        return f"has {publisher} the description of {robot.name}, or that of another robot?"
+    silent = next(_silent_joint_states(view, robot), "")
+    if silent:
+        source = "joint_state_publisher, joint_state_broadcaster or the bridge"
+        return f"nothing publishes {silent}: is {source} started for {robot.name}?"
+    return "which node sends it? is its joint in the joint states, is its plugin loaded?"
+
+
+def _silent_joint_states(view: View, robot: PlannedRobot) -> Iterator[str]:
+    """The topics of joint states that the robot reads and nothing publishes."""
+    for node, kind, role, name in view.planned:
+        type_ = view.planned[node, kind, role, name].type if role == SUBSCRIBES else ""
+        own = type_ == JOINT_STATES and view.robot_of.get(node) == robot.name
+        if own and name not in view.published_topics:
+            yield name
