@@ -15,6 +15,7 @@ from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.expectation import (
     Expectation,
+    PlannedEndpoint,
     PlannedTopic,
     expect,
     named_frames,
@@ -236,3 +237,13 @@ def expected(fleet: Fleet) -> Expectation:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
+
+
+def possible(fleet: Fleet) -> tuple[PlannedEndpoint, ...]:
+    """Every endpoint that its nodes may have, by parameter too."""
+    return tuple(
+        PlannedEndpoint(it.node, end.kind, end.role, it.name, end.type, end.name)
+        for it in fleet.table.names
+        for end in [it.endpoint]
+        if end.role
+    )

@@ -20,6 +20,7 @@ from multibot_rewrite.graph.snapshot import Snapshot
 
 pytestmark = pytest.mark.live
 
+STATE_TYPE = "lifecycle_msgs.srv.GetState"
 AT_ONCE, ROUNDS = 3, 20
 # Of each robot these are played; of a full system hundreds of endpoints more, which take their time.
 PLAYED = (
@@ -91,6 +92,24 @@ def test_the_first_fault_live_and_no_fault(needed: Mapping[str, str]) -> None:
     assert (well.code, well.found) == (0, frozenset()), well.said
     assert (wrong.code, wrong.found) == (1, {fault.code}), wrong.said
     assert all(word in wrong.said for word in fault.words), wrong.said
+
+
+def test_states_that_nodes_are_asked_for(needed: Mapping[str, str]) -> None:
+    """The one that hangs, because nobody spins it, costs the time that is allowed and nothing else."""
+    arguments = ["--ros-args", "-p", "use_sim_time:=true"]
+    robot = [
+        {"name": "amcl", "namespace": "/robot1", "state": "inactive", "arguments": arguments},
+        {"name": "map_server", "namespace": "/robot1", "state": "active"},
+    ]
+    hangs = [{"name": "hangs", "namespace": "/robot1", "services": [["~/get_state", STATE_TYPE]]}]
+    domain = live_commands.domain(18)
+    env = {**live_fleet.environ(domain), **needed}
+    with live_fleet.running(domain, robot, hangs, **needed):
+        done = live_commands.multibot("doctor", "--state", *PATIENTLY, env=env)
+    assert "multibot: 2 of 3 nodes answered --state" in done.stderr, done.stderr
+    assert "MG511 /robot1/amcl is inactive, not active" in done.stdout
+    assert "MG514 use_sim_time is " in done.stdout
+    assert "MG501" in done.stdout and done.returncode == 1
 
 
 @pytest.mark.deep
