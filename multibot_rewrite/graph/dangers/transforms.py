@@ -253,7 +253,8 @@ def transform_of_two_senders(seen: Seen) -> Iterator[Finding]:
             message = f"several nodes send {listed} on {tree.topic}"
             who = robot or only(robots_of(seen, tree.senders))
             nodes = [it for it in tree.senders if seen.robot(it) in ("", who)] or tree.senders
-            cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {shorten(nodes, SEVERAL)}"
+            listed_nodes = shorten(nodes, SEVERAL)
+            cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
             names = tuple(it.child for it in own)
             yield transform_of_two_senders.finding(message, cause, robot=who, names=names)
 
