@@ -126,8 +126,10 @@ def robot(address: str, domain: int = 0, **settings: Any) -> Iterator[Robot]:
         **settings,
     }
     session = zenoh.open(config(**given))
+    # Held here: a token that nobody holds is taken back.
+    made = Robot(session, domain, [])
     try:
-        yield Robot(session, domain, [])
+        yield made
     finally:
         session.close()
 
