@@ -11,6 +11,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     topic NAME from one node            only one node at a time publishes it
     topic NAME over a bridge that ROLE TYPE     what a ros_gz_bridge has to do
     one of NODES                        one of these nodes runs
+    enclave PATH of NODE                the enclave of SROS2 that a running node is in
     transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
     NODE is STATE, NODE has use_sim_time VALUE       what it answers when it is asked for its state
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
@@ -49,6 +50,7 @@ FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
 TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
+ENCLAVE = re.compile(r"enclave (/\S+) of (/\S+)")
 BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S+)")
 ONE_OF = re.compile(r"one of (.+)")
 STATE = re.compile(r"(/\S+) is (\w+)")
@@ -106,7 +108,7 @@ def read_states(text: str) -> tuple[NodeState, ...]:
 
 
 def _is_known(line: str) -> bool:
-    planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF)
+    planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE)
     return any(it.fullmatch(line) for it in (NODE, TRANSFORM, *planned, *ANSWERS))
 
 
@@ -171,8 +173,9 @@ def read_graph(lines: list[str]) -> Snapshot:
     asked = [words[0] for it in ANSWERS for words in _words(it, lines)]
     alone += [it for it in dict.fromkeys(asked) if it not in {node for node, *_ in ends}]
     nodes = [*alone, *dict.fromkeys(node for node, *_ in ends if node not in alone)]
+    enclaves = {node: path for path, node in _words(ENCLAVE, lines)}
     return Snapshot(
-        tuple(GraphNode(node, "") for node in nodes),
+        tuple(GraphNode(node, "", enclaves.get(node, "")) for node in nodes),
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),

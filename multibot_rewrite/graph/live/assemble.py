@@ -29,6 +29,7 @@ BURST_SECONDS = 0.5
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
 # Almost every node publishes one of these, so few queries show which nodes share a process.
 COMMON_TOPICS = ("/parameter_events", "/rosout")
+NO_ENCLAVES: Mapping[str, str] = {}
 
 
 class ReceivedTransform(NamedTuple):
@@ -145,13 +146,16 @@ def processes_by_node(endpoints: Iterable[GraphEndpoint]) -> dict[str, list[str]
 
 
 def nodes_with_process(
-    names: Sequence[str], processes: Mapping[str, Sequence[str]]
+    names: Sequence[str],
+    processes: Mapping[str, Sequence[str]],
+    enclaves: Mapping[str, str] = NO_ENCLAVES,
 ) -> list[GraphNode]:
     """One record for each node; nodes with one name are spread over its processes."""
     result = []
     for name, times in sorted(Counter(names).items()):
         own = processes.get(name) or [""]
-        result += [GraphNode(name, own[at % len(own)]) for at in range(times)]
+        enclave = enclaves.get(name, "")
+        result += [GraphNode(name, own[at % len(own)], enclave) for at in range(times)]
     return result
 
 

@@ -247,7 +247,8 @@ def _snapshot(
     more: Iterable[Caveat] = (),
 ) -> Snapshot:
     processes = assemble.processes_by_node(endpoints)
-    nodes = assemble.nodes_with_process(names, processes)
+    enclaves = queries.enclaves(session.node)
+    nodes = assemble.nodes_with_process(names, processes, enclaves)
     placed = tuple(assemble.endpoints_with_process(endpoints, processes))
     asked = environment.settings(os.environ)
     why, seconds = settled
