@@ -116,7 +116,8 @@ def _frames(frames: Iterable[GraphFrame]) -> Iterator[GraphFrame]:
     for (topic, parent, child), same in sorted(found.items()):
         publishers = {node for frame in same for node in frame.publishers}
         static = any(frame.static for frame in same)
-        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers)))
+        several = any(frame.several for frame in same)
+        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers)), several)
 
 
 def _environment(
