@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridged import bridged_as
@@ -97,7 +98,9 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, runs.nodes, make_naming(**policy), release)
+    read = members[0].source
+    every = with_hardware(runs.nodes, read.root, read.file, known)
+    fleet = assemble(members, every, make_naming(**policy), release)
     table = with_meetings(fleet.table, members, fleet.naming)
     table = table._replace(problems=(*table.problems, *runs.findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming)

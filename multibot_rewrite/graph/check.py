@@ -12,6 +12,7 @@ from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.graph.bags.recording import is_recorded
+from multibot_rewrite.graph.dangers.beside_plan import dangers_beside
 from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import with_patterns
@@ -60,6 +61,8 @@ def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
         view = make_view(plan, with_patterns(plan, graph))
         rules = FRAME_RULES if is_recorded(graph) else RULES
         found = [finding for rule in rules.values() for finding in _ask(rule, view)]
+        if not is_recorded(graph):
+            found += dangers_beside(view, found)
     return inconclusive_where_in_doubt(found, graph)
 
 

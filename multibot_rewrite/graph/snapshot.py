@@ -91,7 +91,7 @@ class GraphEndpoint(NamedTuple):
 class GraphFrame(NamedTuple):
     """A transform received on ``topic``; ``publishers`` are all nodes that publish there.
 
-    tf messages do not say which node sent them.
+    tf messages do not say which node sent them; ``several`` is whether more than one did.
     """
 
     child: str
@@ -99,6 +99,7 @@ class GraphFrame(NamedTuple):
     topic: str
     static: bool
     publishers: tuple[str, ...]
+    several: bool = False
 
 
 class Caveat(NamedTuple):

@@ -31,8 +31,9 @@ from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.doctor.diagnose import diagnose, survey
 from multibot_rewrite.graph.doctor.robots import guess_robots
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.live.voices import Voices
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, to_json
+from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, from_json, to_json
 from multibot_rewrite.graph.states import (
     Controller,
     NodeState,
@@ -314,3 +315,36 @@ def test_nobody_manages_it_so_it_may_be_meant() -> None:
 def test_states_are_of_the_live_graph(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert multibot.main(["doctor", "--state", *more]) == 2
     assert "--state asks nodes of the live graph" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- several senders
+
+
+@pytest.mark.parametrize(
+    ("marks", "latched", "several"),
+    [
+        ([1, 2, 3, 7, 8], False, False),
+        ([1500, 30, 1501, 31, 1502], False, True),
+        ([5, 5, 6, 6], False, True),
+        # Started anew, once.
+        ([90, 91, 1, 2, 3], False, False),
+        ([1, 1], True, True),
+        ([1, 2], True, False),
+        ([b"a", b"a", b"a"], False, False),
+        ([b"a", b"b", b"a", b"b"], False, True),
+        ([None, None, None], False, False),
+    ],
+)
+def test_the_numbers_of_messages_tell_several_senders(
+    marks: list[int | bytes | None], latched: bool, several: bool
+) -> None:
+    heard = Voices()
+    for mark in marks:
+        heard = heard.after(mark)
+    assert heard.several(latched) is several
+
+
+def test_whether_several_send_a_transform_is_kept_in_a_file() -> None:
+    frame = GraphFrame("base_link", "odom", "/tf", False, ("/ekf", "/driver"), True)
+    graph = EMPTY._replace(frames=(frame, frame._replace(child="laser", several=False)))
+    assert from_json(to_json(graph), "graph.json") == graph

@@ -12,7 +12,8 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     topic NAME over a bridge that ROLE TYPE     what a ros_gz_bridge has to do
     one of NODES                        one of these nodes runs
     enclave PATH of NODE                the enclave of SROS2 that a running node is in
-    transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
+    transform PARENT -> CHILD on TOPIC [by NODES] [twice]    a transform, who publishes on its topic,
+                                                     and whether several of them send it
     NODE is STATE, NODE has use_sim_time VALUE       what it answers when it is asked for its state
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
 
@@ -48,7 +49,7 @@ NODE = re.compile(
 )
 FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
-TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
+TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+?))?( twice)?")
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
 ENCLAVE = re.compile(r"enclave (/\S+) of (/\S+)")
 BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S+)")
@@ -190,6 +191,6 @@ def _qos(words: list[str]) -> Qos | None:
     return qos(**{POLICIES[word]: word.upper() for word in words}) if words else None
 
 
-def _transform(parent: str, child: str, topic: str, nodes: str) -> GraphFrame:
+def _transform(parent: str, child: str, topic: str, nodes: str, twice: str) -> GraphFrame:
     publishers = tuple(nodes.split(", ")) if nodes else ()
-    return GraphFrame(child, parent, topic, "tf_static" in topic, publishers)
+    return GraphFrame(child, parent, topic, "tf_static" in topic, publishers, bool(twice))

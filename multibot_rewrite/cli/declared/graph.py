@@ -262,6 +262,10 @@ ZENOH_FILES = Command(
                     [],
                     values.full_names,
                 ),
+                switch(
+                    "--own-routers",
+                    about="each robot has a router of its own, which connects to --router",
+                ),
                 *(it for it in LIVE.options if "--domain" in it.names),
                 DISTRO,
                 TRUST,

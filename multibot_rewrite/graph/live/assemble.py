@@ -177,9 +177,14 @@ def _order(end: GraphEndpoint) -> tuple[str, ...]:
 
 
 def frames(
-    received: Iterable[ReceivedTransform], endpoints: Iterable[GraphEndpoint]
+    received: Iterable[ReceivedTransform],
+    endpoints: Iterable[GraphEndpoint],
+    of_several: Collection[ReceivedTransform] = (),
 ) -> Iterator[GraphFrame]:
-    """The transforms received, each once a topic; static if it came from a latched subscription."""
+    """The transforms received, each once a topic; static if it came from a latched subscription.
+
+    ``of_several`` are those that more than one publisher sends.
+    """
     publishers = defaultdict(set)
     for end in endpoints:
         if end.kind == TOPIC and end.role == PUBLISHES:
@@ -188,5 +193,8 @@ def frames(
     for topic, is_latched, parent, child in received:
         edge = (topic, parent, child)
         latched[edge] = is_latched or latched.get(edge, False)
-    for (topic, parent, child), static in sorted(latched.items()):
-        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers[topic])))
+    several = {(it.topic, it.parent, it.child) for it in of_several}
+    for edge, static in sorted(latched.items()):
+        topic, parent, child = edge
+        senders = tuple(sorted(publishers[topic]))
+        yield GraphFrame(child, parent, topic, static, senders, edge in several)

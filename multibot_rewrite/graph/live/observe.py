@@ -270,7 +270,12 @@ def _snapshot(
         round(seconds, 2),
         tuple(caveats),
     )
-    return Snapshot(tuple(nodes), placed, tuple(assemble.frames(tf.transforms(), placed)), around)
+    return Snapshot(
+        tuple(nodes),
+        placed,
+        tuple(assemble.frames(tf.transforms(), placed, tf.of_several())),
+        around,
+    )
 
 
 if __name__ == "__main__":
