@@ -22,6 +22,7 @@ from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.bags.read import BagsUnusable
+from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
@@ -95,8 +96,8 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
 
 
 def _nothing_seen(graph: Snapshot) -> Iterator[str]:
-    """A graph in which nothing runs is not a healthy one."""
-    if all(is_tool(node.name) for node in graph.nodes):
+    """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
+    if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 
