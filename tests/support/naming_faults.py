@@ -163,9 +163,10 @@ def data_rows() -> tuple[Fault, ...]:
             "MG324", ("joint_state_publisher_gui", "stop it"), WARNING,
         ),
         Fault(
+            # Live, both send map -> odom as well.
             "amcl started twice", nav,
             lambda g: g._replace(nodes=(*g.nodes, GraphNode("/robot1/amcl", "x"))),
-            "MG301", ("/robot1/amcl", "20 s"),
+            "MG301", ("/robot1/amcl", "20 s"), ERROR, ("MG408",),
         ),
         Fault(
             "a robot started with another one's namespace", nav,
