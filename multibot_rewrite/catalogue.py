@@ -136,6 +136,7 @@ HOMES: tuple[Home, ...] = (
             "graph.rules.type_and_qos",
             "graph.rules.publishers",
             "graph.rules.demands",
+            "graph.rules.in_enclaves",
         ),
         GRAPH_INTRO,
     ),
@@ -159,7 +160,11 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MG4", "dangers of any system: tf", ("graph.dangers.transforms", "graph.dangers.tf_topics")
     ),
-    Home("MG5", "dangers of any system: time and states", ("graph.dangers.clocks",)),
+    Home(
+        "MG5",
+        "dangers of any system: time and states",
+        ("graph.dangers.clocks", "graph.dangers.states"),
+    ),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 

@@ -19,7 +19,7 @@ from multibot_rewrite.releases import release_here
 from multibot_rewrite.remap.records import NodeFacts
 
 # Options that name files to write.
-WRITTEN = ("output", "save_snapshot", "report", "dot", "mermaid")
+WRITTEN = ("output", "sros2", "save_snapshot", "report", "dot", "mermaid")
 FLEET_FILES = (".yaml", ".yml")
 # What a fleet file says itself, and how the option is written.
 OF_FLEET_FILE = {

@@ -15,12 +15,15 @@ from multibot_rewrite.graph.live import child
 from multibot_rewrite.graph.live.request import Request
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
+from multibot_rewrite.graph.states import NodeState, questions
 from multibot_rewrite.graph.zenoh import observe
 from multibot_rewrite.model import UsageError
 
 INCONCLUSIVE, NO_ROS = 3, 4
 # How long a single look takes at most.
 LOOK_SECONDS = 15.0
+# How long all nodes together have for their answers to --state.
+ASK_SECONDS = 5.0
 
 
 def check_source(options: argparse.Namespace) -> None:
@@ -28,6 +31,9 @@ def check_source(options: argparse.Namespace) -> None:
     saved = bool(options.snapshot)
     if saved and getattr(options, "watch", False):
         raise UsageError("--watch is for the live graph, leave out --snapshot")
+    if getattr(options, "state", False) and (saved or options.zenoh or options.watch):
+        hint = "leave out --snapshot, --zenoh and --watch"
+        raise UsageError(f"--state asks nodes of the live graph, once; {hint}")
     if saved and options.zenoh:
         raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
 
@@ -44,6 +50,13 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> Snapsh
     if options.zenoh:
         return observe.look(asked, _router(options))
     return child.observe(asked, environ(options.domain))
+
+
+def states(options: argparse.Namespace, seen: Snapshot) -> tuple[NodeState, ...]:
+    """What the nodes of the live graph answer to ``--state``; empty without it."""
+    if not options.state:
+        return ()
+    return child.ask(questions(seen), ASK_SECONDS, environ(options.domain))
 
 
 def watched(options: argparse.Namespace) -> Generator[Snapshot, None, None]:

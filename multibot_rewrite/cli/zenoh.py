@@ -23,7 +23,8 @@ def run(options: argparse.Namespace) -> int:
     operators = tuple(dict.fromkeys(options.operator)) if options.keystore else ()
     if options.operator and not options.keystore:
         raise UsageError("--operator is known by a certificate: give --keystore as well")
-    setup = Setup(options.router, domain, (options.keystore or "").rstrip("/"), operators)
+    keystore = (options.keystore or "").rstrip("/")
+    setup = Setup(options.router, domain, keystore, operators, options.own_routers)
     plan = plan_of(options)
     _check_names(plan, setup)
     files = [

@@ -222,9 +222,8 @@ def _controllers(
 
 
 def _joined(one: GivenNode, other: GivenNode) -> GivenNode:
-    """A manager of any namespace declares a controller by another name than the launch starts it."""
-    said = one if one.type else other
-    return said._replace(values={**one.values, **other.values})
+    """A controller as it is started, with the type that a manager of any namespace declares."""
+    return one if one.type else other._replace(values=one.values)
 
 
 def _full_name(node: LaunchedNode, facts: NodeFacts) -> str:

@@ -116,9 +116,9 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         after = system_after(robot, fleet, texts, known)
         yield from controller_findings(robot, before, after, library, texts)
         yield from _frames(robot, frame_gaps(before.given, library, before.sent), before.senders)
-        old = list(tree_gaps(edges_in(robot.member.source.root), before.senders))
+        joints = list(edges_in(robot.member.source.root))
+        old = list(tree_gaps(joints, before.senders))
         yield from _trees(robot, old, WARNING)
-        joints = edges_in(robot.member.source.root)
         yield from _unsent(robot, unsent_gaps(joints, before.senders, before.given, library))
         now = tree_gaps(description_edges(robot.member.inventory), after.senders)
         known_before = {it.key for it in old}

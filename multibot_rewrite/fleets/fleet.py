@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.bridged import bridged_as
@@ -15,6 +16,7 @@ from multibot_rewrite.fleets.meeting import with_meetings
 from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.expectation import (
     Expectation,
+    PlannedEndpoint,
     PlannedTopic,
     expect,
     named_frames,
@@ -96,7 +98,9 @@ def make_fleet(
         **policy,
     )
     members = [member(it, it.data, it.robot) for it in found]
-    fleet = assemble(members, runs.nodes, make_naming(**policy), release)
+    read = members[0].source
+    every = with_hardware(runs.nodes, read.root, read.file, known)
+    fleet = assemble(members, every, make_naming(**policy), release)
     table = with_meetings(fleet.table, members, fleet.naming)
     table = table._replace(problems=(*table.problems, *runs.findings))
     topics, _ = bridged_topics(fleet.inventories, fleet.naming)
@@ -236,3 +240,13 @@ def expected(fleet: Fleet) -> Expectation:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
+
+
+def possible(fleet: Fleet) -> tuple[PlannedEndpoint, ...]:
+    """Every endpoint that its nodes may have, by parameter too."""
+    return tuple(
+        PlannedEndpoint(it.node, end.kind, end.role, it.name, end.type, end.name)
+        for it in fleet.table.names
+        for end in [it.endpoint]
+        if end.role
+    )

@@ -54,7 +54,11 @@ def plan_fleet(
         read = jobs or read_jobs(file.robots, naming, file.vocabulary, trust, file.distro)
         robots = rewrite_robots(file.robots, read)
         specs = {node_sources(it): it for it in reversed(file.robots)}
-        evidence = {key: robot_nodes(spec, file, notes[spec.name]) for key, spec in specs.items()}
+        sources = {node_sources(it.spec): it.member.source for it in robots}
+        evidence = {
+            key: robot_nodes(spec, file, notes[spec.name], sources[key])
+            for key, spec in specs.items()
+        }
         check_shared(file, {node.name: node for it in evidence.values() for node in it.nodes})
         fleet = _fleet(file, robots, naming, evidence)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)

@@ -10,7 +10,6 @@ from multibot_rewrite.fleets.member import Member, line_of
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.readback.meeting import Meeting, meetings
 from multibot_rewrite.remap.records import Table
-from multibot_rewrite.remap.ways import MANAGER
 
 
 def with_meetings(table: Table, members: Sequence[Member], naming: Naming) -> Table:
@@ -29,7 +28,7 @@ def without_started(
     findings: Iterable[Finding], table: Table, robots: Iterable[str]
 ) -> Iterator[Finding]:
     """The findings about these robots without those of controllers, if their spawners have rules."""
-    spawned = {it.robot for it in table.nodes if it.home.host == MANAGER}
+    spawned = {it.robot for it in table.nodes if it.home.is_controller}
     started = spawned.issuperset(robots)
     return (it for it in findings if not (started and it.code == CONTROLLERS))
 

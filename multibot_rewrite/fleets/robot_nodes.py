@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.hardware import with_hardware
 from multibot_rewrite.evidence.launch_records import LaunchOrder
 from multibot_rewrite.evidence.launched import without_robot
 from multibot_rewrite.evidence.parameter_files import given_nodes
@@ -14,21 +15,23 @@ from multibot_rewrite.evidence.records import GivenNode
 from multibot_rewrite.evidence.spawners import Spawned
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.fleet import facts_of, known_nodes
-from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec
+from multibot_rewrite.fleets.fleet_file import FleetFile, RobotSpec, Sources
 from multibot_rewrite.fleets.launched_robot import given_with, launched_robot, nodes_with
 from multibot_rewrite.fleets.output_file import params_of
 from multibot_rewrite.fleets.shared_nodes import apart
 from multibot_rewrite.remap.nodl.facts import declared
 from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.steps.document import Document
 
 MOVE_GROUP = "move_group"
 # What decides the nodes of a robot.
-NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str]
+NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, Sources]
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Robots for which this is equal run the same nodes."""
-    return spec.stacks, spec.companions.get("params", ()), spec.launch, spec.srdf
+    params = spec.companions.get("params", ())
+    return spec.stacks, params, spec.launch, spec.srdf, spec.sources
 
 
 class RobotEvidence(NamedTuple):
@@ -42,8 +45,10 @@ class RobotEvidence(NamedTuple):
     spawned: Mapping[str, Spawned]
 
 
-def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> RobotEvidence:
-    """The nodes of a robot; ``notes`` are findings about its files.
+def robot_nodes(
+    spec: RobotSpec, file: FleetFile, notes: Sequence[Finding], source: Document
+) -> RobotEvidence:
+    """The nodes of a robot with this description; ``notes`` are findings about its files.
 
     Raises InputError for a parameter file that cannot be read.
     """
@@ -54,7 +59,8 @@ def robot_nodes(spec: RobotSpec, file: FleetFile, notes: Sequence[Finding]) -> R
     launched = launched_robot(stack, spec.launch, known, spec.words, parameters)
     given = given_with(launched, own)
     spawned = launched.spawned if launched else {}
-    nodes, findings = nodes_with(launched, stack, given, known)
+    without, findings = nodes_with(launched, stack, given, known)
+    nodes = with_hardware(without, source.root, source.file, known)
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     marked, shared = apart(nodes, file)

@@ -11,6 +11,7 @@ from typing import cast
 from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.dangers.beside_plan import dangers_beside
 from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.patterns import with_patterns
@@ -19,6 +20,7 @@ from multibot_rewrite.graph.rules import (
     endpoints,
     frame_names,
     frames_heard,
+    in_enclaves,
     leaks,
     nodes,
     publishers,
@@ -35,6 +37,7 @@ _MODULES = (
     type_and_qos,
     publishers,
     demands,
+    in_enclaves,
     transforms,
     frame_names,
     frames_heard,
@@ -53,6 +56,7 @@ def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
     with gc_paused():
         view = make_view(plan, with_patterns(plan, graph))
         found = [finding for rule in RULES.values() for finding in _ask(rule, view)]
+        found += dangers_beside(view, found)
     return inconclusive_where_in_doubt(found, graph)
 
 

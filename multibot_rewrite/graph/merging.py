@@ -67,18 +67,21 @@ def _refuse_strangers(looks: Sequence[Look]) -> None:
 
 def _nodes(looks: Sequence[Sequence[GraphNode]]) -> Iterator[GraphNode]:
     """Each node once; two processes with a node of one name are two nodes."""
-    counts = [Counter(nodes) for nodes in looks]
-    most: Counter[GraphNode] = Counter()
-    for one in counts:
-        most |= one
-    known = Counter(node.name for node in most.elements() if node.process)
+    # Of two records of a node the greater has what the other leaves empty.
+    best: dict[tuple[str, str], GraphNode] = {}
+    most: Counter[tuple[str, str]] = Counter()
     totals: Counter[str] = Counter()
     for nodes in looks:
+        most |= Counter((node.name, node.process) for node in nodes)
         totals |= Counter(node.name for node in nodes)
-    for node, times in sorted(most.items()):
+        for node in nodes:
+            key = node.name, node.process
+            best[key] = max(best.get(key, node), node)
+    known = Counter(name for name, process in most.elements() if process)
+    for (name, process), times in sorted(most.items()):
         # The process was not known to one look, and is to another.
-        new = times if node.process else min(times, totals[node.name] - known[node.name])
-        yield from [node] * new
+        new = times if process else min(times, totals[name] - known[name])
+        yield from [best[name, process]] * new
 
 
 def _endpoints(looks: Sequence[Sequence[GraphEndpoint]]) -> list[GraphEndpoint]:
@@ -113,7 +116,8 @@ def _frames(frames: Iterable[GraphFrame]) -> Iterator[GraphFrame]:
     for (topic, parent, child), same in sorted(found.items()):
         publishers = {node for frame in same for node in frame.publishers}
         static = any(frame.static for frame in same)
-        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers)))
+        several = any(frame.several for frame in same)
+        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers)), several)
 
 
 def _environment(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import GraphNode, Snapshot
+from multibot_rewrite.graph.snapshot import Snapshot
 
 
 def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
@@ -22,7 +22,7 @@ def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
         for pattern, found in patterns.items()
         if found.fullmatch(node.name)
     }
-    nodes = (GraphNode(names[it.name], it.process) for it in graph.nodes if it.name in names)
+    nodes = (it._replace(name=names[it.name]) for it in graph.nodes if it.name in names)
     others = (it for it in graph.nodes if it.name not in names)
     endpoints = (it._replace(node=names.get(it.node, it.node)) for it in graph.endpoints)
     return graph._replace(

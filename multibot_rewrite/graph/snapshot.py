@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from functools import cache, lru_cache, partial
 from sys import intern
 from types import NoneType
@@ -15,6 +15,17 @@ from typing import Any, NamedTuple, cast, get_args, get_origin, get_type_hints
 
 from multibot_rewrite.bounded import load_json
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.json_values import (
+    Reader,
+    WrongValue,
+    read_full_name,
+    read_list,
+    read_plain,
+    read_seconds,
+    read_word,
+    shown,
+    unexpected,
+)
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
@@ -51,11 +62,12 @@ class GraphNode(NamedTuple):
     """One node. Two nodes with one name are two records.
 
     ``name`` is fully qualified. ``process`` identifies the DDS participant of the node, empty
-    where it is not known.
+    where it is not known. ``enclave`` is that of its process (SROS2), empty for none.
     """
 
     name: str
     process: str
+    enclave: str = ""
 
 
 class GraphEndpoint(NamedTuple):
@@ -79,7 +91,7 @@ class GraphEndpoint(NamedTuple):
 class GraphFrame(NamedTuple):
     """A transform received on ``topic``; ``publishers`` are all nodes that publish there.
 
-    tf messages do not say which node sent them.
+    tf messages do not say which node sent them; ``several`` is whether more than one did.
     """
 
     child: str
@@ -87,6 +99,7 @@ class GraphFrame(NamedTuple):
     topic: str
     static: bool
     publishers: tuple[str, ...]
+    several: bool = False
 
 
 class Caveat(NamedTuple):
@@ -138,12 +151,9 @@ _FULL_NAMES = {
 }
 # By their keys.
 _FREQUENT: Mapping[tuple[str, ...], Any] = {
-    it._fields: it for it in (GraphNode, GraphEndpoint, Qos)
+    ("name", "process"): GraphNode,
+    **{it._fields: it for it in (GraphNode, GraphEndpoint, Qos)},
 }
-_TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
-# NaN is not below it, and every whole number below it fits into a float.
-_LARGEST = 1e300
-_Reader = Callable[[object], object]
 
 
 def incomplete(snapshot: Snapshot) -> tuple[Caveat, ...]:
@@ -171,7 +181,9 @@ def _plain_value(value: object) -> object:
         fields = getattr(value, "_fields", None)
         if fields is None:
             return [_plain_value(item) for item in value]
-        return {name: _plain_value(item) for name, item in zip(fields, value, strict=True)}
+        usual = type(value)._field_defaults  # type: ignore[attr-defined]
+        pairs = zip(fields, value, strict=True)
+        return {name: _plain_value(it) for name, it in pairs if usual.get(name, ...) != it}
     if isinstance(value, float) and math.isinf(value):
         return None
     return value
@@ -206,7 +218,7 @@ def _record_or_object(value: dict[str, object]) -> object:
         return value
     try:
         record: Any = _reader(kind)(value)
-    except _WrongValue:
+    except WrongValue:
         return value
     shared = kind._make(intern(it) if type(it) is str else it for it in record)
     return _one_of_equal(shared) if kind is Qos else shared
@@ -221,11 +233,11 @@ def _one_of_equal(record: Qos) -> Qos:
 def from_value(value: object, file: str) -> Snapshot:
     """The snapshot that a JSON value holds; raises InputError with file, key and what is wrong."""
     if not isinstance(value, dict):
-        raise InputError(f"{file}: not a snapshot, but {_shown(value)}")
+        raise InputError(f"{file}: not a snapshot, but {shown(value)}")
     schema = value.pop("schema", None)
     if schema != SCHEMA or isinstance(schema, bool):
         hint = "take the snapshot again with this version"
-        raise InputError(f"{file}: schema: expected {SCHEMA}, not {_shown(schema)}; {hint}")
+        raise InputError(f"{file}: schema: expected {SCHEMA}, not {shown(schema)}; {hint}")
     return cast(Snapshot, record_from(Snapshot, value, file))
 
 
@@ -233,95 +245,44 @@ def record_from(kind: type, value: object, file: str) -> object:
     """A value as the record ``kind``; raises InputError with file, key and what is wrong."""
     try:
         return _reader(kind)(value)
-    except _WrongValue as wrong:
+    except WrongValue as wrong:
         key = "".join(reversed(wrong.keys)).lstrip(".")
         raise InputError(f"{file}: {key}: {wrong.reason}") from None
 
 
-class _WrongValue(Exception):
-    """A wrong value; ``keys`` is the path to it, the innermost key first."""
-
-    def __init__(self, reason: str, *keys: str) -> None:
-        super().__init__(reason)
-        self.reason = reason
-        self.keys = list(keys)
-
-
-def _unexpected(expected: str, value: object) -> _WrongValue:
-    return _WrongValue(f"expected {expected}, not {_shown(value)}")
-
-
 # Each reader is made once: a snapshot of 1,000 robots has half a million values.
 @cache
-def _reader(expected: Any) -> _Reader:
-    """A function that reads a JSON value as the type ``expected``, or raises _WrongValue."""
+def _reader(expected: Any) -> Reader:
+    """A function that reads a JSON value as the type ``expected``, or raises WrongValue."""
     options = get_args(expected)
     if NoneType in options:
         inner = _reader(options[0])
         return lambda value: None if value is None else inner(value)
     if get_origin(expected) is tuple:
-        return partial(_read_list, _reader(options[0]))
+        return partial(read_list, _reader(options[0]))
     if hasattr(expected, "_fields"):
         hints = get_type_hints(expected)
         readers = {name: _field_reader(expected, name, hint) for name, hint in hints.items()}
         return partial(_read_record, expected, readers)
-    return _read_seconds if expected is float else partial(_read_plain, expected)
+    return read_seconds if expected is float else partial(read_plain, expected)
 
 
-def _field_reader(kind: type, name: str, hint: Any) -> _Reader:
+def _field_reader(kind: type, name: str, hint: Any) -> Reader:
     words = _ALLOWED_WORDS.get((kind, name))
     if words:
-        return partial(_read_word, words)
-    return _read_full_name if (kind, name) in _FULL_NAMES else _reader(hint)
+        return partial(read_word, words)
+    return read_full_name if (kind, name) in _FULL_NAMES else _reader(hint)
 
 
-def _read_plain(expected: type, value: object) -> object:
-    # Not isinstance: True is an int as well.
-    if type(value) is not expected:
-        raise _unexpected(_TYPE_NAMES[expected], value)
-    return value
-
-
-def _read_word(words: tuple[str, ...], value: object) -> object:
-    if value not in words:
-        raise _unexpected(f"one of {', '.join(words)}", value)
-    return value
-
-
-def _read_full_name(value: object) -> object:
-    if not isinstance(value, str) or not value.startswith("/"):
-        raise _unexpected("a full name that starts with /", value)
-    return value
-
-
-def _read_seconds(value: object) -> object:
-    if value is None:
-        return math.inf
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
-        raise _unexpected("a number or null", value)
-    return float(value)
-
-
-def _read_list(reader: _Reader, value: object) -> object:
-    if not isinstance(value, list):
-        raise _unexpected("a list", value)
-    result = []
-    try:
-        for item in value:
-            result.append(reader(item))
-    except _WrongValue as wrong:
-        wrong.keys.append(f"[{len(result)}]")
-        raise
-    return tuple(result)
-
-
-def _read_record(kind: Any, readers: Mapping[str, _Reader], value: object) -> object:
+def _read_record(kind: Any, readers: Mapping[str, Reader], value: object) -> object:
     if type(value) is kind:
         return value
     if type(value) in _FREQUENT.values():
         value = cast(Any, value)._asdict()
     if not isinstance(value, dict):
-        raise _unexpected("an object", value)
+        raise unexpected("an object", value)
+    if value.keys() != readers.keys():
+        value = {**kind._field_defaults, **value}
     if value.keys() != readers.keys():
         raise _wrong_key(readers, value)
     name = ""
@@ -329,20 +290,15 @@ def _read_record(kind: Any, readers: Mapping[str, _Reader], value: object) -> ob
         fields = []
         for name, reader in readers.items():
             fields.append(reader(value[name]))
-    except _WrongValue as wrong:
+    except WrongValue as wrong:
         wrong.keys.append(f".{name}")
         raise
     return kind._make(fields)
 
 
-def _wrong_key(readers: Mapping[str, _Reader], value: Mapping[str, object]) -> _WrongValue:
+def _wrong_key(readers: Mapping[str, Reader], value: Mapping[str, object]) -> WrongValue:
     for name in readers:
         if name not in value:
-            return _WrongValue("missing; it is needed", f".{name}")
+            return WrongValue("missing; it is needed", f".{name}")
     name = next(name for name in value if name not in readers)
-    return _WrongValue(f"unknown key; the keys are {', '.join(readers)}", f".{name}")
-
-
-def _shown(value: object) -> str:
-    text = json.dumps(value, ensure_ascii=False)
-    return text if len(text) <= 40 else f"{text[:39]}…"
+    return WrongValue(f"unknown key; the keys are {', '.join(readers)}", f".{name}")

@@ -9,10 +9,9 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import NamedTuple
 
 from multibot_rewrite.controller_ways import ControllerWay, controller_way
-from multibot_rewrite.remap.records import PUBLISHES, Endpoint, NodeTable, Table
+from multibot_rewrite.remap.records import MANAGER, PUBLISHES, Endpoint, NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,
-    MANAGER,
     PLUGIN,
     SPAWNER,
     Delivery,

@@ -11,6 +11,7 @@ TOPIC, SERVICE, ACTION = "topic", "service", "action"
 KINDS = (TOPIC, SERVICE, ACTION)
 PUBLISHES, SUBSCRIBES, SERVES, CALLS = "publishes", "subscribes", "serves", "calls"
 ROLES = (PUBLISHES, SUBSCRIBES, SERVES, CALLS)
+MANAGER = "controller_manager"
 
 
 class Endpoint(NamedTuple):
@@ -98,7 +99,8 @@ class NodeFacts(NamedTuple):
     executable; ``interface`` is the NoDL file that its endpoints are from, empty for the library.
     ``container`` is the node whose process it is loaded into as a component, ``plugin`` the plugin of
     the simulator that makes it. ``apart`` is true for a node that keeps its name in every layout and
-    runs in its robot's namespace: its code sets its name, or that of a node below it.
+    runs in its robot's namespace: its code sets its name, or that of a node below it. ``of_hardware``
+    is true for a node that a hardware plugin makes in the process of the controller manager.
     """
 
     name: str
@@ -122,12 +124,18 @@ class NodeFacts(NamedTuple):
     container: str = ""
     plugin: str = ""
     apart: bool = False
+    of_hardware: bool = False
+
+    @property
+    def is_controller(self) -> bool:
+        """Does the controller manager load it? The hardware's nodes are in its process, too."""
+        return self.host == MANAGER and not self.of_hardware
 
 
 class Home(NamedTuple):
     """Where a node runs if not in a process of its own: ``host``, ``container`` and ``plugin`` as in
-    ``NodeFacts``, and ``apart``. ``written`` is true for a plugin of a description, ``process_wide``
-    if its rules hold for its whole process."""
+    ``NodeFacts``, ``apart`` and ``of_hardware``. ``written`` is true for a plugin of a description,
+    ``process_wide`` if its rules hold for its whole process."""
 
     host: str = ""
     container: str = ""
@@ -135,6 +143,12 @@ class Home(NamedTuple):
     written: bool = False
     process_wide: bool = False
     apart: bool = False
+    of_hardware: bool = False
+
+    @property
+    def is_controller(self) -> bool:
+        """As in ``NodeFacts``."""
+        return self.host == MANAGER and not self.of_hardware
 
 
 class NodeRule(NamedTuple):

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
 
-from multibot_rewrite.remap.records import NodeTable, Table
+from multibot_rewrite.remap.records import MANAGER, NodeTable, Table
 from multibot_rewrite.remap.ways import (
     COMPONENT,
-    MANAGER,
     PROCESS,
     SPAWNER,
     Pair,
@@ -41,12 +40,12 @@ def started(table: Table) -> Iterator[Started]:
     given = deliveries(table)
     rules = rules_by_taker(given)
     names = {it.node.robot: it.node.name for it in given if it.node.node == MANAGER}
-    controllers = (it.node for it in given if it.node.home.host == MANAGER)
+    controllers = (it.node for it in given if it.node.home.is_controller)
     # The node that a stack has for the spawner of a controller is that spawner.
     spawners = {(it.robot, f"spawner_{it.node}") for it in controllers}
     for it in given:
         node, own = it.node, rules.get((it.node.robot, it.taker), ())
-        if node.home.host == MANAGER:
+        if node.home.is_controller:
             taken = own if it.way == SPAWNER else ()
             yield Started(node, SPAWNER, taken, names.get(node.robot, MANAGER))
         elif it.way in STARTED and (node.robot, node.node) not in spawners:

@@ -36,7 +36,6 @@ from multibot_rewrite.remap.table_checks import (
 )
 from multibot_rewrite.remap.targets import expanded, placed, target_of
 from multibot_rewrite.remap.way_checks import NOT_TAKEN, not_taken
-from multibot_rewrite.remap.ways import MANAGER
 from multibot_rewrite.rosnames import RemapRule, bind, expand, parse_remap, resolve_bound
 
 SAME = "all robots would share this name otherwise"
@@ -104,14 +103,14 @@ def _given_by_plugins(own: Pairs, robot: str, release: str) -> Pairs | None:
     """The controllers that get the rules of their plugin; None where no stack names them."""
     if not controller_way(release).of_manager:
         return ()
-    found = [pair for pair in own if pair[0].host == MANAGER]
+    found = [pair for pair in own if pair[0].is_controller]
     facts = [node for node, _ in found]
     return list(zip(facts, _copies(found, robot), strict=True)) or None
 
 
 def _without_stand_ins(pairs: Pairs, nodes: Iterable[NodeFacts]) -> Pairs:
     """The plugins of a description, without what their controllers publish if a stack names those."""
-    if all(node.host != MANAGER for node in nodes):
+    if not any(node.is_controller for node in nodes):
         return pairs
     return [(_without_controllers(facts, table), table) for facts, table in pairs]
 
@@ -190,7 +189,9 @@ def node_table(
             why = TOGETHER if target == f"/{source}" else why
             match = expand(source, namespace, name)
             rules.setdefault(match, NodeRule(robot, node.name, source, target, "", why))
-    home = Home(node.host, node.container, node.plugin, apart=node.apart)
+    home = Home(
+        node.host, node.container, node.plugin, apart=node.apart, of_hardware=node.of_hardware
+    )
     return NodeTable(robot, node.name, namespace, name, tuple(rules.values()), home)
 
 

@@ -10,7 +10,7 @@ from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.remap.applied_rules import RunningNode, bound_to, is_stand_in, running_nodes
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, TOPIC, EndpointName, Table
-from multibot_rewrite.remap.ways import MANAGER, PLUGIN
+from multibot_rewrite.remap.ways import PLUGIN
 from multibot_rewrite.rosnames import resolve_bound
 
 # A second robot shows what rules for all of a process do.
@@ -84,7 +84,7 @@ def _worth_a_look(table: Table) -> Iterator[RunningNode]:
     seen: Counter[str] = Counter()
     for it in running_nodes(table):
         seen[it.node.node] += 1
-        if it.node.home.plugin or it.node.home.host == MANAGER or seen[it.node.node] <= ENOUGH:
+        if it.node.home.plugin or it.node.home.is_controller or seen[it.node.node] <= ENOUGH:
             yield it
 
 

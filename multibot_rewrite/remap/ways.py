@@ -14,12 +14,16 @@ from typing import NamedTuple, TypeAlias
 
 from multibot_rewrite.controller_ways import controller_way
 from multibot_rewrite.releases import has_release
-from multibot_rewrite.remap.records import EndpointName, NodeRule, NodeTable, Table
+from multibot_rewrite.remap.records import (
+    EndpointName,
+    NodeRule,
+    NodeTable,
+    Table,
+)
 
 PROCESS, HOST, COMPONENT = "process", "host", "component"
 SPAWNER, PLUGIN = "spawner", "plugin"
 WAYS = (PROCESS, HOST, COMPONENT, SPAWNER, PLUGIN)
-MANAGER = "controller_manager"
 # A costmap has the remap rules of the component that makes it (navigation2 4cade8d2f, 1.5.0).
 COSTMAP_HAS_RULES_OF_ITS_PARENT = "lyrical+"
 Pair: TypeAlias = tuple[str, str]
@@ -81,7 +85,7 @@ def way_of(node: NodeTable, known: Nodes, release: str) -> str:
     if home.plugin:
         return PLUGIN
     host = known.get((node.robot, home.host))
-    if home.host == MANAGER:
+    if home.is_controller:
         if controller_way(release).spawner:
             return SPAWNER
         return PLUGIN if host and host.home.plugin else HOST

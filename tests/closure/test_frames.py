@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
+from closed_robot import FILES
 
 from multibot_rewrite.closure.frames import Sender, tree_gaps
 from multibot_rewrite.evidence.records import Place
+from multibot_rewrite.fleets.closing import closing
+from multibot_rewrite.fleets.fleet_file import read_fleet
+from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.transforms import Edge
 
 
@@ -45,3 +51,15 @@ def test_both_places_are_told() -> None:
     (gap,) = tree_gaps([], senders)
     assert (gap.kind, gap.name, gap.place) == ("tree", "odom2 -> base", ekf)
     assert (gap.near, gap.near_place) == ("map -> odom", slam)
+
+
+def test_a_tree_that_the_rewrite_has_cut_is_an_error(tmp_path: Path) -> None:
+    for name, text in FILES.items():
+        (tmp_path / name).write_text(text)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    key = ("robot1", "ekf_filter_node")
+    assert plan.fleet.edges[key]
+    for cut, levels in (([edge("x>y")], ["error"]), (plan.fleet.edges[key], [])):
+        fleet = plan.fleet._replace(edges={**plan.fleet.edges, key: cut})
+        found = [it.level for it in closing(plan, fleet, []) if it.code == "MF817"]
+        assert found == levels

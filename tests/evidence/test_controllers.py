@@ -21,7 +21,10 @@ from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.transforms import sent_by
+from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.stacks import load_nodes, load_stack
+from multibot_rewrite.remap.started import started
+from multibot_rewrite.remap.ways import HOST, deliveries
 
 LAYOUTS = ("tf-per-robot", "frames-per-robot", "both", "postfix")
 ARM = """\
@@ -241,3 +244,54 @@ pose:
   ros__parameters: {{frame_id: base, pose_name: tcp, {more}}}
 """
     assert frames_of("jazzy", text) == sent
+
+
+XARM = ARM.format(plugin="uf_robot_hardware/UFRobotSystemHardware", param="")
+ONE = "controller_manager:\n  ros__parameters:\n    update_rate: 100\n"
+
+
+def nodes_with(folder: Path, arm: str, layout: str, more: str = "") -> Table:
+    (folder / "arm.urdf").write_text(arm)
+    (folder / "controllers.yaml").write_text(ONE)
+    fleet = folder / "fleet.yaml"
+    fleet.write_text(
+        f"layout: {layout}\naffix: prefix\ndistro: jazzy\n{more}description: arm.urdf\n"
+        "robots: [{name: left}, {name: right}]\n"
+    )
+    return plan_fleet(read_fleet(str(fleet), "", {})).fleet.table
+
+
+MANAGED = "stack: ros2_control\ncompanions: {params: [controllers.yaml]}\n"
+
+
+def test_nodes_that_hardware_makes(tmp_path: Path) -> None:
+    """franka_hardware_interface.cpp: service_server and action_server, in the manager's process."""
+    table = nodes_with(tmp_path, FRANKA, "both", MANAGED)
+    names = {it.name for it in table.names if it.robot == "left"}
+    assert {"/left/service_server/set_load", "/left/action_server/error_recovery"} <= names
+    mock = nodes_with(tmp_path, MOCK, "both", MANAGED)
+    assert "service_server" not in {it.node for it in mock.nodes}
+    # Without a controller manager nothing loads the hardware.
+    alone = nodes_with(tmp_path, FRANKA, "both")
+    assert "service_server" not in {it.node for it in alone.nodes}
+
+
+@pytest.mark.parametrize(
+    ("layout", "target"),
+    [("both", "controller_manager"), ("postfix", "/left_controller_manager")],
+)
+def test_hardware_asks_its_own_controller_manager(layout: str, target: str, tmp_path: Path) -> None:
+    """uf_robot_system_hardware.cpp:254 names /controller_manager/list_controllers: the process of the
+    manager, where the hardware is, gets the rule, and no spawner is started for it."""
+    table = nodes_with(tmp_path, XARM, layout, MANAGED)
+    (at,) = (
+        it
+        for it in deliveries(table)
+        if (it.node.robot, it.node.node) == ("left", "ufactory_robot_hw") and it.rules
+    )
+    assert (at.way, at.taker) == (HOST, "controller_manager")
+    name = "/controller_manager/list_controllers"
+    lead = next(old for old, _ in at.rules if old.endswith(name))
+    assert dict(at.rules)[lead] == f"{target}/list_controllers"
+    spawned = [it for it in started(table) if it.node.node.startswith("ufactory")]
+    assert spawned == []

@@ -10,8 +10,11 @@ from lxml import etree
 from multibot_rewrite.evidence.semantics import semantics
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import make_outputs
+from multibot_rewrite.fleets.closing_semantics import semantic_findings
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
+from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.fleets.systems import system_before
 
 
 def joint(name: str, parent: str, child: str, more: str = "", type_: str = "continuous") -> str:
@@ -106,3 +109,13 @@ def test_an_srdf_is_read_by_a_move_group_that_may_run(tmp_path: Path) -> None:
     more, _ = planned(tmp_path, "shoulder, elbow", more="stack: moveit\n")
     (found,) = (it for it in more.fleet.facts if it.name == "move_group")
     assert found.origin.startswith("stack")
+
+
+def test_a_joint_that_the_rewrite_takes_from_its_controller_is_an_error(tmp_path: Path) -> None:
+    plan, _ = planned(tmp_path, "shoulder, elbow")
+    robot = plan.robots[0]
+    before = system_before(robot, plan.evidence[node_sources(robot.spec)])
+    # As if MoveIt's file had stayed as it is.
+    found = list(semantic_findings(plan, robot, before, before))
+    assert [(it.level, it.line) for it in found] == [("error", 3), ("error", 5)]
+    assert "shoulder_robot1" in found[0].message

@@ -86,3 +86,26 @@ def test_a_robot_that_has_nothing_for_gazebo_is_not_spawned(
     (tmp_path / "fleet.yaml").write_text("robots: [{name: robot1, description: arm.urdf}]\n")
     made = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode()
     assert ("ros_gz_sim create" in made) == spawned
+
+
+MODEL = """\
+structure:
+  nodes:
+    /one: {pkg: controller_manager, exec: spawner, args: [drive, --inactive, -p, drive.yaml]}
+    /two: {pkg: controller_manager, exec: spawner, args: [joint_state_broadcaster]}
+    /controller_manager: {pkg: controller_manager, exec: ros2_control_node}
+"""
+OWN_TYPE = "drive:\n  ros__parameters: {type: diff_drive_controller/DiffDriveController}\n"
+
+
+def test_controllers_are_spawned_as_the_launch_file_does(tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text('<robot name="arm"><link name="base_link"/></robot>')
+    (tmp_path / "model.yaml").write_text(MODEL)
+    (tmp_path / "drive.yaml").write_text(OWN_TYPE)
+    (tmp_path / "fleet.yaml").write_text(
+        "layout: tf-per-robot\nlaunch: model.yaml\nrobots: [{name: robot1, description: arm.urdf}]\n"
+    )
+    rows = load_fleet(tmp_path / "fleet.yaml").files["commands.md"].data.decode().splitlines()
+    lines = {it.split()[4]: it for it in rows if " spawner " in it}
+    assert "spawner drive --param-file robot1/drive.yaml --inactive " in lines["drive"]
+    assert not {"--param-file", "--inactive"} & set(lines["joint_state_broadcaster"].split())

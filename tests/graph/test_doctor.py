@@ -31,9 +31,17 @@ from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.doctor.diagnose import diagnose, survey
 from multibot_rewrite.graph.doctor.robots import guess_robots
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.live.voices import Voices
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
-from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, to_json
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
+from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, from_json, to_json
+from multibot_rewrite.graph.states import (
+    Controller,
+    NodeState,
+    from_message,
+    questions,
+    to_message,
+)
+from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
 
 EMPTY = Snapshot((), (), (), environment())
 
@@ -257,3 +265,86 @@ def test_a_plan_of_the_same_fleet_is_not_needed() -> None:
     """What the doctor calls healthy is so by its plan, too: only tools are not planned."""
     found = check(plan(("nav2",), "L1"), nav())
     assert {it.code for it in found} <= {"MG108"}
+
+
+# ---------------------------------------------------------------- states
+
+
+def test_whom_to_ask() -> None:
+    """Of two nodes with one name either may answer: none of them is asked."""
+    managed, plain = "lifecycle_msgs/srv/GetState", "rcl_interfaces/srv/GetParameters"
+    ends = ((SERVES, "/robot1/amcl/get_state", managed), (SERVES, "/elsewhere/get_state", managed))
+    graph = with_node(EMPTY, "/robot1/amcl", *ends)
+    wanted = {("/robot1/amcl/get_state", managed), ("/robot1/amcl/get_parameters", plain)}
+    assert {(it.service, it.type) for it in questions(graph)} == wanted
+    assert list(questions(graph._replace(nodes=(*graph.nodes, *graph.nodes)))) == []
+
+
+def test_states_in_a_message_are_the_same() -> None:
+    own = (Controller("arm", "active", ("joint1/position",)),)
+    states = (NodeState("/a", "inactive", True), NodeState("/b", "", None, own))
+    assert from_message(to_message(states)) == states
+
+
+def test_a_healthy_robot_by_its_states() -> None:
+    """Inactive controllers beside an active one, the same ones in another robot, tools."""
+    own = (Controller("arm", "active", ("j1/position",)), Controller("spare", "inactive", ()))
+    states = (
+        NodeState("/robot1/amcl", "active", True),
+        NodeState("/robot1/controller_manager", "", True, own),
+        NodeState("/robot2/controller_manager", "", True, own),
+        NodeState("/robot1/rviz2", "", False),
+    )
+    graph = nav()
+    for state in states:
+        graph = with_node(graph, state.node)
+    assert diagnose(graph, states).findings == ()
+
+
+def test_nobody_manages_it_so_it_may_be_meant() -> None:
+    (found,) = diagnose(nav(), (NodeState("/robot1/camera", "unconfigured"),)).findings
+    assert (found.code, found.level) == ("MG511", "warning")
+    (found,) = diagnose(nav(), (NodeState("/robot1/amcl", "inactive"),)).findings
+    assert (found.code, found.level) == ("MG511", "error")
+    assert "/robot1/lifecycle_manager_localization" in found.hint
+
+
+@pytest.mark.parametrize(
+    "more", [["--watch"], ["--zenoh", "tcp/localhost:7447"], ["--snapshot", "g"]]
+)
+def test_states_are_of_the_live_graph(more: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert multibot.main(["doctor", "--state", *more]) == 2
+    assert "--state asks nodes of the live graph" in capsys.readouterr().err
+
+
+# ---------------------------------------------------------------- several senders
+
+
+@pytest.mark.parametrize(
+    ("marks", "latched", "several"),
+    [
+        ([1, 2, 3, 7, 8], False, False),
+        ([1500, 30, 1501, 31, 1502], False, True),
+        ([5, 5, 6, 6], False, True),
+        # Started anew, once.
+        ([90, 91, 1, 2, 3], False, False),
+        ([1, 1], True, True),
+        ([1, 2], True, False),
+        ([b"a", b"a", b"a"], False, False),
+        ([b"a", b"b", b"a", b"b"], False, True),
+        ([None, None, None], False, False),
+    ],
+)
+def test_the_numbers_of_messages_tell_several_senders(
+    marks: list[int | bytes | None], latched: bool, several: bool
+) -> None:
+    heard = Voices()
+    for mark in marks:
+        heard = heard.after(mark)
+    assert heard.several(latched) is several
+
+
+def test_whether_several_send_a_transform_is_kept_in_a_file() -> None:
+    frame = GraphFrame("base_link", "odom", "/tf", False, ("/ekf", "/driver"), True)
+    graph = EMPTY._replace(frames=(frame, frame._replace(child="laser", several=False)))
+    assert from_json(to_json(graph), "graph.json") == graph

@@ -62,6 +62,7 @@ def test_a_service_needs_no_type() -> None:
         "planned: robot1/nav",
         "planned: /robot1/nav subscribes to /robot1/scan",
         "running: transform odom to base_link on /tf",
+        "running: /robot1/nav has use_sim_time yes",
         "planned: frames of robot1: base_link",
     ],
 )

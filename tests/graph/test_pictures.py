@@ -197,7 +197,7 @@ def test_a_tool_with_nothing_of_its_own_is_put_away_and_an_unknown_node_is_not()
     plan = nav2_graphs.nav2()
     graph = nav2_graphs.healthy(plan)
     for node in ("/rqt_gui", "/robot1/gripper"):
-        log = graph.endpoints[-1]._replace(node=node)
+        log = next(it for it in graph.endpoints if it.name == "/rosout")._replace(node=node)
         seen = (*graph.nodes, GraphNode(node, ""))
         graph = graph._replace(nodes=seen, endpoints=(*graph.endpoints, log))
     scene = nav2_graphs.scene(plan, graph)

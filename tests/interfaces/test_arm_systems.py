@@ -118,7 +118,20 @@ def played(name: str, release: str, plan: FleetPlan) -> Snapshot:
         for robot in plan.robots
         for frame in _tree(robot.description, placed[robot.spec.name, PUBLISHER])
     ]
+    frames += [
+        _pose(frame, it["params"])
+        for it in started(name, release)[1].values()
+        if it["type"] == "pose_broadcaster/PoseBroadcaster"
+        for frame in frames
+        if not frame.static
+    ]
     return Snapshot(tuple(map(_node, owners)), tuple(ends), tuple(frames), environment())
+
+
+def _pose(beside: GraphFrame, params: dict[str, str]) -> GraphFrame:
+    """What pose_broadcaster sends: its frames are spelled as the links are."""
+    child = beside.parent.replace(params["frame_id"], params["tf.child_frame_id"])
+    return beside._replace(child=child)
 
 
 def _node(name: str) -> GraphNode:

@@ -11,7 +11,11 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     topic NAME from one node            only one node at a time publishes it
     topic NAME over a bridge that ROLE TYPE     what a ros_gz_bridge has to do
     one of NODES                        one of these nodes runs
-    transform PARENT -> CHILD on TOPIC [by NODES]    a transform, and who publishes on its topic
+    enclave PATH of NODE                the enclave of SROS2 that a running node is in
+    transform PARENT -> CHILD on TOPIC [by NODES] [twice]    a transform, who publishes on its topic,
+                                                     and whether several of them send it
+    NODE is STATE, NODE has use_sim_time VALUE       what it answers when it is asked for its state
+    NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
 every ``robot1``, ``robot2`` ... in the plan. In the code of its node a planned name has no robot:
@@ -36,6 +40,7 @@ from multibot_rewrite.graph.expectation import (
     PlannedTopic,
 )
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Qos, Snapshot
+from multibot_rewrite.graph.states import Controller, NodeState
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
@@ -44,10 +49,16 @@ NODE = re.compile(
 )
 FRAMES = re.compile(r"frames of (\w+) on (\S+): (.+)")
 SHARED = re.compile(r"shared (topic|frame) (\S+)")
-TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+))?")
+TRANSFORM = re.compile(r"transform (\S+) -> (\S+) on (\S+)(?: by (.+?))?( twice)?")
 TOPIC_OF = re.compile(r"topic (\S+) from (one node|/\S+(?:, /\S+)*)((?: \w+)*)")
+ENCLAVE = re.compile(r"enclave (/\S+) of (/\S+)")
 BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S+)")
 ONE_OF = re.compile(r"one of (.+)")
+STATE = re.compile(r"(/\S+) is (\w+)")
+SIM_TIME = re.compile(r"(/\S+) has use_sim_time (true|false)")
+CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
+KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
+ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS)
 ROBOT = re.compile(r"robot\d+")
 PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
 # Words of QOS -> the policy that they are of.
@@ -81,10 +92,25 @@ def read_danger(text: str) -> tuple[Snapshot, Owners]:
     return graph, owners_of(graph, tuple(guessed))
 
 
+def read_states(text: str) -> tuple[NodeState, ...]:
+    """What the nodes of an example answer."""
+    lines = [it[2] for it in map(LINE.fullmatch, text.splitlines()) if it]
+    managed = (NodeState(node, lifecycle=state) for node, state in _words(STATE, lines))
+    timed = (NodeState(node, sim_time=it == "true") for node, it in _words(SIM_TIME, lines))
+    active = [
+        NodeState(node, controllers=(Controller(name, "active", (claim,)),))
+        for node, claim, name in _words(CONTROLS, lines)
+    ]
+    kept = [
+        NodeState(node, controllers=(Controller(name, state, ()),))
+        for node, name, state in _words(KEEPS, lines)
+    ]
+    return (*managed, *timed, *active, *kept)
+
+
 def _is_known(line: str) -> bool:
-    return any(
-        it.fullmatch(line) for it in (NODE, FRAMES, SHARED, TRANSFORM, TOPIC_OF, BRIDGED, ONE_OF)
-    )
+    planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE)
+    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, *planned, *ANSWERS))
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -145,9 +171,12 @@ def read_graph(lines: list[str]) -> Snapshot:
     """What the lines say is running."""
     ends = [words for words in _words(NODE, lines) if words[1]]
     alone = [node for node, role, *_ in _words(NODE, lines) if not role]
+    asked = [words[0] for it in ANSWERS for words in _words(it, lines)]
+    alone += [it for it in dict.fromkeys(asked) if it not in {node for node, *_ in ends}]
     nodes = [*alone, *dict.fromkeys(node for node, *_ in ends if node not in alone)]
+    enclaves = {node: path for path, node in _words(ENCLAVE, lines)}
     return Snapshot(
-        tuple(GraphNode(node, "") for node in nodes),
+        tuple(GraphNode(node, "", enclaves.get(node, "")) for node in nodes),
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
@@ -162,6 +191,6 @@ def _qos(words: list[str]) -> Qos | None:
     return qos(**{POLICIES[word]: word.upper() for word in words}) if words else None
 
 
-def _transform(parent: str, child: str, topic: str, nodes: str) -> GraphFrame:
+def _transform(parent: str, child: str, topic: str, nodes: str, twice: str) -> GraphFrame:
     publishers = tuple(nodes.split(", ")) if nodes else ()
-    return GraphFrame(child, parent, topic, "tf_static" in topic, publishers)
+    return GraphFrame(child, parent, topic, "tf_static" in topic, publishers, bool(twice))

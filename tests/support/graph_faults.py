@@ -112,6 +112,12 @@ def other_parent(child: str, parent: str, topic: str) -> Change:
     )
 
 
+def sent_twice(child: str, topic: str) -> Change:
+    return reframed(
+        lambda it: it._replace(several=True) if (it.child, it.topic) == (child, topic) else it
+    )
+
+
 def offered(name: str, publishers: str, subscribers: str, policy: str) -> Change:
     give, ask = qos(**{policy: publishers}), qos(**{policy: subscribers})
     return lambda graph: with_qos(graph, name, give, ask)
@@ -240,6 +246,14 @@ def tf_rows() -> tuple[Fault, ...]:
             "robot2 sends a mount with robot1's name", shared_tf,
             frame("imu_link/robot1", "base_link/robot2", "/tf"),
             "MG401", ("imu_link/robot1", "base_link/robot2"),
+        ),
+        Fault(
+            "the EKF sends the controller's odometry as well", nav,
+            both(
+                added("/robot1/ekf_node", (PUBLISHES, tf1, TF)),
+                sent_twice("base_footprint", tf1),
+            ),
+            "MG408", ("odom -> base_footprint", "/robot1/ekf_node", "publish_tf"),
         ),
         Fault(
             "two robots without any namespace", single, twice,
@@ -552,6 +566,7 @@ LIVE = (
     "nobody passed /tf:=tf: both trees on /tf",
     "one robot_state_publisher lacks /tf:=tf",
     "a static map -> odom beside amcl",
+    "the EKF sends the controller's odometry as well",
     "a node sends base_link -> map",
     "frame_prefix on top of a rewritten description",
 )

@@ -4,7 +4,8 @@ Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "n
 "publishers", "subscriptions", "services", "clients", "actions" of [name, type, QoS words],
 "frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
 brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a process of its own.
-"arguments": what a command line tells the node. "wait": seconds until the next node is made.
+"arguments": what a command line tells the node. "state": what it answers to GetState. "wait": seconds
+until the next node is made.
 """
 
 from __future__ import annotations
@@ -84,7 +85,7 @@ def main(spec: str) -> None:
         nodes.append(_node(one, executor))
         time.sleep(one.get("wait", 0))
     # Nobody is answered; a large fleet that spins would keep the machine busy.
-    sends = any(one.get("frames") for one in specs)
+    sends = any(one.get("frames") or one.get("state") for one in specs)
     print(READY, flush=True)
     stop = _input_closed()
     while not stop.done():
@@ -126,6 +127,8 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
         node.create_client(_type(type_), name)
     for name, type_ in spec.get("actions", ()):
         _action(node, _type(type_), name)
+    if spec.get("state"):
+        _answer_state(node, spec["state"])
     for topic, static, *edges in spec.get("frames", ()):
         _send_frames(node, topic, static, edges)
     return node
@@ -144,6 +147,17 @@ def _action(node: Any, type_: Any, name: str) -> None:
     from rclpy.action import ActionServer
 
     ActionServer(node, type_, name, lambda goal: type_.Result())
+
+
+def _answer_state(node: Any, label: str) -> None:
+    """As a managed node does."""
+    from lifecycle_msgs.srv import GetState
+
+    def answer(_: Any, response: Any) -> Any:
+        response.current_state.label = label
+        return response
+
+    node.create_service(GetState, "~/get_state", answer)
 
 
 def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) -> None:

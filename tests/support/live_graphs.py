@@ -79,11 +79,11 @@ def _words(end: GraphEndpoint) -> Iterator[str]:
 
 
 def _frames(graph: Snapshot) -> dict[str, list[list[Any]]]:
-    """By node: topic, static or not, edges; a frame is sent by the first node on its topic."""
+    """By node: topic, static or not, edges; the first node on its topic sends a frame, or two do."""
     found: dict[str, dict[tuple[str, bool], list[list[str]]]] = defaultdict(dict)
     for it in graph.frames:
-        sender = next(iter(it.publishers), "")
-        found[sender].setdefault((it.topic, it.static), []).append([it.parent, it.child])
+        for sender in it.publishers[: 2 if it.several else 1]:
+            found[sender].setdefault((it.topic, it.static), []).append([it.parent, it.child])
     return {
         node: [[topic, static, *edges] for (topic, static), edges in own.items()]
         for node, own in found.items()

@@ -23,7 +23,7 @@ from typing import Any, NamedTuple
 import yaml
 from vendor_sources import WITHOUT, install, packages_below, sources_folder
 
-from multibot_rewrite.fleets.fleet import expected
+from multibot_rewrite.fleets.fleet import Fleet, expected
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.expectation import Expectation
@@ -75,13 +75,15 @@ class Started(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A system: the nodes that its launch files start, its plan without and with them."""
+    """A system: the nodes that its launch files start, its plan without and with them, and the
+    fleet of the latter."""
 
     name: str
     before: str
     started: Mapping[str, Started]
     own: Expectation
     launched: Expectation
+    fleet: Fleet
 
 
 def read_vendors() -> Vendors:
@@ -89,6 +91,8 @@ def read_vendors() -> Vendors:
     parts = [yaml.safe_load(it.read_text()) for it in sorted(HERE.glob("vendors/*.yaml"))]
     merged: dict[str, dict[str, Any]] = {key: {} for key in Vendors._fields}
     for part in parts:
+        for system in part["systems"].values():
+            system.setdefault("uses", list(part["sources"]))
         for key, rows in part.items():
             merged[key] |= rows or {}
     return Vendors(**merged)
@@ -121,7 +125,7 @@ def started(system: Mapping[str, Any], vendors: Vendors, words: Mapping[str, str
     """The nodes of one robot, by the real launch."""
     rows = [row for line in filled(system["launch"], words) for row in _recorded(line)]
     below = filled(system.get("below", ""), words)
-    nodes = [it for row in rows for it in _nodes(row, vendors.named)]
+    nodes = [it for row in rows for it in started_by(row, vendors.named)]
     found = [_below(it, below) for it in nodes]
     also = filled(system.get("simulator", {}), words)
     return [*found, *(Started(f"/{words['robot']}/{name}", by) for name, by in also.items())]
@@ -139,7 +143,7 @@ def _recorded(line: str) -> list[dict[str, Any]]:
     return found
 
 
-def _nodes(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
+def started_by(row: Mapping[str, Any], named: Mapping[str, Mapping[str, Any]]) -> Iterator[Started]:
     """The nodes of a program: it may have several, and a spawner has its controllers."""
     by = f"{row['package']}/{row['executable']}"
     if not row["package"] or row["executable"] in _PASSING:
@@ -180,7 +184,7 @@ def _positional(words: Iterable[str]) -> Iterator[str]:
             yield word
 
 
-def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Expectation:
+def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -> Fleet:
     """The plan of two robots by the vendor's files, with its launch files or without."""
     work = Path(words["work"])
     robots = []
@@ -191,7 +195,12 @@ def planned(system: Mapping[str, Any], words: Mapping[str, str], launch: bool) -
     fleet = {"layout": "tf-per-robot", "distro": system["release"], "robots": robots}
     file = work / "fleet.yaml"
     file.write_text(yaml.safe_dump({**fleet, **filled(system["fleet"], words)}, sort_keys=False))
-    return expected(plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet)
+    return plan_fleet(read_fleet(str(file), "", {}), trust=True).fleet
+
+
+def missing(system: Mapping[str, Any], folder: Path) -> list[str]:
+    """The checkouts that a system needs and that are not there."""
+    return [it for it in system["uses"] if not (folder / it).is_dir()]
 
 
 def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
@@ -210,11 +219,12 @@ def outcome(name: str, vendors: Vendors, folder: Path) -> Outcome:
             for robot in (ROBOT, OTHER):
                 prepare(system, {**words, "robot": robot})
             nodes = {it.name: it for it in started(system, vendors, words)}
-            plans = [planned(system, words, launch) for launch in (False, True)]
+            own, launched = (planned(system, words, launch) for launch in (False, True))
         finally:
             os.environ.clear()
             os.environ.update(before)
-    return Outcome(name, str(system.get("before", "")), nodes, *plans)
+    plans = (expected(own), expected(launched))
+    return Outcome(name, str(system.get("before", "")), nodes, *plans, launched)
 
 
 def nodes_of(plan: Expectation) -> dict[str, bool]:
@@ -279,6 +289,10 @@ def main(words: list[str]) -> int:
         return 2
     vendors = read_vendors()
     names = [it for it in words if not it.startswith("--")] or list(vendors.systems)
+    lacking = {it for name in names for it in missing(vendors.systems[name], folder)}
+    if lacking:
+        print(f"{folder} lacks {', '.join(sorted(lacking))}", file=sys.stderr)
+        return 2
     text = page([outcome(it, vendors, folder) for it in names])
     if "--write" in words:
         PAGE.write_text(text)

@@ -1,13 +1,16 @@
 """Robots for a Zenoh router in tests: sessions with tokens as rmw_zenoh writes them.
 
 The tokens are put together here from the source of rmw_zenoh (liveliness_utils.cpp), not by the
-package. All is in this process, on loopback.
+package. All is in this process, on loopback. ``python zenoh_robots.py ENDPOINT ROBOT... +ENDPOINT...``
+is a machine of its own: a router that listens there and connects to those with a plus, with robots
+beside it; it ends when its standard input closes.
 """
 
 from __future__ import annotations
 
 import json
 import struct
+import sys
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
@@ -126,8 +129,10 @@ def robot(address: str, domain: int = 0, **settings: Any) -> Iterator[Robot]:
         **settings,
     }
     session = zenoh.open(config(**given))
+    # Held here: a token that nobody holds is taken back.
+    made = Robot(session, domain, [])
     try:
-        yield Robot(session, domain, [])
+        yield made
     finally:
         session.close()
 
@@ -156,3 +161,23 @@ def tf_message(*edges: tuple[str, str], mark: str = "<") -> bytes:
             data += b"\0" * (-len(data) % 4) + struct.pack(f"{mark}I", len(text)) + text
         data += b"\0" * (-len(data) % 8) + struct.pack(f"{mark}7d", 1, 2, 3, 0, 0, 0, 1)
     return (b"\0\1\0\0" if mark == "<" else b"\0\0\0\0") + data
+
+
+def main(address: str, *words: str) -> None:
+    """A machine with a router and robots, until standard input closes."""
+    others = [word[1:] for word in words if word.startswith("+")]
+    names = [word for word in words if not word.startswith("+")]
+    import zenoh
+
+    made = config(mode="router", listen__endpoints=[address], connect__endpoints=others)
+    session = zenoh.open(made)
+    with robot(address) as there:
+        for number, name in enumerate(names):
+            drive(there, name, number)
+        print("ready", flush=True)
+        sys.stdin.read()
+    session.close()
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -110,6 +110,7 @@ PLAN = Command(
     (
         Example("multibot plan fleet.yaml -o plan.yaml"),
         Example("multibot plan rover.urdf robot1 robot2 --stack nav2 -o plan.yaml"),
+        Example("multibot plan fleet.yaml -o plan.yaml --sros2 policy.xml", "docs/security.md"),
     ),
     (
         _DESCRIPTION,
@@ -117,7 +118,14 @@ PLAN = Command(
             output(
                 "write the plan there, not to standard output: YAML to read and edit, or, if FILE ends"
                 " in .json, JSON, which is read ten times faster"
-            )
+            ),
+            value(
+                "--sros2",
+                metavar="FILE",
+                about="write a policy of SROS2, too: an enclave for each robot, so that DDS refuses"
+                " what crosses them",
+                type=values.path,
+            ),
         ),
         NAMING,
         FINDINGS,

@@ -31,6 +31,10 @@ from multibot_rewrite.cli.options import (
 )
 from multibot_rewrite.findings.finding import ERROR
 
+STATE = switch(
+    "--state",
+    about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers",
+)
 WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 MERGE = Option(
     ("--merge",),
@@ -91,12 +95,14 @@ DOCTOR = Command(
         Example("multibot doctor --watch", "show every change until Ctrl-C"),
         Example("multibot doctor --snapshot graph.json", "a saved graph; needs no ROS"),
         Example("multibot doctor --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"),
+        Example("multibot doctor --state", "also ask each node for its state"),
         Example("multibot doctor --suggest first/", "begin a fleet file and a plan with it"),
     ),
     (
         output_group(
             FINDINGS_OUTPUT,
             WATCH,
+            STATE,
             value(
                 "--suggest",
                 metavar="FOLDER",
@@ -253,6 +259,10 @@ ZENOH_FILES = Command(
                     "enclaves that may do anything: a fleet manager, RViz, multibot itself",
                     [],
                     values.full_names,
+                ),
+                switch(
+                    "--own-routers",
+                    about="each robot has a router of its own, which connects to --router",
                 ),
                 *(it for it in LIVE.options if "--domain" in it.names),
                 DISTRO,

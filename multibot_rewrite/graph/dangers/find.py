@@ -18,18 +18,24 @@ from multibot_rewrite.graph.dangers import (
     tf_topics,
     transforms,
 )
+from multibot_rewrite.graph.dangers import (
+    states as states_,
+)
 from multibot_rewrite.graph.dangers.seen import Owners, Seen, look_at
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.states import NodeState
 
-_MODULES = (nodes, names, matching, commands, sharing, transforms, tf_topics, clocks)
+_MODULES = (nodes, names, matching, commands, sharing, transforms, tf_topics, clocks, states_)
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 
 
-def find_dangers(graph: Snapshot, owners: Owners) -> list[Finding]:
+def find_dangers(
+    graph: Snapshot, owners: Owners, states: tuple[NodeState, ...] = ()
+) -> list[Finding]:
     """All findings in the order of the rules; empty for a system that is as it should be."""
     with gc_paused():
-        seen = look_at(graph, owners)
+        seen = look_at(graph, owners, states)
         return [it for rule in DANGERS.values() for it in _ask(rule, seen)]
 
 

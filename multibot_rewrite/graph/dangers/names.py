@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from itertools import islice
 
 from multibot_rewrite.findings.finding import ERROR, NOTE, Finding
 from multibot_rewrite.graph.dangers.seen import (
@@ -19,7 +21,7 @@ from multibot_rewrite.graph.dangers.seen import (
 from multibot_rewrite.graph.rules.causes import in_namespaces_above
 from multibot_rewrite.graph.rules.declaration import danger_rule
 from multibot_rewrite.graph.snapshot import GraphEndpoint
-from multibot_rewrite.nearest import MISTYPED, nearest
+from multibot_rewrite.nearest import COMPARED, MISTYPED, nearest
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
 _DIGITS = re.compile(r"\d+")
@@ -98,7 +100,7 @@ def alike(name: str, known: Iterable[str], type_: str) -> str:
     Names that differ in their numbers alone are two things.
     """
     letters = _letters(name)
-    names = [it for it in known if it != name]
+    names = [it for it in islice(known, COMPARED) if it != name]
     folded = next((it for it in names if _letters(it) == letters), "")
     if folded or type_.startswith(_COMMON):
         return folded
@@ -167,11 +169,15 @@ running: /robot2/bt_navigator serves /robot2/navigate_to_pose nav2_msgs/action/N
 )
 def server_names_miss(seen: Seen) -> Iterator[Finding]:
     """A service that is nowhere to be found may be optional: it is no finding."""
+    served: dict[tuple[str, str], list[str]] = defaultdict(list)
+    for (kind, name), ends in seen.names.items():
+        if ends.servers:
+            served[kind, ends.type].append(name)
     for (kind, name), ends in seen.names.items():
         if kind == TOPIC or ends.servers:
             continue
         for end in _each_node(ends.clients):
-            other = _served_instead(seen, end)
+            other = _served_instead(seen, end, served[kind, end.type])
             if not other:
                 continue
             does = "sends goals to" if kind == ACTION else "calls"
@@ -185,12 +191,7 @@ def server_names_miss(seen: Seen) -> Iterator[Finding]:
             )
 
 
-def _served_instead(seen: Seen, end: GraphEndpoint) -> str:
-    served = [
-        name
-        for (kind, name), ends in seen.names.items()
-        if kind == end.kind and ends.servers and ends.type == end.type
-    ]
+def _served_instead(seen: Seen, end: GraphEndpoint, served: Sequence[str]) -> str:
     robot, owner = seen.robot(end.node), seen.robot(end.name)
     same = [it for it in served if seen.plain(it) == seen.plain(end.name)]
     # Another robot's is no answer to a robot that lacks it.

@@ -97,29 +97,27 @@ running: transform odom -> base_link on /robot2/tf by /robot2/driver
 def robots_frames_collide(seen: Seen) -> Iterator[Finding]:
     """One robot may have no name in its frames, if all others have."""
     for tree in seen.trees:
-        robots, twice = robots_of(seen, tree.senders), _twice(seen, tree.senders)
-        bare = _bare_frames(seen, tree)
+        who = _collide(seen, tree)
+        if who:
+            bare = _bare_frames(seen, tree)
+            message = f"{who} on {tree.topic}: {shorten(bare, SEVERAL)}"
+            cause = _either(tree, robots_of(seen, tree.senders))
+            yield robots_frames_collide.finding(message, cause, names=tuple(bare))
+
+
+def _collide(seen: Seen, tree: Tree) -> str:
+    """Who sends frames that do not say whose they are; empty where nothing collides."""
+    robots, bare = robots_of(seen, tree.senders), set(_bare_frames(seen, tree))
+    # Who sends on another robot's topic is a finding of its own.
+    if bare and not seen.robot(tree.topic):
         named = {seen.owners.frames.get(edge.child, "") for edge in tree.edges}
         nameless = [robot for robot in robots if robot not in named]
         doubled = {seen.owners.plain_frames.get(it, "") for it in _named_frames(seen, tree)}
-        # Who sends on another robot's topic is a finding of its own.
-        both = (
-            bare
-            and not seen.robot(tree.topic)
-            and (len(nameless) > 1 or (not nameless and doubled & set(bare)))
-        )
-        if not both and not (bare and twice):
-            continue
-        listed = shorten(bare, SEVERAL)
-        if both:
-            who = nameless if len(nameless) > 1 else robots
-            message = (
-                f"{and_then(who)} send frames without a robot's name on {tree.topic}: {listed}"
-            )
-        else:
-            message = f"two nodes of one name send the same frames on {tree.topic}: {listed}"
-        cause = _either(tree, robots)
-        yield robots_frames_collide.finding(message, cause, names=tuple(bare))
+        if len(nameless) > 1 or (not nameless and doubled & bare):
+            return f"{and_then(nameless or robots)} send frames without a robot's name"
+    if bare and _twice(seen, tree.senders):
+        return "two nodes of one name send the same frames"
+    return ""
 
 
 def _twice(seen: Seen, senders: Iterable[str]) -> list[str]:
@@ -229,6 +227,36 @@ def static_and_moving(seen: Seen) -> Iterator[Finding]:
             yield static_and_moving.finding(
                 message, cause, robot=robot, names=(edge.child, edge.parent)
             )
+
+
+@danger_rule(
+    "MG408",
+    "transform-of-two-senders",
+    ERROR,
+    what="Several publishers send the same transform: an EKF and the controller both odometry, AMCL and"
+    " SLAM both the place in the map.",
+    why="The robot jumps between what the two believe, many times a second.",
+    fix="Let one of them send it: `publish_tf: false` of the EKF, `enable_odom_tf: false` of"
+    " diff_drive_controller, `publish_odom_tf` of a simulator's plugin, `tf_broadcast: false` of AMCL.",
+    bad="running: transform odom -> base_link on /robot1/tf by /robot1/ekf, /robot1/driver twice\n",
+    good="running: transform odom -> base_link on /robot1/tf by /robot1/ekf, /robot1/driver\n",
+)
+def transform_of_two_senders(seen: Seen) -> Iterator[Finding]:
+    """Where robots' frames collide, that is the finding; all transforms of a tree are one."""
+    for tree in seen.trees:
+        if _collide(seen, tree):
+            continue
+        edges = [it for it in tree.edges if it.several]
+        for robot in unique(_robot(seen, it.child) for it in edges):
+            own = [it for it in edges if _robot(seen, it.child) == robot]
+            listed = shorten(f"{it.parent} -> {it.child}" for it in own)
+            message = f"several nodes send {listed} on {tree.topic}"
+            who = robot or only(robots_of(seen, tree.senders))
+            nodes = [it for it in tree.senders if seen.robot(it) in ("", who)] or tree.senders
+            listed_nodes = shorten(nodes, SEVERAL)
+            cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
+            names = tuple(it.child for it in own)
+            yield transform_of_two_senders.finding(message, cause, robot=who, names=names)
 
 
 @danger_rule(

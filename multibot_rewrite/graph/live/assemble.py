@@ -29,6 +29,7 @@ BURST_SECONDS = 0.5
 TF_TYPES = ("tf2_msgs/msg/TFMessage", "geometry_msgs/msg/TransformStamped")
 # Almost every node publishes one of these, so few queries show which nodes share a process.
 COMMON_TOPICS = ("/parameter_events", "/rosout")
+NO_ENCLAVES: Mapping[str, str] = {}
 
 
 class ReceivedTransform(NamedTuple):
@@ -145,13 +146,16 @@ def processes_by_node(endpoints: Iterable[GraphEndpoint]) -> dict[str, list[str]
 
 
 def nodes_with_process(
-    names: Sequence[str], processes: Mapping[str, Sequence[str]]
+    names: Sequence[str],
+    processes: Mapping[str, Sequence[str]],
+    enclaves: Mapping[str, str] = NO_ENCLAVES,
 ) -> list[GraphNode]:
     """One record for each node; nodes with one name are spread over its processes."""
     result = []
     for name, times in sorted(Counter(names).items()):
         own = processes.get(name) or [""]
-        result += [GraphNode(name, own[at % len(own)]) for at in range(times)]
+        enclave = enclaves.get(name, "")
+        result += [GraphNode(name, own[at % len(own)], enclave) for at in range(times)]
     return result
 
 
@@ -173,9 +177,14 @@ def _order(end: GraphEndpoint) -> tuple[str, ...]:
 
 
 def frames(
-    received: Iterable[ReceivedTransform], endpoints: Iterable[GraphEndpoint]
+    received: Iterable[ReceivedTransform],
+    endpoints: Iterable[GraphEndpoint],
+    of_several: Collection[ReceivedTransform] = (),
 ) -> Iterator[GraphFrame]:
-    """The transforms received, each once a topic; static if it came from a latched subscription."""
+    """The transforms received, each once a topic; static if it came from a latched subscription.
+
+    ``of_several`` are those that more than one publisher sends.
+    """
     publishers = defaultdict(set)
     for end in endpoints:
         if end.kind == TOPIC and end.role == PUBLISHES:
@@ -184,5 +193,8 @@ def frames(
     for topic, is_latched, parent, child in received:
         edge = (topic, parent, child)
         latched[edge] = is_latched or latched.get(edge, False)
-    for (topic, parent, child), static in sorted(latched.items()):
-        yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers[topic])))
+    several = {(it.topic, it.parent, it.child) for it in of_several}
+    for edge, static in sorted(latched.items()):
+        topic, parent, child = edge
+        senders = tuple(sorted(publishers[topic]))
+        yield GraphFrame(child, parent, topic, static, senders, edge in several)

@@ -5,17 +5,19 @@ rcl may end its process, so the command never loads it.
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Generator, Iterator, Mapping
+from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from typing import IO, NamedTuple
 
 from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
 from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, ZENOH, Caveat, Snapshot, from_json
+from multibot_rewrite.graph.states import NodeState, Question, from_message
 from multibot_rewrite.model import MultibotError
 
 INSTALL = (
@@ -23,6 +25,7 @@ INSTALL = (
     " pip install 'multibot_rewrite[ros]'"
 )
 OBSERVE, RUN_STUBS = "multibot_rewrite.graph.live.observe", "multibot_rewrite.graph.live.stub_nodes"
+ASK = "multibot_rewrite.graph.live.ask"
 # For import and start, and for an end on a busy machine: the child keeps to the timeout by itself.
 SLACK_SECONDS = 30.0
 NO_SECOND_LOOK = (
@@ -108,6 +111,17 @@ def watch(request: Request, environ: Mapping[str, str]) -> Generator[Snapshot, N
         while (data := child.next_message()) is not None:
             yield from_json(data, "the view of the graph")
         end.cancel()
+
+
+def ask(
+    asked: Iterable[Question], seconds: float, environ: Mapping[str, str]
+) -> tuple[NodeState, ...]:
+    """What nodes answer within ``seconds``, all asked at once; raises RosUnusable."""
+    order = json.dumps((seconds, list(asked)))
+    with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
+        data = child.next_message()
+    assert data is not None
+    return from_message(data)
 
 
 @contextmanager

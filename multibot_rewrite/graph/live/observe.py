@@ -247,7 +247,8 @@ def _snapshot(
     more: Iterable[Caveat] = (),
 ) -> Snapshot:
     processes = assemble.processes_by_node(endpoints)
-    nodes = assemble.nodes_with_process(names, processes)
+    enclaves = queries.enclaves(session.node)
+    nodes = assemble.nodes_with_process(names, processes, enclaves)
     placed = tuple(assemble.endpoints_with_process(endpoints, processes))
     asked = environment.settings(os.environ)
     why, seconds = settled
@@ -269,7 +270,12 @@ def _snapshot(
         round(seconds, 2),
         tuple(caveats),
     )
-    return Snapshot(tuple(nodes), placed, tuple(assemble.frames(tf.transforms(), placed)), around)
+    return Snapshot(
+        tuple(nodes),
+        placed,
+        tuple(assemble.frames(tf.transforms(), placed, tf.of_several())),
+        around,
+    )
 
 
 if __name__ == "__main__":

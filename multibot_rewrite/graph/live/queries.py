@@ -34,6 +34,12 @@ def node_names(node: Any) -> list[str]:
     return sorted(name for name in found if name != node.get_fully_qualified_name())
 
 
+def enclaves(node: Any) -> dict[str, str]:
+    """The enclave of each node by its full name; a node in the enclave ``/`` is in none."""
+    found = node.get_node_names_and_namespaces_with_enclaves()
+    return {_full_name(name, space): enclave.rstrip("/") for name, space, enclave in found}
+
+
 def _full_name(name: str, namespace: str) -> str:
     if name == UNKNOWN_NODE:
         # Its namespace is such a word too, without a slash.

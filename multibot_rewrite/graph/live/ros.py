@@ -142,11 +142,21 @@ def _check_support(kind: str, type_: Any) -> None:
 
 
 def subscribe(
-    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[Any], None]
+    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[Any, int | None], None]
 ) -> Callable[[], None]:
-    """Subscribe; returns what ends it. With ``latched`` earlier messages are received too."""
+    """Subscribe; returns what ends it. With ``latched`` earlier messages are received too.
+
+    The callback gets a message and its number, by which its publisher counts; None if that is unknown.
+    """
+
+    def numbered(message: Any, info: Any) -> None:
+        name = "publication_sequence_number"
+        # A dictionary in Jazzy.
+        number = info.get(name) if isinstance(info, dict) else getattr(info, name, None)
+        callback(message, number)
+
     # Best effort works with reliable publishers too, but latched samples need a reliable reader.
-    subscription = node.create_subscription(type_, topic, callback, _qos(latched, latched))
+    subscription = node.create_subscription(type_, topic, numbered, _qos(latched, latched))
     return lambda: node.destroy_subscription(subscription)
 
 

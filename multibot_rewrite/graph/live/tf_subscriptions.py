@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from multibot_rewrite.graph.live.assemble import TF_TYPES, ReceivedTransform
+from multibot_rewrite.graph.live.voices import Mark, Voices
 from multibot_rewrite.graph.snapshot import Caveat, GraphEndpoint
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.remap.records import PUBLISHES
@@ -15,7 +16,7 @@ from multibot_rewrite.remap.records import PUBLISHES
 FORGET_SECONDS = 10.0
 # Name, type, and whether it is latched (transient local).
 Topic = tuple[str, str, bool]
-Callback = Callable[[Any], None]
+Callback = Callable[[Any, Mark], None]
 # (topic, type, latched, callback) -> what ends the subscription, or why there is none.
 Subscribe = Callable[[str, str, bool, Callback], "Callable[[], None] | str"]
 
@@ -28,6 +29,7 @@ class TfSubscriptions:
         self._open: dict[Topic, Callable[[], None]] = {}
         self._failed: dict[str, str] = {}
         self._received: dict[ReceivedTransform, float] = {}
+        self._voices: dict[ReceivedTransform, Voices] = {}
         self._began = time.monotonic()
 
     def update(self, endpoints: Iterable[GraphEndpoint], substitutes: bool) -> None:
@@ -45,7 +47,7 @@ class TfSubscriptions:
 
     def _add(self, topic: Topic) -> None:
         name, type_, latched = topic
-        end = self._subscribe(name, type_, latched, lambda it: self._receive(name, latched, it))
+        end = self._subscribe(name, type_, latched, lambda *it: self._receive(name, latched, *it))
         if isinstance(end, str):
             self._failed[name] = end
         else:
@@ -59,17 +61,23 @@ class TfSubscriptions:
             it: at for it, at in self._received.items() if (it.topic, it.latched) != (name, latched)
         }
 
-    def _receive(self, topic: str, latched: bool, message: Any) -> None:
+    def _receive(self, topic: str, latched: bool, message: Any, mark: Mark) -> None:
         now = time.monotonic()
         # In a rehearsal without tf2_msgs each message is a single transform.
         for transform in getattr(message, "transforms", (message,)):
             parent, child = transform.header.frame_id, transform.child_frame_id
-            self._received[ReceivedTransform(topic, latched, parent, child)] = now
+            edge = ReceivedTransform(topic, latched, parent, child)
+            self._received[edge] = now
+            self._voices[edge] = self._voices.get(edge, Voices()).after(mark)
 
     def transforms(self) -> tuple[ReceivedTransform, ...]:
         """The transforms that are still valid; latched ones always are."""
         limit = time.monotonic() - FORGET_SECONDS
         return tuple(sorted(it for it, at in self._received.items() if it.latched or at >= limit))
+
+    def of_several(self) -> frozenset[ReceivedTransform]:
+        """The transforms that more than one publisher sends."""
+        return frozenset(it for it, heard in self._voices.items() if heard.several(it.latched))
 
     def keep_waiting(self, first: float, last: float) -> bool:
         """Whether to wait longer: ``first`` seconds always, ``last`` while a topic is silent."""

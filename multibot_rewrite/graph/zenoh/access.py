@@ -23,6 +23,13 @@ from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVES
 
 Rule = dict[str, object]
 IN, OUT = "ingress", "egress"
+# Where rules are applied: what leaves a robot's session comes in at a router, and passes its own.
+SESSION, OWN_ROUTER, FLEET_ROUTER = "session", "own router", "fleet's router"
+_FLOWS = {
+    SESSION: ((OUT,), (IN,)),
+    OWN_ROUTER: ((OUT, IN), (OUT, IN)),
+    FLEET_ROUTER: ((IN,), (OUT,)),
+}
 _SENDS = ["put", "delete", "reply", "declare_queryable"]
 _ASKS = ["declare_subscriber", "query"]
 _LIVELINESS = ["liveliness_token", "liveliness_query", "declare_liveliness_subscriber", "reply"]
@@ -113,16 +120,16 @@ def _latched(keys: Sequence[str]) -> tuple[str, ...]:
     return (*keys, *(f"{key}/@adv/**" for key in keys))
 
 
-def robot_rules(given: Rights, domain: int, mirrored: bool = False) -> list[Rule]:
-    """The rules of a robot's own sessions; ``mirrored`` those of a router at the other end."""
-    out, back = (IN, OUT) if mirrored else (OUT, IN)
+def robot_rules(given: Rights, domain: int, side: str = SESSION) -> list[Rule]:
+    """The rules of a robot where they are applied: its sessions, its own router, the fleet's router."""
+    out, back = _FLOWS[side]
     name = given.robot
     found = [
         _rule(f"{name}_own", [*_SENDS, *_ASKS], (OUT, IN), given.own),
-        _rule(f"{name}_sends", _SENDS, (out,), given.sends),
-        _rule(f"{name}_is_asked", _ASKS, (back,), given.sends),
-        _rule(f"{name}_hears", _SENDS, (back,), given.hears),
-        _rule(f"{name}_asks", _ASKS, (out,), given.hears),
+        _rule(f"{name}_sends", _SENDS, out, given.sends),
+        _rule(f"{name}_is_asked", _ASKS, back, given.sends),
+        _rule(f"{name}_hears", _SENDS, back, given.hears),
+        _rule(f"{name}_asks", _ASKS, out, given.hears),
     ]
     return [*found, graph_rule(f"{name}_graph", domain)]
 

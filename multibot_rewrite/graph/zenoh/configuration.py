@@ -16,6 +16,8 @@ from typing import Any, NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.zenoh.access import (
+    FLEET_ROUTER,
+    OWN_ROUTER,
     Rights,
     access_control,
     all_rule,
@@ -24,6 +26,8 @@ from multibot_rewrite.graph.zenoh.access import (
 )
 
 ROUTER_FILE = "router.json5"
+# Where rmw_zenoh's sessions look for a router.
+LOCAL_ROUTER = "tcp/localhost:7447"
 _ROUTER_ENCLAVE = "/router"
 Config = dict[str, Any]
 # A subject without a property is everybody.
@@ -31,13 +35,14 @@ _ANYBODY: Config = {"id": "anybody"}
 
 
 class Setup(NamedTuple):
-    """What the plan does not say: the router's endpoint, the domain, the keystore (empty for none), and
-    the enclaves of those that may do anything."""
+    """What the plan does not say: the router's endpoint, the domain, the keystore (empty for none),
+    the enclaves of those that may do anything, whether each robot has a router of its own."""
 
     router: str
     domain: int
     keystore: str = ""
     operators: tuple[str, ...] = ()
+    own_routers: bool = False
 
 
 def configurations(plan: Expectation, setup: Setup) -> Iterator[tuple[str, bytes]]:
@@ -45,10 +50,12 @@ def configurations(plan: Expectation, setup: Setup) -> Iterator[tuple[str, bytes
     known = rights(plan, setup.domain)
     yield ROUTER_FILE, _text(_router(known, setup), _about_router(setup))
     for given in known:
-        name, config = f"{given.robot}.json5", _client(f"/{given.robot}", setup)
-        # Whoever is at the other end: no subject is named.
-        config["access_control"] = access_control([(_ANYBODY, robot_rules(given, setup.domain))])
-        yield name, _text(config, f"The nodes of {given.robot}: {_session(name)}")
+        name = f"{given.robot}.json5"
+        yield name, _text(_robot(given, setup), f"The nodes of {given.robot}: {_session(name)}")
+        if setup.own_routers:
+            name = f"{given.robot}_router.json5"
+            about = f"The router on {given.robot}: {_start(name)}"
+            yield name, _text(_own_router(given, setup), about)
     for enclave in setup.operators:
         name = f"{operator_word(enclave)}.json5"
         about = (
@@ -58,14 +65,19 @@ def configurations(plan: Expectation, setup: Setup) -> Iterator[tuple[str, bytes
 
 
 def file_names(plan: Expectation, setup: Setup) -> list[str]:
-    """What the files are called, in their order."""
+    """What the files are called."""
     words = [robot.name for robot in plan.robots] + [operator_word(it) for it in setup.operators]
+    words += [f"{robot.name}_router" for robot in plan.robots if setup.own_routers]
     return [ROUTER_FILE, *(f"{word}.json5" for word in words)]
 
 
 def operator_word(enclave: str) -> str:
     """What the file of an enclave is called."""
     return enclave.strip("/").replace("/", "_")
+
+
+def _start(name: str) -> str:
+    return f"ZENOH_ROUTER_CONFIG_URI={name} (its full path) ros2 run rmw_zenoh_cpp rmw_zenohd"
 
 
 def _session(name: str) -> str:
@@ -136,7 +148,7 @@ def _router(known: Sequence[Rights], setup: Setup) -> Config:
     config |= _common(_ROUTER_ENCLAVE, setup)
     if setup.keystore:
         parts = [
-            (_subject(f"/{it.robot}"), robot_rules(it, setup.domain, mirrored=True)) for it in known
+            (_subject(f"/{it.robot}"), robot_rules(it, setup.domain, FLEET_ROUTER)) for it in known
         ]
         for enclave in setup.operators:
             parts.append((_subject(enclave), [all_rule(enclave, setup.domain)]))
@@ -157,6 +169,35 @@ def _endpoint(setup: Setup) -> str:
 
 def _subject(enclave: str) -> Config:
     return {"id": enclave, "cert_common_names": [enclave]}
+
+
+def _robot(given: Rights, setup: Setup) -> Config:
+    """A robot's nodes: clients of the fleet's router, or peers beside a router of their own."""
+    config = _client(f"/{given.robot}", setup)
+    if setup.own_routers:
+        config = {
+            "mode": "peer",
+            "connect": {"endpoints": [LOCAL_ROUTER]},
+            "listen": {"endpoints": ["tcp/localhost:0"]},
+            **_common("", setup._replace(keystore="")),
+        }
+    config["access_control"] = access_control([(_ANYBODY, robot_rules(given, setup.domain))])
+    return config
+
+
+def _own_router(given: Rights, setup: Setup) -> Config:
+    """A router on the robot: its nodes come by loopback, all else by the fleet's router."""
+    config: Config = {
+        "mode": "router",
+        "connect": {"endpoints": [_endpoint(setup)]},
+        "listen": {"endpoints": [LOCAL_ROUTER]},
+        **_common(f"/{given.robot}", setup),
+    }
+    if setup.keystore:
+        config["transport"]["link"]["protocols"] = ["tls", "tcp"]
+    rules = robot_rules(given, setup.domain, OWN_ROUTER)
+    config["access_control"] = access_control([(_ANYBODY, rules)])
+    return config
 
 
 def _client(enclave: str, setup: Setup) -> Config:

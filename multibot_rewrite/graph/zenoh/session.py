@@ -16,7 +16,7 @@ from multibot_rewrite.model import InputError
 
 INSTALL = "pip install 'multibot_rewrite[zenoh]' (or pip install eclipse-zenoh)"
 # The router answers in milliseconds; over a slow network connecting takes some time.
-CONNECT_SECONDS, ANSWER_SECONDS = 5.0, 5.0
+CONNECT_SECONDS, ANSWER_SECONDS = 3.0, 5.0
 # Not found by multicast: what is asked is the router that was named.
 _SETTINGS = {"mode": "client", "scouting/multicast/enabled": False}
 

@@ -56,11 +56,12 @@ class ZenohTf:
         def received(payload: bytes, attachment: bytes) -> None:
             message = read_tf(payload)
             # rmw_zenoh design.md: the sender's gid is at the end of the attachment.
-            self._spoken[topic].add(attachment[-_GID_BYTES:])
+            sender = attachment[-_GID_BYTES:]
+            self._spoken[topic].add(sender)
             if message is None:
                 self._unread.add(topic)
             else:
-                callback(message)
+                callback(message, sender)
 
         key = f"{self._domain}/{topic.strip('/')}/{_TF_KEY}"
         return self._session.subscribe(key, latched, received)

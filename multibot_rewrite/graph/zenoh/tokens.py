@@ -175,8 +175,8 @@ def nodes(tokens: Iterable[Token]) -> list[GraphNode]:
 
     A node is there once one of its endpoints is: rmw_zenoh ``graph_cache.cpp``, ``parse_put``.
     """
-    found = {(it.node, it.session, it.node_id) for it in tokens}
-    return [GraphNode(name, session) for name, session, _ in sorted(found)]
+    found = {(it.node, it.session, it.node_id, it.enclave.rstrip("/")) for it in tokens}
+    return [GraphNode(name, session, enclave) for name, session, _, enclave in sorted(found)]
 
 
 def endpoints(tokens: Iterable[Token]) -> list[GraphEndpoint]:

@@ -9,7 +9,13 @@ import pytest
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, PlannedRobot
-from multibot_rewrite.graph.zenoh.access import Rights, rights, robot_rules
+from multibot_rewrite.graph.zenoh.access import (
+    FLEET_ROUTER,
+    OWN_ROUTER,
+    Rights,
+    rights,
+    robot_rules,
+)
 from multibot_rewrite.graph.zenoh.configuration import Setup, configurations
 
 
@@ -83,9 +89,11 @@ def test_tf_of_all_robots_is_heard_and_sent() -> None:
 def test_a_router_has_the_flows_the_other_way_round() -> None:
     given = of(made(*NAMESPACED))
     flows = {str(it["id"]): it["flows"] for it in robot_rules(given, 0)}
-    mirrored = {str(it["id"]): it["flows"] for it in robot_rules(given, 0, mirrored=True)}
+    mirrored = {str(it["id"]): it["flows"] for it in robot_rules(given, 0, FLEET_ROUTER)}
     assert (flows["robot1_sends"], flows["robot1_hears"]) == (["egress"], ["ingress"])
     assert (mirrored["robot1_sends"], mirrored["robot1_hears"]) == (["ingress"], ["egress"])
+    own = {str(it["id"]): it["flows"] for it in robot_rules(given, 0, OWN_ROUTER)}
+    assert own["robot1_sends"] == own["robot1_hears"] == ["egress", "ingress"]
     assert flows["robot1_own"] == mirrored["robot1_own"] == ["egress", "ingress"]
 
 
@@ -106,6 +114,21 @@ def test_files_and_certificates() -> None:
     assert names == [["/robot1"], ["/robot2"], ["/ops/desk"]]
     assert router["access_control"]["default_permission"] == "deny"
     assert "access_control" not in files["ops_desk.json5"]
+
+
+def test_robots_with_routers_of_their_own() -> None:
+    setup = Setup("tcp/10.0.0.1:7000", 0, "/keys", (), True)
+    files = {
+        name: json.loads(data.partition(b"\n")[2])
+        for name, data in configurations(made(*NAMESPACED), setup)
+    }
+    session, own = files["robot1.json5"], files["robot1_router.json5"]
+    # As rmw_zenoh has them by default: peers beside the router on their machine.
+    assert (session["mode"], session["connect"]["endpoints"]) == ("peer", ["tcp/localhost:7447"])
+    assert "tls" not in session["transport"]["link"]
+    assert own["listen"]["endpoints"] == ["tcp/localhost:7447"]
+    assert own["connect"]["endpoints"] == ["tls/10.0.0.1:7000"]
+    assert own["transport"]["link"]["protocols"] == ["tls", "tcp"]
 
 
 def test_without_certificates_the_router_lets_all_in() -> None:

@@ -186,6 +186,28 @@ def test_the_router_refuses_by_certificate(
         assert len(held) == 4
 
 
+def test_a_router_on_the_robot_lets_out_what_is_its_own(
+    tmp_path: Path, plan: Expectation, keystore: Path
+) -> None:
+    """Two routers between robot1 and who looks after it; its session keeps no rules."""
+    setup = Setup("tcp/127.0.0.1:17649", 0, str(keystore), (OPERATOR,), own_routers=True)
+    files = written(tmp_path, plan, setup)
+    here = ["tcp/127.0.0.1:17650"]
+    with ExitStack() as stack:
+        stack.enter_context(opened(files["router.json5"]))
+        stack.enter_context(opened(files["robot1_router.json5"], listen__endpoints=here))
+        free = {"connect__endpoints": here, "access_control__enabled": False}
+        one = stack.enter_context(opened(files["robot1.json5"], **free))
+        operator = stack.enter_context(opened(files["operator.json5"]))
+        assert not arrives(one, operator, key("/robot2/cmd_vel"), key("/robot1/odom"))
+        assert arrives(one, operator, key("/rosout"), key("/robot1/odom"))
+        assert not arrives(operator, one, key("/robot2/odom"), key("/robot1/cmd_vel"))
+        drive(there := Robot(one, 0, []), "robot1")
+        graph = look(Request(SECONDS), Router(str(files["operator.json5"]), 0))
+    assert [it.name for it in graph.nodes] == ["/robot1/drive"]
+    assert len(there.held) == 4
+
+
 def _as(file: Path, keystore: Path, enclave: str) -> Any:
     """The same session with another certificate and without rules of its own."""
     folder = keystore / "enclaves" / enclave

@@ -168,6 +168,14 @@ def test_nodes_of_one_name_are_as_many_as_sessions_and_ids() -> None:
     ]
 
 
+def test_the_enclave_of_a_node_and_none() -> None:
+    inside = read_token(LISTENER.replace("/NN/%/", "/NN/%robot1/"))
+    outside = read_token(LISTENER)
+    assert inside is not None and outside is not None
+    assert [it.enclave for it in nodes([inside])] == ["/robot1"]
+    assert [it.enclave for it in nodes([outside])] == [""]
+
+
 def test_a_node_is_there_once_its_endpoint_is() -> None:
     token = read_token(SUBSCRIPTION)
     assert token is not None

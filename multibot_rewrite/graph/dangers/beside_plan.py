@@ -1,0 +1,72 @@
+"""What hurts any fleet, judged with its plan: what is planned is meant, and nothing is said twice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from fnmatch import fnmatchcase
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.dangers.find import DANGERS, find_dangers
+from multibot_rewrite.graph.dangers.seen import Owners, unique
+from multibot_rewrite.graph.rules.comparison import View
+from multibot_rewrite.graph.snapshot import GraphEndpoint
+from multibot_rewrite.remap.records import CALLS, PUBLISHES
+
+# Who sends, and who calls: what a danger is about.
+_ACTING = (PUBLISHES, CALLS)
+
+
+def dangers_beside(view: View, found: Sequence[Finding]) -> Iterator[Finding]:
+    """The dangers of a graph that are neither meant by the plan nor among the findings of its rules."""
+    said = {(it.code, name) for it in found for name in (*it.names, it.node)}
+    names = {*_names_of_missing(view), *(name for it in found for name in it.names)}
+    for danger in find_dangers(view.graph, _owners(view)):
+        planned = DANGERS[danger.code].options["planned"]
+        about = (*danger.names, danger.node)
+        if any((planned, it) in said for it in about if it) or not names.isdisjoint(danger.names):
+            continue
+        if not _is_meant(view, danger):
+            yield danger
+
+
+def _names_of_missing(view: View) -> Iterator[str]:
+    """What the nodes have that are in the plan and not in the graph: their absence is said already."""
+    return (name for node, _, _, name in view.planned if node not in view.seen)
+
+
+def _owners(view: View) -> Owners:
+    """Whose each name is, by the plan."""
+    graph, whose, frames_of = view.graph, view.ownership, view.frame_ownership
+    ends = (name for end in graph.endpoints for name in (end.name, end.node))
+    senders = (it for edge in graph.frames for it in (*edge.publishers, edge.topic))
+    names = {it: _robot(view, it) for it in unique((*view.seen, *ends, *senders))}
+    frames = {it: frames_of.robot(it) for edge in graph.frames for it in (edge.child, edge.parent)}
+    return Owners(
+        tuple(sorted(it.name for it in view.plan.robots)),
+        names,
+        frames,
+        {it: whose.without_robot(it, robot) for it, robot in names.items()},
+        {it: frames_of.without_robot(it, robot) for it, robot in frames.items()},
+    )
+
+
+def _robot(view: View, name: str) -> str:
+    shared = name in view.plan.shared_nodes or name in view.plan.shared_topics
+    return "" if shared else view.ownership.robot(name)
+
+
+def _is_meant(view: View, danger: Finding) -> bool:
+    """Whether somebody sends or calls each of its names, and all who do are planned to."""
+    return bool(danger.names) and all(_is_used_as_planned(view, it) for it in danger.names)
+
+
+def _is_used_as_planned(view: View, name: str) -> bool:
+    ends = [end for end in view.by_name.get(name, ()) if end.role in _ACTING]
+    return bool(ends) and all(_is_planned(view, it) for it in ends)
+
+
+def _is_planned(view: View, end: GraphEndpoint) -> bool:
+    if (end.node, end.kind, end.role, end.name) in view.planned:
+        return True
+    senders = (it.senders for it in view.plan.topics if it.name == end.name)
+    return any(fnmatchcase(end.node, pattern) for own in senders for pattern in own)

@@ -1,0 +1,77 @@
+"""Values of JSON: one is read as what it has to be, or it is said what is wrong and where."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+
+Reader = Callable[[object], object]
+_TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
+# NaN is not below it, and every whole number below it fits into a float.
+_LARGEST = 1e300
+
+
+class WrongValue(Exception):
+    """A wrong value; ``keys`` is the path to it, the innermost key first."""
+
+    def __init__(self, reason: str, *keys: str) -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.keys = list(keys)
+
+
+def unexpected(expected: str, value: object) -> WrongValue:
+    """That something else was expected."""
+    return WrongValue(f"expected {expected}, not {shown(value)}")
+
+
+def read_plain(expected: type, value: object) -> object:
+    """A text, whole number or truth value."""
+    # Not isinstance: True is an int as well.
+    if type(value) is not expected:
+        raise unexpected(_TYPE_NAMES[expected], value)
+    return value
+
+
+def read_word(words: tuple[str, ...], value: object) -> object:
+    """One of these words."""
+    if value not in words:
+        raise unexpected(f"one of {', '.join(words)}", value)
+    return value
+
+
+def read_full_name(value: object) -> object:
+    """A name with a slash in front."""
+    if not isinstance(value, str) or not value.startswith("/"):
+        raise unexpected("a full name that starts with /", value)
+    return value
+
+
+def read_seconds(value: object) -> object:
+    """A time; null is no limit."""
+    if value is None:
+        return math.inf
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) <= _LARGEST:
+        raise unexpected("a number or null", value)
+    return float(value)
+
+
+def read_list(reader: Reader, value: object) -> object:
+    """A list of what ``reader`` reads."""
+    if not isinstance(value, list):
+        raise unexpected("a list", value)
+    result = []
+    try:
+        for item in value:
+            result.append(reader(item))
+    except WrongValue as wrong:
+        wrong.keys.append(f"[{len(result)}]")
+        raise
+    return tuple(result)
+
+
+def shown(value: object) -> str:
+    """The value in a message."""
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 40 else f"{text[:39]}…"

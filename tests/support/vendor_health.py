@@ -1,0 +1,75 @@
+"""A healthy system of a vendor: the nodes that its launch files start, with what their sources declare.
+
+Names and namespaces are those of ``launch_recorder.py``, remap rules those and, for what they do not
+separate, those of the remap table; topics, services and actions are
+those of ``fixtures/interfaces/RELEASE.tsv``. Only values of parameters are taken from the plan. What a
+node without such a row has is not known here: it is left out of the plan that is compared, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from declared_graph import endpoints, facts
+from nav2_graphs import environment
+from vendor_systems import OTHER, ROBOT, Outcome, Started
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
+from multibot_rewrite.remap.records import NodeRule, NodeTable
+
+
+def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Finding, ...]:
+    """What ``check`` says of two robots that run as the vendor starts them."""
+    known = {it.name: it for it in found.fleet.facts}
+    rules = {it.full_name: it.rules for it in found.fleet.table.nodes}
+    nodes: list[str] = []
+    ends: list[GraphEndpoint] = []
+    declared: set[str] = set()
+    for it in two(found.started.values()):
+        nodes.append(it.name)
+        short = it.name.removeprefix(f"/{ROBOT}/").removeprefix(f"/{OTHER}/")
+        kind = kind_of(it, short, release, kinds)
+        if kind and short in known:
+            declared.add(it.name)
+            ends += endpoints(
+                kind, known[short], placed(it, short, rules.get(it.name, ())), release
+            )
+    owners = dict.fromkeys([*nodes, *(it.node for it in ends)])
+    seen = Snapshot(tuple(GraphNode(it, it) for it in owners), tuple(ends), (), environment())
+    return tuple(check(_of(found.launched, declared), seen))
+
+
+def two(nodes: Iterable[Started]) -> Iterator[Started]:
+    """The nodes of the first robot, and of the second as the same launch files start them."""
+    for it in nodes:
+        yield it
+        if it.name.startswith(f"/{ROBOT}/"):
+            rules = tuple((old, new.replace(ROBOT, OTHER)) for old, new in it.rules)
+            yield it._replace(name=it.name.replace(ROBOT, OTHER), rules=rules)
+
+
+def kind_of(node: Started, short: str, release: str, kinds: Mapping[str, str]) -> str:
+    """The node whose sources the facts are of; empty for none."""
+    last = short.rpartition("/")[2]
+    program = node.by.rpartition("/")[2].removesuffix("_driver")
+    words = (short, last, "" if program == "spawner" else program)
+    given = (kinds[last],) if last in kinds else words
+    return next((it for it in given if it in facts(release)), "")
+
+
+def placed(node: Started, short: str, more: tuple[NodeRule, ...]) -> NodeTable:
+    """The node under its name, with the remap rules that the launch gives it, then with those that it
+    needs besides: vendors' launch files do not separate names that are absolute in the code."""
+    namespace, _, name = node.name.rpartition("/")
+    rules = tuple(NodeRule("", name, old, new, "", "") for old, new in node.rules)
+    return NodeTable("", short, namespace or "/", name, (*rules, *more))
+
+
+def _of(plan: Expectation, nodes: Iterable[str]) -> Expectation:
+    """The plan without the endpoints of other nodes than these and those that they make."""
+    mine = tuple(nodes)
+    ends = tuple(it for it in plan.endpoints if it.node.startswith(mine))
+    return plan._replace(endpoints=ends)
