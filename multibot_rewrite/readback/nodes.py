@@ -174,9 +174,9 @@ def _endpoints(
         for name in values_of(plugin, site):
             own = (kind, site.does, name, _full(name, kind, bound))
             yield ReadEndpoint(*own, site.path, type=site.type)
-    # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
+    # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
     for source in (it.rule.source for it in rules):
-        if source.startswith("~"):
+        if source.startswith("~") and source not in section.topics:
             yield ReadEndpoint(TOPIC, "", source, _full(source, TOPIC, bound))
 
 
