@@ -235,6 +235,12 @@ def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
     assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
 
 
+def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
+    graph = with_node(EMPTY, "/_ros2cli_4711")
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, EMPTY)]) == 3
+
+
 def test_the_page_and_the_pictures(tmp_path: Path) -> None:
     graph, page = saved(tmp_path, faulty("MG402")), tmp_path / "page.html"
     given = ["--report", str(page), "--dot", str(tmp_path / "a.dot"), "-q"]
