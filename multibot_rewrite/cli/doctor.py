@@ -21,6 +21,7 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.bags.read import BagsUnusable
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
@@ -55,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
             asked = {it.node for it in questions(graph)}
             note(options, f"{len(states)} of {plural(len(asked), 'node')} answered --state")
         return _once(options, diagnose(graph, states))
-    except RosUnusable as error:
+    except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
