@@ -6,8 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from fault_changes import Fault, nav
 from graph_cases import environment, sent
-from graph_faults import FAULTS, Fault, nav
+from graph_faults import FAULTS
 from graph_faults_page import lines
 from healthy_systems import (
     CLOCK,
