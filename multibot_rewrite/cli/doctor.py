@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
         if options.state:
             asked = {it.node for it in questions(graph)}
             note(options, f"{len(states)} of {plural(len(asked), 'node')} answered --state")
-        return _once(options, diagnose(graph, states))
+        return report_on(options, diagnose(graph, states), options.snapshot, options.suggest)
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -82,15 +82,24 @@ def _check_suggest(options: argparse.Namespace) -> None:
             raise UsageError(f"{path} is there already; name another folder with --suggest")
 
 
-def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
+def report_on(
+    options: argparse.Namespace,
+    seen: Diagnosis,
+    files: Sequence[str] = (),
+    suggest: str | None = None,
+) -> int:
+    """Say what is seen, report the findings, write what is asked for; the exit code.
+
+    ``files`` are where the graph comes from, ``suggest`` is the folder for the files of a fleet.
+    """
     for line in survey(seen):
         note(options, line)
     findings = chosen(options, seen.findings)
-    failed = _report(options, seen, findings)
+    failed = _report(options, seen, findings, files)
     unsure = [caveat.message for caveat in doubts(seen.graph)] or list(_nothing_seen(seen.graph))
     for reason in unsure:
         say(f"incomplete: {reason}", PROGRAM)
-    _write(options, seen, findings)
+    _write(options, seen, findings, suggest)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
 
@@ -101,19 +110,26 @@ def _nothing_seen(graph: Snapshot) -> Iterator[str]:
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 
-def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:
+def _write(
+    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], suggest: str | None
+) -> None:
     """The pictures and the files that the options ask for."""
     if any(vars(options)[name] for name in pictures.NAMES):
         pictures.deliver(options, seen_plan(seen), seen.graph, findings)
-    if options.suggest:
+    if suggest:
         files = suggestion(seen, built_in(release_here(None)))
-        paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
+        paths = {os.path.join(suggest, name): text for name, text in files.items()}
         write_files(options, [(path, text.encode()) for path, text in paths.items()])
         note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
 
 
-def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
-    about = About(options.snapshot, by_themselves(seen.owners.robots))
+def _report(
+    options: argparse.Namespace,
+    seen: Diagnosis,
+    findings: Sequence[Finding],
+    files: Sequence[str],
+) -> bool:
+    about = About(files, by_themselves(seen.owners.robots))
     return report_first(options, findings, about)
 
 
@@ -128,8 +144,8 @@ def _watch(options: argparse.Namespace) -> int:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
     if options.output:
-        _report(options, diagnose(last.graph), last.findings)
-    _write(options, diagnose(last.graph), last.findings)
+        _report(options, diagnose(last.graph), last.findings, options.snapshot)
+    _write(options, diagnose(last.graph), last.findings, options.suggest)
     return _sum_up(options, len(last.findings), final(last))
 
 

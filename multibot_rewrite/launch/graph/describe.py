@@ -193,7 +193,10 @@ def _values(values: Any) -> ParameterText:
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(name): _plain(it) for name, it in value.items()}
-    if isinstance(value, str | bytes) or not hasattr(value, "__iter__"):
+    if isinstance(value, str):
+        # The folder with links to sources is gone when this is read.
+        return _kept_file(value) or value
+    if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]
 
@@ -225,4 +228,6 @@ def _is_made(path: str) -> bool:
 
 def _kept_file(path: str) -> str:
     """The real path of a file that is there when the launch is over, else nothing."""
+    if "\n" in path:
+        return ""
     return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)
