@@ -31,7 +31,15 @@ from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC, Endpoint
-from multibot_rewrite.rosnames import BoundNode, bind, expand, parse_remap, resolve_bound
+from multibot_rewrite.rosnames import (
+    BoundNode,
+    NameFault,
+    RemapRule,
+    bind,
+    expand,
+    read_remap,
+    resolve_bound,
+)
 
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
@@ -116,8 +124,14 @@ def _part(it: RunningNode) -> _Part:
 
 
 def _bound(name: str, namespace: str, rules: Iterable[tuple[str, str]]) -> BoundNode:
-    found = (parse_remap(f"{old}:={new}") for old, new in rules)
-    return bind(name, namespace, filter(None, found))
+    return bind(name, namespace, [_rule(f"{old}:={new}") for old, new in rules])
+
+
+def _rule(text: str) -> RemapRule:
+    found = read_remap(text)
+    if isinstance(found, NameFault):
+        raise UsageError(f"rule {text!r}: {found.reason}")
+    return found
 
 
 def _endpoints(

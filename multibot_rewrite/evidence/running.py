@@ -136,27 +136,37 @@ def _controllers(
 ) -> Iterator[RunningNode]:
     """The controllers that spawners load into launched managers, where they are activated."""
     own = {full_name(it, known_node(it, (), known.nodes)): it.parameters for it in started}
-    given: dict[str, GivenNode] = {}
-    for _, texts in texts_of(spawned, own):
-        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
-        given |= {f"/{it.name}": it for it in given_nodes(documents, known.parameters)}
     forwarded = controller_way(known.release)
-    for it in (it for it in spawned if it.manager in managers and not it.inactive):
-        manager, mine = managers[it.manager], given[it.full_name]
-        wide = manager.rules if forwarded.of_manager else ()
-        yield RunningNode(
-            it.name,
-            manager.namespace,
-            (*wide, *it.rules),
-            (),
-            manager.namespace,
-            _with_values(known.nodes.get(mine.known), mine),
-            mine.values,
-            manager.process,
-            (),
-            mine.type or "a controller",
-            it.place,
-        )
+    for name, texts in texts_of(spawned, own):
+        if name not in managers:
+            continue
+        manager = managers[name]
+        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
+        given = given_nodes(documents, known.parameters)
+        for it in (it for it in spawned if it.manager == name and not it.inactive):
+            mine = _given_to(it, given)
+            wide = manager.rules if forwarded.of_manager else ()
+            yield RunningNode(
+                it.name,
+                manager.namespace,
+                (*wide, *it.rules),
+                (),
+                manager.namespace,
+                _with_values(known.nodes.get(mine.known), mine),
+                mine.values,
+                manager.process,
+                (),
+                mine.type or "a controller",
+                it.place,
+            )
+
+
+def _given_to(controller: Spawned, given: Sequence[GivenNode]) -> GivenNode:
+    """What the files set for a controller; a manager of any namespace may have its type."""
+    mine = next(it for it in given if f"/{it.name}" == controller.full_name)
+    typed = (it for it in given if it.type and it.name.rpartition("/")[2] == controller.name)
+    declared = mine if mine.type else next(typed, mine)
+    return declared._replace(name=mine.name, values={**declared.values, **mine.values})
 
 
 def _without_manager(lost: Sequence[Spawned]) -> Iterator[LaunchNote]:

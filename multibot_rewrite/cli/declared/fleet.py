@@ -102,9 +102,23 @@ PLAN = Command(
         Example("multibot plan fleet.yaml -o plan.yaml"),
         Example("multibot plan rover.urdf robot1 robot2 --stack nav2 -o plan.yaml"),
         Example("multibot plan fleet.yaml -o plan.yaml --sros2 policy.xml", "docs/security.md"),
+        Example(
+            "multibot plan --from-launch my_bringup two.launch.py -o plan.yaml",
+            "of the robots that a launch file starts, as they are",
+        ),
     ),
     (
         _DESCRIPTION,
+        OptionGroup(
+            "instead of a description",
+            (
+                switch(
+                    "--from-launch",
+                    about="INPUT and what follows are a launch file of several robots with its"
+                    " arguments, as ros2 launch takes it: the plan has what it starts (docs/launch.md)",
+                ),
+            ),
+        ),
         output_group(
             output(
                 "write the plan there, not to standard output: YAML to read and edit, or, if FILE ends"
