@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.closure.gap import Gap
+from multibot_rewrite.closure.gap import Gap, by_place
 from multibot_rewrite.closure.interfaces import contested_gaps, interface_gaps, twice_gaps
 from multibot_rewrite.closure.lists import list_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
@@ -259,19 +259,11 @@ def _interfaces(
     known = {it.key for it in before}
     rest = [it for it in after if it.key not in known]
     for level, gaps in ((WARNING, before), (ERROR, rest)):
-        for first, *more in _by_place(gaps):
+        for first, *more in by_place(gaps):
             names = f"{first.name} and {len(more)} more" if more else first.name
             claims = f"{first.node} of {robot.spec.name} claims {names}"
             message = f"{claims}, which no ros2_control exports"
             yield at_gap(NO_INTERFACE, robot, first, message, meant(first), level)
-
-
-def _by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
-    """The gaps of each controller that are written at one place."""
-    found: dict[object, list[Gap]] = {}
-    for it in gaps:
-        found.setdefault((it.node, it.place), []).append(it)
-    return found.values()
 
 
 def _moveit(

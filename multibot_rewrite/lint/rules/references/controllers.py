@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 _IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
 _YAML = (".yaml", ".yml")
 _BESIDE = "controllers"
-# As closure.interfaces calls it, which is imported where it is needed.
-TWICE = "claimed twice"
 _LOADS = block(
     "<gazebo>",
     block(
@@ -64,19 +62,22 @@ def claimed_interface(subject: Subject) -> Iterator[Problem]:
     if not systems:
         return
     for element, path, is_sure in _files(subject, systems[0]):
-        for it in _gaps(subject, path, is_sure):
-            # Lines of an expanded xacro are in no file.
-            yield Problem(element, *_words(it._replace(near_place=None) if subject.origins else it))
+        at = "" if element.tag == "parameters" else None
+        for message, hint in _found_in(subject, path, is_sure):
+            yield Problem(element, message, at, hint)
 
 
-def _words(gap: Gap) -> tuple[str, str, str]:
-    at = f"{os.path.basename(gap.place.file)}:{gap.place.line}" if gap.place else gap.node
-    if gap.kind != TWICE:
-        message = f"{at}: {gap.node} claims {gap.name}, which no <ros2_control> exports"
-        line = f" (line {gap.near_place.line})" if gap.near_place else ""
-        near = f"did you mean {gap.near}{line}?" if gap.near else ""
-        return message, "", near or "name an interface that is there, or add it"
-    return f"{at}: {gap.node} claims {gap.name} twice", "", "name another joint in one of them"
+def _missing(gap: Gap, more: int, expanded: bool) -> tuple[str, str]:
+    names = f"{gap.name} and {more} more" if more else gap.name
+    # Lines of an expanded xacro are in no file.
+    line = f" (line {gap.near_place.line})" if gap.near_place and not expanded else ""
+    near = f"did you mean {gap.near}{line}?" if gap.near else ""
+    message = f"{_at(gap)}: {gap.node} claims {names}, which no <ros2_control> exports"
+    return message, near or "name an interface that is there, or add it"
+
+
+def _at(gap: Gap) -> str:
+    return f"{os.path.basename(gap.place.file)}:{gap.place.line}" if gap.place else gap.node
 
 
 def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
@@ -105,11 +106,14 @@ def _found(subject: Subject, text: str) -> str:
     if not named:
         return os.path.join(os.path.dirname(file), text.removeprefix("file://"))
     folder = package_folder(named[1] or named[2], file, subject.settings.roots)
-    return find_in(folder, named[3]) if folder else ""
+    below = find_in(folder, named[3]) if folder else ""
+    return os.path.join(folder, below) if below else ""
 
 
-def _gaps(subject: Subject, path: str, is_sure: bool) -> list[Gap]:
+def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str, str]]:
+    """Message and hint for what controllers claim and the description lacks."""
     # Most descriptions have no such file, and a lint of them loads nothing of this.
+    from multibot_rewrite.closure.gap import by_place
     from multibot_rewrite.closure.interfaces import claims_any, interface_gaps, twice_gaps
     from multibot_rewrite.companions.params.known_nodes import load_known_nodes
     from multibot_rewrite.companions.yaml_text import read_yaml
@@ -122,8 +126,11 @@ def _gaps(subject: Subject, path: str, is_sure: bool) -> list[Gap]:
         given = given_nodes([read_yaml(read_file(path), path)], load_known_nodes("", release))
     except InputError:
         # It is said where the file itself is read.
-        return []
+        return
     known, exports = load_nodes(release), tuple(exported(document.root, document.file))
     if not is_sure and not claims_any(given, known, exports):
-        return []
-    return [*interface_gaps(given, known, exports), *twice_gaps(given, known)]
+        return
+    for first, *more in by_place(interface_gaps(given, known, exports)):
+        yield _missing(first, len(more), bool(subject.origins))
+    for it in twice_gaps(given, known):
+        yield f"{_at(it)}: {it.node} claims {it.name} twice", "name another joint in one of them"

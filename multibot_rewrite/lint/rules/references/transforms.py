@@ -21,7 +21,7 @@ AS_WRITTEN = make_naming("tf-per-robot")
 
 @rule(
     "MB230",
-    "frame-with-two-parents",
+    "frame-of-joint-and-plugin",
     WARNING,
     what="A plugin sends the transform from its odometry frame to a link that is a joint's child.",
     why="robot_state_publisher sends the joint's transform: the frame has two parents and jumps "
