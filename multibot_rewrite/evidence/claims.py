@@ -51,7 +51,7 @@ def claimed(claims: Iterable[Claim], values: Mapping[str, Given]) -> Iterator[Cl
     found: dict[tuple[str, str], Claimed] = {}
     for claim in claims:
         for made in _names(claim.template, _Made("", claim.condition, None), values):
-            if holds(made.condition, _lookup(values)):
+            if made.text and holds(made.condition, _lookup(values)):
                 found.setdefault(
                     (claim.kind, made.text), Claimed(claim.kind, made.text, made.place)
                 )
@@ -97,7 +97,10 @@ def _choices(
         many = given.value if isinstance(given.value, list) else [given.value]
         yield from ((str(it), given.place) for it in many)
     elif part["default"] is not None:
-        yield from ((it, None) for it in part["default"][1:].split(","))
+        empty = next((values[it] for it in part["names"].split("|") if it in values), None)
+        # An empty text in a file is the value; an empty list makes no name.
+        words = part["default"][1:].split(",") if empty is None else [""] * (empty.value == "")
+        yield from ((it, None) for it in words)
 
 
 def _counted(part: re.Match[str]) -> list[str]:

@@ -432,3 +432,11 @@ def test_the_words_of_templates() -> None:
     assert names("<a=p,q>/[x,y]") == ["p/x", "p/y", "q/x", "q/y"]
     assert names("<a>/<{a}.b>", a=["p", "q"], **{"p.b": "x", "q.b": "y"}) == ["p/x", "q/y"]
     assert names("<a>/x", "{a}.on", a=["p", "q"], **{"q.on": True}) == ["q/x"]
+
+
+def test_an_empty_text_is_a_value_and_no_default() -> None:
+    """scaled_joint_trajectory_controller.cpp leaves out an empty speed_scaling_interface_name."""
+    assert names("<speed=a/b>") == ["a/b"]
+    assert names("<speed=a/b>", speed="") == []
+    assert names("<type=fr3>/state", type="") == ["/state"]
+    assert names("j/<interfaces=position>", interfaces=[]) == []

@@ -13,6 +13,7 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     RESULT_OUTPUT,
     SOURCE,
+    SOURCE_OR_BAG,
     TRUST,
     ZENOH,
 )
@@ -60,6 +61,7 @@ CHECK = Command(
         Example(
             "multibot check plan.yaml --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"
         ),
+        Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
     ),
     (
@@ -76,7 +78,7 @@ CHECK = Command(
             WATCH,
         ),
         PICTURES,
-        SOURCE,
+        SOURCE_OR_BAG,
         FINDINGS,
         GENERAL,
     ),
@@ -111,7 +113,7 @@ DOCTOR = Command(
             ),
         ),
         PICTURES,
-        SOURCE,
+        SOURCE_OR_BAG,
         FINDINGS,
         GENERAL,
     ),

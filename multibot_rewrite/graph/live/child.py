@@ -36,7 +36,7 @@ _EXIT_SECONDS = 3.0
 
 
 class RosUnusable(MultibotError):
-    """rclpy is missing or does not start; the message says why and what to do."""
+    """rclpy (or zenoh, to ask a router) is missing or does not start; the message says what to do."""
 
 
 class RosProcess(NamedTuple):

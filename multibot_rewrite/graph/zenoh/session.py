@@ -26,11 +26,15 @@ class NoRouter(Exception):
 
 
 class RouterSession(NamedTuple):
-    """An open session; ``inbox`` has what arrived on other threads: what to call, and with what."""
+    """An open session; ``inbox`` has what arrived on other threads: what to call, and with what.
+
+    ``declared`` are its subscriptions: the session waits for some of them, so they end before it.
+    """
 
     zenoh: Any
     session: Any
     inbox: deque[tuple[Callable[..., None], tuple[Any, ...]]]
+    declared: list[Any]
 
     def deliver(self) -> None:
         """Call what has arrived, on this thread."""
@@ -60,9 +64,7 @@ class RouterSession(NamedTuple):
             there = sample.kind == self.zenoh.SampleKind.PUT
             self.inbox.append((changed, (str(sample.key_expr), there)))
 
-        liveliness = self.session.liveliness()
-        end: Callable[[], None] = liveliness.declare_subscriber(key, arrived).undeclare
-        return end
+        return self._keep(self.session.liveliness().declare_subscriber(key, arrived))
 
     def subscribe(
         self, key: str, latched: bool, received: Callable[[bytes, bytes], None]
@@ -78,11 +80,19 @@ class RouterSession(NamedTuple):
             self.inbox.append((received, (bytes(sample.payload), attachment)))
 
         if not latched:
-            end: Callable[[], None] = self.session.declare_subscriber(key, arrived).undeclare
-            return end
+            return self._keep(self.session.declare_subscriber(key, arrived))
         history = ext.HistoryConfig(detect_late_publishers=True)
-        advanced = ext.declare_advanced_subscriber(self.session, key, arrived, history=history)
-        end = advanced.undeclare
+        return self._keep(
+            ext.declare_advanced_subscriber(self.session, key, arrived, history=history)
+        )
+
+    def _keep(self, subscription: Any) -> Callable[[], None]:
+        self.declared.append(subscription)
+
+        def end() -> None:
+            self.declared.remove(subscription)
+            subscription.undeclare()
+
         return end
 
 
@@ -91,13 +101,16 @@ def opened(router: str, seconds: float) -> Iterator[RouterSession]:
     """A session as a client of the router; raises RosUnusable, NoRouter, InputError."""
     zenoh = _zenoh()
     config = _config(zenoh, router, min(seconds, CONNECT_SECONDS))
+    declared: list[Any] = []
     try:
         session = zenoh.open(config)
     except zenoh.ZError as error:
         raise NoRouter(_reason(error)) from None
     try:
-        yield RouterSession(zenoh, session, deque())
+        yield RouterSession(zenoh, session, deque(), declared)
     finally:
+        for subscription in declared:
+            subscription.undeclare()
         session.close()
 
 

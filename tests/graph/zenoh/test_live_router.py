@@ -188,12 +188,16 @@ def test_watching_shows_what_comes_and_goes(address: str) -> None:
             first = next(it for it in graphs if it.nodes)
             drive(there, "robot2", 1)
             both = next(it for it in graphs if len(it.nodes) == 2)
+            there.end(0, "/robot1", "drive", "MP", "/tf", TF_TYPE, hash=TF_HASH)
+            with there.sends("/tf", ("odom", "base")):
+                moving = next(it for it in graphs if it.frames)
         gone = next(it for it in graphs if not it.nodes)
     finally:
         graphs.close()
     assert [it.name for it in first.nodes] == ["/robot1/drive"]
     assert len(both.endpoints) >= 3
-    assert "no-router" not in codes(gone)
+    assert [(it.parent, it.child) for it in moving.frames] == [("odom", "base")]
+    assert not gone.frames and "no-router" not in codes(gone)
 
 
 def test_a_router_that_ends_is_no_robot_that_left() -> None:
