@@ -37,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     try:
         if options.watch:
             return _watch(options, plan)
-        return conclude(options, plan, live.graph(options))
+        return conclude(options, plan, live.with_states(options, live.graph(options)))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS

@@ -35,6 +35,10 @@ STATE = switch(
     "--state",
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers",
 )
+HEADERS = switch(
+    "--no-frame-ids",
+    about="do not receive a message of each sensor topic, for its frame; --watch never does",
+)
 WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 MERGE = Option(
     ("--merge",),
@@ -48,6 +52,7 @@ MERGE = Option(
         "default": [],
     },
 )
+LISTENING = SOURCE._replace(options=(*SOURCE.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
@@ -74,9 +79,10 @@ CHECK = Command(
         output_group(
             FINDINGS_OUTPUT,
             WATCH,
+            STATE,
         ),
         PICTURES,
-        SOURCE,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -111,7 +117,7 @@ DOCTOR = Command(
             ),
         ),
         PICTURES,
-        SOURCE,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -213,6 +219,8 @@ SNAPSHOT = Command(
                 ),
                 MERGE,
                 ZENOH,
+                STATE,
+                HEADERS,
                 *LIVE.options,
             )
         ),
