@@ -167,6 +167,7 @@ HOMES: tuple[Home, ...] = (
         "dangers of any system: time and states",
         ("graph.dangers.clocks", "graph.dangers.states"),
     ),
+    Home("MG6", "recordings", ("graph.bags.rules",)),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 

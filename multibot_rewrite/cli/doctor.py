@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.check import CODES
@@ -21,6 +21,8 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.bags.read import BagsUnusable
+from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
@@ -28,6 +30,7 @@ from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -49,7 +52,7 @@ def run(options: argparse.Namespace) -> int:
             return _watch(options)
         graph = live.with_states(options, live.graph(options))
         return _once(options, diagnose(graph))
-    except RosUnusable as error:
+    except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
@@ -79,12 +82,18 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
         note(options, line)
     findings = chosen(options, seen.findings)
     failed = _report(options, seen, findings)
-    caveats = doubts(seen.graph)
-    for caveat in caveats:
-        say(f"incomplete: {caveat.message}", PROGRAM)
+    unsure = [caveat.message for caveat in doubts(seen.graph)] or list(_nothing_seen(seen.graph))
+    for reason in unsure:
+        say(f"incomplete: {reason}", PROGRAM)
     _write(options, seen, findings)
-    inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+
+
+def _nothing_seen(graph: Snapshot) -> Iterator[str]:
+    """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
+    if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
+        yield "no node of a robot is in this graph, so there is nothing to judge"
 
 
 def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:

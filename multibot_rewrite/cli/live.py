@@ -11,6 +11,8 @@ from collections.abc import Collection, Generator, Mapping
 from math import inf
 
 from multibot_rewrite.cli.output import note
+from multibot_rewrite.graph.bags.read import read_bag
+from multibot_rewrite.graph.bags.recording import as_snapshot
 from multibot_rewrite.graph.environment import settings
 from multibot_rewrite.graph.live import child
 from multibot_rewrite.graph.live.request import Request
@@ -31,6 +33,8 @@ ASK_SECONDS = 5.0
 def check_source(options: argparse.Namespace) -> None:
     """Raises UsageError where options name two sources, or a saved one is to be watched."""
     saved, watching = bool(options.snapshot), getattr(options, "watch", False)
+    if getattr(options, "bag", None):
+        _check_bag(options)
     if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --snapshot")
     if getattr(options, "state", False) and (saved or options.zenoh or watching):
@@ -38,6 +42,13 @@ def check_source(options: argparse.Namespace) -> None:
         raise UsageError(f"--state asks nodes of the live graph, once; {hint}")
     if saved and options.zenoh:
         raise UsageError("saved snapshots and --zenoh are two sources: give one of them")
+
+
+def _check_bag(options: argparse.Namespace) -> None:
+    given = vars(options)
+    for name in ("snapshot", "zenoh", "watch", "state", "suggest", "report", "mermaid", "dot"):
+        if given.get(name):
+            raise UsageError(f"--bag is a recording, which has no nodes: leave out --{name}")
 
 
 def graph(options: argparse.Namespace, request: Request | None = None) -> Snapshot:
@@ -48,6 +59,8 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> Snapsh
     """
     if options.snapshot:
         return read_snapshots(options.snapshot)
+    if getattr(options, "bag", None):
+        return as_snapshot(read_bag(options.bag))
     asked = request or Request(options.timeout or LOOK_SECONDS)
     asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
     if options.zenoh:

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from fault_changes import Fault, nav
 from graph_cases import environment, sent
-from graph_faults import FAULTS, Fault, nav
+from graph_faults import FAULTS
 from graph_faults_page import lines
 from healthy_systems import (
     CLOCK,
@@ -228,6 +229,12 @@ def test_an_incomplete_view_is_inconclusive(tmp_path: Path) -> None:
     doubt = Caveat("not-settled", True, "still changing")
     graph = nav()._replace(environment=environment(doubt))
     assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
+
+
+def test_a_graph_without_robots_is_inconclusive(tmp_path: Path) -> None:
+    graph = with_node(EMPTY, "/_ros2cli_4711")
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, graph)]) == 3
+    assert multibot.main(["doctor", "--snapshot", saved(tmp_path, EMPTY)]) == 3
 
 
 def test_the_page_and_the_pictures(tmp_path: Path) -> None:

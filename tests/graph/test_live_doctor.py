@@ -12,8 +12,9 @@ import live_fleet
 import live_graphs
 import pytest
 import tf2_build
+from fault_changes import Fault, nav, shared_tf
 from graph_cases import sent
-from graph_faults import FAULTS, LIVE, Fault, nav, shared_tf
+from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
 
 from multibot_rewrite.graph.snapshot import Snapshot

@@ -38,6 +38,7 @@ FLOORS = (
 HEAVY = (
     "rclpy",
     "zenoh",
+    "rosbags",
     "launch",
     "launch_ros",
     "yourdfpy",

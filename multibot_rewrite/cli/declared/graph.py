@@ -13,6 +13,7 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     RESULT_OUTPUT,
     SOURCE,
+    SOURCE_OR_BAG,
     TRUST,
     ZENOH,
 )
@@ -52,7 +53,7 @@ MERGE = Option(
         "default": [],
     },
 )
-LISTENING = SOURCE._replace(options=(*SOURCE.options, HEADERS))
+LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
@@ -65,6 +66,7 @@ CHECK = Command(
         Example(
             "multibot check plan.yaml --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"
         ),
+        Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
     ),
     (

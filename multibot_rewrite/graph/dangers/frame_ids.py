@@ -38,7 +38,7 @@ class _Message(NamedTuple):
 
 @danger_rule(
     "MG411",
-    "header-of-another-robot",
+    "frame-id-of-another-robot",
     ERROR,
     what="`header.frame_id` of what a robot measures is a frame of another robot.",
     why="tf places the scan or the image at the other robot: both see obstacles that are not there.",
@@ -58,7 +58,7 @@ running: frame_id robot2/lidar_link on /robot2/scan
 """,
     line=4,
 )
-def header_of_another_robot(seen: Seen) -> Iterator[Finding]:
+def frame_id_of_another_robot(seen: Seen) -> Iterator[Finding]:
     """By the names of frames: robots with a tf topic each may have the same ones."""
     for (frame, robot, senders), messages in _by_sender(seen).items():
         owner = seen.owners.frames.get(frame, "")
@@ -66,7 +66,7 @@ def header_of_another_robot(seen: Seen) -> Iterator[Finding]:
         if robot and owner not in ("", robot) and topics:
             message = f"frame_id of {shorten(topics)} is {frame}, a frame of {owner}"
             cause = f"set the frame of {_who(senders)} to that of {robot}"
-            yield header_of_another_robot.finding(
+            yield frame_id_of_another_robot.finding(
                 f"{message}; sent by {_who(senders)}",
                 cause,
                 robot=robot,
@@ -77,7 +77,7 @@ def header_of_another_robot(seen: Seen) -> Iterator[Finding]:
 
 @danger_rule(
     "MG412",
-    "header-frame-unknown",
+    "frame-id-unknown",
     ERROR,
     absence=True,
     what="`header.frame_id` of messages is in no transform that the robot gets. For a name that is like"
@@ -98,7 +98,7 @@ running: frame_id robot1/lidar_link on /robot1/scan
 """,
     line=3,
 )
-def header_frame_unknown(seen: Seen) -> Iterator[Finding]:
+def frame_id_unknown(seen: Seen) -> Iterator[Finding]:
     """Where no transform was received at all nothing is known; others say that."""
     frames = {tree.topic: frames_in(tree) for tree in seen.trees}
     heard_by = cache(
@@ -112,7 +112,7 @@ def header_frame_unknown(seen: Seen) -> Iterator[Finding]:
         meant = _meant(seen, frame, own)
         elsewhere = [topic for topic, it in frames.items() if frame in it]
         topics = shorten([it.topic for it in messages])
-        yield header_frame_unknown.finding(
+        yield frame_id_unknown.finding(
             f"frame_id of {topics} is {frame}, which is in no transform of {robot or 'tf'}; sent by"
             f" {_who(senders)}",
             _remedy(senders, meant or _alike(frame, own), elsewhere),
