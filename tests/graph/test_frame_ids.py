@@ -5,8 +5,8 @@ from __future__ import annotations
 import struct
 
 import pytest
+from fault_changes import nav, shared_tf
 from graph_examples import read_danger, read_example
-from graph_faults import nav, shared_tf
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding

@@ -30,10 +30,11 @@ _FIELDS = {
 
 def main(order: str, stop: threading.Event, send: Send) -> int:
     """Ask as ``order`` says, ``[seconds, questions]``; returns the exit code."""
-    seconds, asked = json.loads(order)
+    seconds, given = json.loads(order)
+    asked = [Question(node, name, type_, tuple(own)) for node, name, type_, own in given]
     with ros.opened() as session:
         node = ros.add_node(session, f"_multibot_ask_{os.getpid()}")
-        found = _ask(session, node, [Question(*it) for it in asked], float(seconds), stop)
+        found = _ask(session, node, asked, float(seconds), stop)
     send(json.dumps(plain_value(tuple(found.values()))).encode())
     return 0
 
