@@ -12,10 +12,11 @@ from multibot_rewrite.cli.walk import check_target
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.launch_child import launch_graph
 from multibot_rewrite.evidence.launch_records import LaunchOrder, order_in_words
-from multibot_rewrite.evidence.launch_snapshot import WouldRun, would_run
+from multibot_rewrite.evidence.launch_snapshot import would_run
 from multibot_rewrite.evidence.running import Knowledge
 from multibot_rewrite.fleets.fleet import known_nodes
 from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.releases import release_here
 
 
@@ -26,8 +27,8 @@ def run(options: argparse.Namespace) -> int:
     plan = check.plan_of(options) if options.plan else None
     made = graph_of(options, order)
     if plan is not None:
-        return check.conclude(options, plan, made.graph)
-    return doctor.report_on(options, diagnose(made.graph, made.states))
+        return check.conclude(options, plan, made)
+    return doctor.report_on(options, diagnose(made))
 
 
 def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
@@ -36,7 +37,7 @@ def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
     return order._replace(trusted=True)
 
 
-def graph_of(options: argparse.Namespace, order: LaunchOrder) -> WouldRun:
+def graph_of(options: argparse.Namespace, order: LaunchOrder) -> Snapshot:
     """What the launch file would start; raises InputError for one that cannot be read."""
     release = release_here(options.distro)
     library = known_nodes(options.nodes, release, options.nodl).library

@@ -54,12 +54,12 @@ def _from_launch(options: argparse.Namespace) -> int:
         check_target(options.output, [order.file])
         check_folder(options.output)
     made = check_launch.graph_of(options, order)
-    seen = diagnose(made.graph, made.states)
+    seen = diagnose(made)
     if not seen.robots:
         raise UsageError(
             f"{order.file}: no name of a robot is in what it starts, so there is no plan"
         )
-    for caveat in doubts(made.graph):
+    for caveat in doubts(made):
         say(f"incomplete: {caveat.message}", PROGRAM)
     write = to_json if (options.output or "").endswith(".json") else to_yaml
     deliver(options, write(seen_plan(seen)._replace(release=release_here(options.distro))).encode())

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING
 import yaml
 
 from multibot_rewrite.bounded import load_yaml
-from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES
 from multibot_rewrite.sources.read import read_file
 
@@ -40,14 +39,17 @@ def bridged_by(it: RunningNode) -> Iterator[Row]:
         if found:
             yield from _rows(found["topic"], found["type"], found["way"])
     given = it.values.get("config_file")
-    if given and os.path.isfile(str(given.value)):
-        yield from _of_file(str(given.value))
+    path = str(given.value) if given else ""
+    if path and os.path.isfile(path):
+        yield from _of_text(read_file(path).decode("utf-8", "replace"))
+    for text in it.texts:
+        yield from _of_text(text)
 
 
-def _of_file(path: str) -> Iterator[Row]:
+def _of_text(text: str) -> Iterator[Row]:
     try:
-        entries = load_yaml(read_file(path).decode("utf-8", "replace"))
-    except (InputError, yaml.YAMLError, ValueError):
+        entries = load_yaml(text)
+    except (yaml.YAMLError, ValueError):
         return
     for entry in entries if isinstance(entries, list) else ():
         if isinstance(entry, Mapping):

@@ -53,13 +53,6 @@ NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
 )
 
 
-class WouldRun(NamedTuple):
-    """The graph that a launch would make, and what is known of its nodes by their parameters."""
-
-    graph: Snapshot
-    states: tuple[NodeState, ...]
-
-
 class _Part(NamedTuple):
     """What one node adds to the graph: its endpoints, and its transforms by topic."""
 
@@ -68,7 +61,7 @@ class _Part(NamedTuple):
     edges: tuple[tuple[str, Edge], ...]
 
 
-def would_run(graph: LaunchGraph, known: Knowledge) -> WouldRun:
+def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
     """The graph of all that the launch starts; what is not known makes the view incomplete."""
     nodes, notes = running_nodes(graph, known)
     refused: list[Caveat] = []
@@ -81,13 +74,13 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> WouldRun:
             refused.append(Caveat(REFUSED, True, text))
             parts.append(_Part(it.full_name, (), ()))
     caveats = (*_caveats((*graph.notes, *notes), nodes), *refused)
-    snapshot = Snapshot(
+    return Snapshot(
         tuple(GraphNode(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
         tuple(end for part in parts for end in part.endpoints),
         tuple(_frames(parts)),
         Environment(0, "", (), "", "", False, 0, EXPECTED, 0.0, caveats),
+        states=tuple(_states(nodes)),
     )
-    return WouldRun(snapshot, tuple(_states(nodes)))
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:

@@ -38,7 +38,7 @@ class RunningNode(NamedTuple):
     ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
     which helper nodes in it have.
     ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
-    ``values`` are its parameters. ``process`` tells the processes of the launch apart.
+    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the processes of the launch apart.
     """
 
     name: str
@@ -52,6 +52,7 @@ class RunningNode(NamedTuple):
     arguments: tuple[str, ...]
     program: str
     place: Place
+    texts: tuple[str, ...] = ()
 
     @property
     def full_name(self) -> str:
@@ -108,6 +109,7 @@ def _started(
             it.arguments if full == name else (),
             f"{it.package}/{it.executable}",
             it.place,
+            tuple(text.text for text in it.parameters if not has_sections(text)),
         )
 
 

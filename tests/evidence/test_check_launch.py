@@ -22,15 +22,16 @@ from multibot_rewrite.evidence.launch_records import (
     LaunchNote,
     ParameterText,
 )
-from multibot_rewrite.evidence.launch_snapshot import WouldRun, would_run
+from multibot_rewrite.evidence.launch_snapshot import would_run
 from multibot_rewrite.evidence.running import Knowledge
 from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.remap.stacks import built_in
 
 TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
 URDF = '<robot name="r"><link name="base_link"/><link name="laser"/><joint name="j" type="fixed">\
 <parent link="base_link"/><child link="laser"/></joint></robot>'
-Graph = Callable[..., WouldRun]
+Graph = Callable[..., Snapshot]
 
 
 @pytest.fixture(scope="module")
@@ -40,7 +41,7 @@ def known() -> Knowledge:
 
 @pytest.fixture
 def run(known: Knowledge) -> Graph:
-    def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> WouldRun:
+    def made(*nodes: LaunchedNode, notes: Sequence[LaunchNote] = ()) -> Snapshot:
         return would_run(LaunchGraph(nodes, tuple(notes)), known)
 
     return made
@@ -63,12 +64,12 @@ def publisher(space: str, rules: object = (), **more: object) -> LaunchedNode:
     return node("robot_state_publisher/robot_state_publisher", "rsp", space, rules, **more)
 
 
-def codes(made: WouldRun) -> set[str]:
-    return {it.code for it in diagnose(made.graph, made.states).findings}
+def codes(made: Snapshot) -> set[str]:
+    return {it.code for it in diagnose(made).findings}
 
 
-def names(made: WouldRun, of: str) -> set[tuple[str, str]]:
-    return {(it.role, it.name) for it in made.graph.endpoints if it.node == of}
+def names(made: Snapshot, of: str) -> set[tuple[str, str]]:
+    return {(it.role, it.name) for it in made.endpoints if it.node == of}
 
 
 def test_names_are_those_that_rcl_makes_of_the_rules(run: Graph) -> None:
@@ -80,13 +81,13 @@ def test_names_are_those_that_rcl_makes_of_the_rules(run: Graph) -> None:
         ("subscribes", "/robot1/joint_states"),
         ("subscribes", "/clock"),
     }
-    (edge,) = made.graph.frames
+    (edge,) = made.frames
     assert (edge.parent, edge.child, edge.topic) == ("base_link", "laser", "/robot1/tf_static")
-    assert made.graph.environment.caveats == ()
+    assert made.environment.caveats == ()
 
 
 def test_a_prefix_of_frames_counts(run: Graph) -> None:
-    (edge,) = run(publisher("/robot1", frame_prefix="robot1/")).graph.frames
+    (edge,) = run(publisher("/robot1", frame_prefix="robot1/")).frames
     assert (edge.parent, edge.child) == ("robot1/base_link", "robot1/laser")
     assert (edge.topic, edge.publishers) == ("/tf_static", ("/robot1/rsp",))
 
@@ -130,7 +131,7 @@ def test_a_static_transform_is_that_of_the_arguments(run: Graph) -> None:
     words = ("1", "0", "0", "0", "0", "0", "map", "robot2/odom")
     program = "tf2_ros/static_transform_publisher"
     made = run(node(program, "a", "/", arguments=flags), node(program, "b", "/", arguments=words))
-    assert [(it.parent, it.child) for it in made.graph.frames] == [
+    assert [(it.parent, it.child) for it in made.frames] == [
         ("map", "robot1/odom"),
         ("map", "robot2/odom"),
     ]
@@ -160,9 +161,9 @@ def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph)
     made = run(manager, spawner)
     own = names(made, "/robot1/drive")
     assert {("publishes", "/robot1/odom"), ("publishes", "/robot1/tf")} <= own
-    assert not made.graph.environment.caveats
+    assert not made.environment.caveats
     # A simulator's plugin makes the manager: its rules are not those of the launch.
-    (caveat,) = run(spawner).graph.environment.caveats
+    (caveat,) = run(spawner).environment.caveats
     assert "/robot1/controller_manager" in caveat.message
     assert "drive" in caveat.message
 
@@ -179,7 +180,7 @@ def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph)
 def test_what_is_not_known_is_said_and_makes_nothing_right(
     run: Graph, nodes: tuple[LaunchedNode, ...], notes: tuple[LaunchNote, ...], said: str
 ) -> None:
-    caveats = run(*nodes, notes=notes).graph.environment.caveats
+    caveats = run(*nodes, notes=notes).environment.caveats
     assert any(it.incomplete and said in it.message for it in caveats)
 
 

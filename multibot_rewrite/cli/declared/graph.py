@@ -38,6 +38,10 @@ STATE = switch(
     "--state",
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers",
 )
+HEADERS = switch(
+    "--no-frame-ids",
+    about="do not receive a message of each sensor topic, for its frame; --watch never does",
+)
 WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 MERGE = Option(
     ("--merge",),
@@ -51,6 +55,7 @@ MERGE = Option(
         "default": [],
     },
 )
+LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
@@ -78,9 +83,10 @@ CHECK = Command(
         output_group(
             FINDINGS_OUTPUT,
             WATCH,
+            STATE,
         ),
         PICTURES,
-        SOURCE_OR_BAG,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -115,7 +121,7 @@ DOCTOR = Command(
             ),
         ),
         PICTURES,
-        SOURCE_OR_BAG,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -261,6 +267,8 @@ SNAPSHOT = Command(
                 ),
                 MERGE,
                 ZENOH,
+                STATE,
+                HEADERS,
                 *LIVE.options,
             )
         ),

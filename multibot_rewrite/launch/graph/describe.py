@@ -178,11 +178,19 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         return
     if isinstance(found, dict):
         yield _values(found)
+        yield from _made(found.values(), here)
     elif isinstance(found, pathlib.PurePath):
         yield from _file(str(found), here)
     else:
         name, value = found.evaluate(here.context)
         yield _values({name: value})
+
+
+def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
+    """The texts of files that the launch makes and names in values, such as that of a bridge."""
+    for path in (it for it in values if isinstance(it, str) and "\n" not in it):
+        if os.path.isfile(path) and not _kept_file(path):
+            yield from _file(path, here)
 
 
 def _values(values: Any) -> ParameterText:
