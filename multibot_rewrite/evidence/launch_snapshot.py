@@ -25,7 +25,7 @@ from multibot_rewrite.graph.snapshot import (
     GraphNode,
     Snapshot,
 )
-from multibot_rewrite.graph.states import SIM_TIME, NodeState
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, edges_in, sent_by
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.model import UsageError
@@ -44,6 +44,7 @@ from multibot_rewrite.rosnames import (
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 _STATIC = "static_transform_publisher"
+_SIM_TIME = "use_sim_time"
 _DESCRIPTION = "robot_description"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
     "launch-not-whole",
@@ -111,7 +112,7 @@ def _part(it: RunningNode) -> _Part:
     name = f"{bound.namespace.rstrip('/')}/{bound.node}"
     helper = _bound(it.name, it.process_namespace, it.process_rules)
     ends = [*_endpoints(it, name, bound, helper), *_bridged(it, name, bound)]
-    if _value(it, SIM_TIME) is True and all(end.name != CLOCK for end in ends):
+    if _value(it, _SIM_TIME) is True and all(end.name != CLOCK for end in ends):
         ends.append(GraphEndpoint(TOPIC, SUBSCRIBES, CLOCK, CLOCK_TYPE, "", name, None, it.process))
     return _Part(name, tuple(dict.fromkeys(ends)), tuple(_edges(it, bound)))
 
@@ -235,4 +236,4 @@ def _states(nodes: Iterable[RunningNode]) -> Iterator[NodeState]:
     """Simulated time by parameter; the default is false (rclcpp time_source.cpp)."""
     for it in nodes:
         if it.facts is not None:
-            yield NodeState(it.full_name, sim_time=_value(it, SIM_TIME) is True)
+            yield NodeState(it.full_name, sim_time=_value(it, _SIM_TIME) is True)

@@ -38,7 +38,8 @@ class RunningNode(NamedTuple):
     ``rules`` are its own ones; ``process_rules`` and ``process_namespace`` are those of its process,
     which helper nodes in it have.
     ``facts`` are its endpoints and frames with its parameters, None where nothing is known of it.
-    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the processes of the launch apart.
+    ``values`` are its parameters, ``texts`` other files that a parameter names. ``process`` tells the
+    processes of the launch apart.
     """
 
     name: str
