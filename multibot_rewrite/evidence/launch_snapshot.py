@@ -44,6 +44,7 @@ from multibot_rewrite.rosnames import (
 CLOCK, CLOCK_TYPE = "/clock", "rosgraph_msgs/msg/Clock"
 TF, TF_STATIC, TF_TYPE = "/tf", "/tf_static", "tf2_msgs/msg/TFMessage"
 _STATIC = "static_transform_publisher"
+_PREFIX_SWITCH = "tf_frame_prefix_enable"
 _SIM_TIME = "use_sim_time"
 _DESCRIPTION = "robot_description"
 NOT_WHOLE, NOT_KNOWN, NO_TREE, REFUSED = (
@@ -65,16 +66,15 @@ class _Part(NamedTuple):
 def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
     """The graph of all that the launch starts; what is not known makes the view incomplete."""
     nodes, notes = running_nodes(graph, known)
-    refused: list[Caveat] = []
+    refused: list[str] = []
     parts = []
     for it in nodes:
         try:
             parts.append(_part(it))
         except UsageError as error:
-            text = f"{it.place}: rcl refuses {it.full_name} or a name of it: {error}"
-            refused.append(Caveat(REFUSED, True, text))
+            refused.append(f"{it.full_name} ({it.place}: {error})")
             parts.append(_Part(it.full_name, (), ()))
-    caveats = (*_caveats((*graph.notes, *notes), nodes), *refused)
+    caveats = (*_refused(refused), *_caveats((*graph.notes, *notes), nodes))
     return Snapshot(
         tuple(GraphNode(part.name, it.process) for it, part in zip(nodes, parts, strict=True)),
         tuple(end for part in parts for end in part.endpoints),
@@ -82,6 +82,12 @@ def would_run(graph: LaunchGraph, known: Knowledge) -> Snapshot:
         Environment(0, "", (), "", "", False, 0, EXPECTED, 0.0, caveats),
         states=tuple(_states(nodes)),
     )
+
+
+def _refused(nodes: Sequence[str]) -> Iterator[Caveat]:
+    if nodes:
+        text = f"rcl refuses {plural(len(nodes), 'node')}: {shorten(nodes)}"
+        yield Caveat(REFUSED, True, text)
 
 
 def _caveats(notes: Iterable[LaunchNote], nodes: Sequence[RunningNode]) -> Iterator[Caveat]:
@@ -179,7 +185,21 @@ def _own_edges(it: RunningNode) -> Iterable[Edge]:
         return _static_edge(it)
     if _publishes_a_tree(it):
         return _tree(it) or ()
-    return sent_by(it.facts, "")
+    prefix = _prefix(it)
+    edges = sent_by(it.facts, "")
+    return [Edge(prefix + e.parent, prefix + e.child, e.static) for e in edges]
+
+
+def _prefix(it: RunningNode) -> str:
+    """What a node puts before its frames: robot_localization ros_filter.cpp (``tf_prefix``),
+    ros2_controllers diff_drive_controller.cpp (its namespace, where no parameter says otherwise)."""
+    prefix = _value(it, "tf_prefix")
+    fixed = it.facts.fixed if it.facts else ()
+    if any(text.startswith(_PREFIX_SWITCH) for text in fixed):
+        own = _value(it, "tf_frame_prefix") or it.namespace
+        prefix = "" if _value(it, _PREFIX_SWITCH) is False else own
+    bare = str(prefix or "").strip("/")
+    return f"{bare}/" if bare else ""
 
 
 def _publishes_a_tree(it: RunningNode) -> bool:
@@ -233,7 +253,8 @@ def _frames(parts: Sequence[_Part]) -> Iterator[GraphFrame]:
 
 
 def _states(nodes: Iterable[RunningNode]) -> Iterator[NodeState]:
-    """Simulated time by parameter; the default is false (rclcpp time_source.cpp)."""
+    """Simulated time by parameter; the default is false (rclcpp time_source.cpp). What sends transforms
+    that hold for ever needs no time."""
     for it in nodes:
-        if it.facts is not None:
+        if it.facts is not None and it.facts.known != _STATIC:
             yield NodeState(it.full_name, sim_time=_value(it, _SIM_TIME) is True)

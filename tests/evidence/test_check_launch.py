@@ -147,6 +147,11 @@ def test_two_clock_bridges_are_two_clocks(run: Graph) -> None:
     assert "MG502" not in codes(run(bridges[0]))
 
 
+def test_an_ekf_with_a_prefix_has_frames_of_its_own(run: Graph) -> None:
+    made = run(node("robot_localization/ekf_node", "ekf", "/robot1", tf_prefix="robot1"))
+    assert [(it.parent, it.child) for it in made.frames] == [("robot1/odom", "robot1/base_link")]
+
+
 def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph) -> None:
     manager = node(
         *("controller_manager/ros2_control_node", "controller_manager", "/robot1", TF),
@@ -162,6 +167,8 @@ def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph)
     own = names(made, "/robot1/drive")
     assert {("publishes", "/robot1/odom"), ("publishes", "/robot1/tf")} <= own
     assert not made.environment.caveats
+    (edge,) = made.frames
+    assert (edge.parent, edge.child) == ("robot1/odom", "robot1/base_link")
     # A simulator's plugin makes the manager: its rules are not those of the launch.
     (caveat,) = run(spawner).environment.caveats
     assert "/robot1/controller_manager" in caveat.message
