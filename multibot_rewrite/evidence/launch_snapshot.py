@@ -141,7 +141,18 @@ def _endpoints(
         if not end.when and end.name and "<" not in end.name:
             own = end._replace(name=_below_namespace_above(it, end))
             full = _resolved(own, helper if end.helper else bound)
-            yield GraphEndpoint(end.kind, end.role, full, end.type, "", name, None, it.process)
+            type_ = _type(it, end)
+            yield GraphEndpoint(end.kind, end.role, full, type_, "", name, None, it.process)
+
+
+def _type(it: RunningNode, end: Endpoint) -> str:
+    """Its type, where a parameter such as ``enable_stamped_cmd_vel`` chooses between two."""
+    chosen = [given.value for name, given in it.values.items() if "stamped" in name]
+    for wanted in chosen:
+        fitting = (type_ for type_ in end.also if type_.endswith("Stamped") == wanted)
+        if end.type.endswith("Stamped") != wanted:
+            return next(fitting, end.type)
+    return end.type
 
 
 def _below_namespace_above(it: RunningNode, end: Endpoint) -> str:

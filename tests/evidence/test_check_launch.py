@@ -152,6 +152,14 @@ def test_an_ekf_with_a_prefix_has_frames_of_its_own(run: Graph) -> None:
     assert [(it.parent, it.child) for it in made.frames] == [("robot1/odom", "robot1/base_link")]
 
 
+@pytest.mark.parametrize(("stamped", "type_"), [(True, "TwistStamped"), (False, "Twist")])
+def test_a_parameter_chooses_the_type(run: Graph, stamped: bool, type_: str) -> None:
+    ekf = node("robot_localization/ekf_node", "ekf", use_control=True, stamped_control=stamped)
+    made = run(ekf)
+    (found,) = {it.type for it in made.endpoints if it.name == "/robot1/cmd_vel"}
+    assert found == f"geometry_msgs/msg/{type_}"
+
+
 def test_a_controller_runs_beside_its_manager_with_the_rules_of_both(run: Graph) -> None:
     manager = node(
         *("controller_manager/ros2_control_node", "controller_manager", "/robot1", TF),
