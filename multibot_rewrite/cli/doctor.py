@@ -29,7 +29,7 @@ from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.states import questions
-from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.graph.watching import Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import release_here
@@ -87,15 +87,19 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
     caveats = doubts(seen.graph)
     for caveat in caveats:
         say(f"incomplete: {caveat.message}", PROGRAM)
-    _write(options, seen, findings)
     inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
-    return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+    verdict = Verdict.WRONG if failed else inconclusive
+    _write(options, seen, findings, verdict)
+    return _sum_up(options, len(findings), verdict)
 
 
-def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:
+def _write(
+    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], verdict: Verdict
+) -> None:
     """The pictures and the files that the options ask for."""
     if any(vars(options)[name] for name in pictures.NAMES):
-        pictures.deliver(options, seen_plan(seen), seen.graph, findings)
+        outcome = Outcome(verdict, WORDS[verdict], "multibot doctor", planned=False)
+        pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))
         paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
@@ -120,7 +124,7 @@ def _watch(options: argparse.Namespace) -> int:
         return live.INCONCLUSIVE
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
-    _write(options, diagnose(last.graph), last.findings)
+    _write(options, diagnose(last.graph), last.findings, final(last))
     return _sum_up(options, len(last.findings), final(last))
 
 
