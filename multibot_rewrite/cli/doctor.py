@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from multibot_rewrite.cli import live, pictures
 from multibot_rewrite.cli.check import CODES
@@ -21,6 +21,8 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.bags.read import BagsUnusable
+from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
@@ -28,7 +30,7 @@ from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import questions
+from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
@@ -48,13 +50,9 @@ def run(options: argparse.Namespace) -> int:
     try:
         if options.watch:
             return _watch(options)
-        graph = live.graph(options)
-        states = live.states(options, graph)
-        if options.state:
-            asked = {it.node for it in questions(graph)}
-            note(options, f"{len(states)} of {plural(len(asked), 'node')} answered --state")
-        return _once(options, diagnose(graph, states))
-    except RosUnusable as error:
+        graph = live.with_states(options, live.graph(options))
+        return _once(options, diagnose(graph))
+    except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
@@ -84,21 +82,31 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
         note(options, line)
     findings = chosen(options, seen.findings)
     failed = _report(options, seen, findings)
-    caveats = doubts(seen.graph)
-    for caveat in caveats:
-        say(f"incomplete: {caveat.message}", PROGRAM)
-    inconclusive = Verdict.INCONCLUSIVE if caveats else Verdict.PLANNED
+    unsure = [caveat.message for caveat in doubts(seen.graph)] or list(_nothing_seen(seen.graph))
+    for reason in unsure:
+        say(f"incomplete: {reason}", PROGRAM)
+    inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if failed else inconclusive
-    _write(options, seen, findings, verdict)
+    _write(options, seen, findings, _outcome(verdict, unsure))
     return _sum_up(options, len(findings), verdict)
 
 
+def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
+    words = WORDS[verdict]
+    return Outcome(verdict, words, "multibot doctor", planned=False, reasons=tuple(reasons))
+
+
+def _nothing_seen(graph: Snapshot) -> Iterator[str]:
+    """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
+    if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
+        yield "no node of a robot is in this graph, so there is nothing to judge"
+
+
 def _write(
-    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], verdict: Verdict
+    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
     """The pictures and the files that the options ask for."""
     if any(vars(options)[name] for name in pictures.NAMES):
-        outcome = Outcome(verdict, WORDS[verdict], "multibot doctor", planned=False)
         pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))
@@ -124,7 +132,7 @@ def _watch(options: argparse.Namespace) -> int:
         return live.INCONCLUSIVE
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
-    _write(options, diagnose(last.graph), last.findings, final(last))
+    _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
     return _sum_up(options, len(last.findings), final(last))
 
 

@@ -30,13 +30,15 @@ WORDS = {
 class Outcome(NamedTuple):
     """The verdict as a command says it: in which ``words``, and who says it (``by``).
 
-    Without ``planned`` there was no plan to compare with.
+    Without ``planned`` there was no plan to compare with. ``reasons`` say why it is not certain,
+    besides the caveats of the graph.
     """
 
     verdict: Verdict
     words: str
     by: str = "multibot check"
     planned: bool = True
+    reasons: tuple[str, ...] = ()
 
 
 class Progress(NamedTuple):

@@ -20,6 +20,8 @@ from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, Snapshot
 from multibot_rewrite.remap.records import NodeRule, NodeTable
 
+TF = ("/tf", "/tf_static")
+
 
 def findings(found: Outcome, release: str, kinds: Mapping[str, str]) -> tuple[Finding, ...]:
     """What ``check`` says of two robots that run as the vendor starts them."""
@@ -64,7 +66,9 @@ def placed(node: Started, short: str, more: tuple[NodeRule, ...]) -> NodeTable:
     """The node under its name, with the remap rules that the launch gives it, then with those that it
     needs besides: vendors' launch files do not separate names that are absolute in the code."""
     namespace, _, name = node.name.rpartition("/")
-    rules = tuple(NodeRule("", name, old, new, "", "") for old, new in node.rules)
+    # tf is heard by a helper node in the namespace of the process, not in that of a costmap in it.
+    given = (it for it in node.rules if "/" not in short or it[0] not in TF)
+    rules = tuple(NodeRule("", name, old, new, "", "") for old, new in given)
     return NodeTable("", short, namespace or "/", name, (*rules, *more))
 
 

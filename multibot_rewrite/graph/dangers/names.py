@@ -24,7 +24,7 @@ from multibot_rewrite.graph.snapshot import GraphEndpoint
 from multibot_rewrite.nearest import COMPARED, MISTYPED, nearest
 from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
-_DIGITS = re.compile(r"\d+")
+_DIGITS = re.compile(r"_?\d+")
 # Every node serves them, or many do: another one of such a type says nothing.
 _COMMON = (
     "rcl_interfaces/",

@@ -111,9 +111,9 @@ def _header(
     yield f"<h1>{safe(scene.outcome.words)}</h1>\n<ul>"
     yield "".join(f"<li>{safe(fact)}</li>" for fact in facts)
     yield "</ul>\n"
-    for caveat in scene.environment.caveats:
-        if caveat.incomplete:
-            yield f'<p class="doubt">{safe(caveat.message)}</p>\n'
+    caveats = (it.message for it in scene.environment.caveats if it.incomplete)
+    for reason in dict.fromkeys((*caveats, *scene.outcome.reasons)):
+        yield f'<p class="doubt">{safe(reason)}</p>\n'
     yield from robot_cards(scene, sections, rules)
     yield "</header>\n"
 

@@ -73,7 +73,9 @@ def make_sections(scene: Scene) -> list[PageSection]:
         counts = Counter(scene.rows[number].finding.level for number in own)
         levels = {level: counts[level] for level in LEVELS}
         faulty = bool(sum(levels.values())) or has_faults(group)
-        opened = len(scene.robots) <= SMALL_FLEET or (faulty and own not in met and left > 0)
+        opened = len(scene.robots) <= SMALL_FLEET or (
+            faulty and left > 0 and not (own and own in met)
+        )
         met.add(own)
         left -= opened
         shown = without_common(group)

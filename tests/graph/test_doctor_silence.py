@@ -1,0 +1,126 @@
+"""What looks like a fault, and is none: the doctor leaves it alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+from fault_changes import CHANGE_STATE, added, both
+from graph_cases import environment, qos, sent
+from healthy_systems import CLOCK, NAVIGATE, ODOMETRY, SCAN, TF, TRIGGER, TWIST, nav2_with_tools
+
+from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.doctor.robots import guess_robots
+from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.snapshot import GraphFrame, GraphNode, Snapshot
+from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
+
+EMPTY = Snapshot((), (), (), environment())
+
+
+def hears_one_of_two(graph: Snapshot) -> Snapshot:
+    """A second lidar with another QoS: the reader gets the scans of the first."""
+    graph = added("/robot1/rear_lidar", (PUBLISHES, "/robot1/scan", SCAN))(graph)
+    weak, strong = qos(reliability="BEST_EFFORT"), qos(reliability="RELIABLE")
+    ends = (
+        it._replace(qos=weak if it.node == "/robot1/rear_lidar" else strong)
+        if it.name == "/robot1/scan"
+        else it
+        for it in graph.endpoints
+    )
+    return graph._replace(endpoints=tuple(reversed(tuple(ends))))
+
+
+def two_windows(graph: Snapshot) -> Snapshot:
+    return graph._replace(nodes=(*graph.nodes, *(GraphNode("/robot1/rviz2", it) for it in "ab")))
+
+
+SILENT: dict[str, Callable[[Snapshot], Snapshot]] = {
+    "hidden topics are nobody's business": both(
+        added("/robot1/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),
+        added("/robot2/lidar_driver", (PUBLISHES, "/_raw/scan", SCAN)),
+    ),
+    "a robot's own server is not started, another robot's is": both(
+        added("/robot1/patrol", (CALLS, "/robot1/look_around", NAVIGATE)),
+        added("/robot2/camera", (SERVES, "/robot2/look_around", NAVIGATE)),
+    ),
+    "a service that only the other robot has": both(
+        added("/robot2/arm", (SERVES, "/robot2/handover", TRIGGER)),
+        added("/robot1/arm", (CALLS, "/robot2/handover", TRIGGER)),
+    ),
+    "rqt listens to a clock that is not there": added(
+        "/rqt_gui_py_node_1", (SUBSCRIBES, "/clock", CLOCK)
+    ),
+    "a joystick node listens to it too": added("/joy_node", (SUBSCRIBES, "/clock", CLOCK)),
+    "two windows of RViz": two_windows,
+    "a reader that hears one of two publishers": hears_one_of_two,
+    "the RViz panel of a manager that is not used": added(
+        "/robot1/rviz2", (CALLS, "/robot1/lifecycle_manager_slam/manage_nodes", TRIGGER)
+    ),
+    "a person changes a state": added(
+        "/_ros2cli_12", (CALLS, "/robot1/amcl/change_state", CHANGE_STATE)
+    ),
+    "both robots report to the fleet": both(
+        added("/robot1/agent", (PUBLISHES, "/fleet_states", "rmf_fleet_msgs/msg/FleetState")),
+        added("/robot2/agent", (PUBLISHES, "/fleet_states", "rmf_fleet_msgs/msg/FleetState")),
+    ),
+    "one stop button for all": both(
+        added("/robot1/safety", (SUBSCRIBES, "/stop", "std_msgs/msg/Bool")),
+        added("/robot2/safety", (SUBSCRIBES, "/stop", "std_msgs/msg/Bool")),
+        added("/button", (PUBLISHES, "/stop", "std_msgs/msg/Bool")),
+    ),
+    "a second camera of a numbered pair is off": both(
+        added("/robot1/fusion", (SUBSCRIBES, "/robot1/scan_2", SCAN)),
+        added("/robot1/laser_1", (PUBLISHES, "/robot1/scan_1", SCAN)),
+    ),
+    "a camera for all robots": both(
+        added("/robot1/tracker", (SUBSCRIBES, "/ceiling/image", "sensor_msgs/msg/Image")),
+        added("/robot2/tracker", (SUBSCRIBES, "/ceiling/image", "sensor_msgs/msg/Image")),
+    ),
+    "battery of two drivers": both(
+        added("/robot1/a", (PUBLISHES, "/robot1/joint_states", "sensor_msgs/msg/JointState")),
+        added("/robot1/b", (PUBLISHES, "/robot1/joint_states", "sensor_msgs/msg/JointState")),
+    ),
+    "a recorded run under other names": added(
+        "/rosbag2_player", (PUBLISHES, "/recorded/scan", SCAN), (PUBLISHES, "/recorded/tf", TF)
+    ),
+    "measured velocities are no commands": both(
+        added("/robot1/vel_a", (PUBLISHES, "/robot1/twist", TWIST)),
+        added("/robot1/vel_b", (PUBLISHES, "/robot1/twist", TWIST)),
+        added("/robot1/log", (SUBSCRIBES, "/robot1/twist", TWIST)),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SILENT)
+def test_it_is_no_fault(name: str) -> None:
+    assert [str(it) for it in diagnose(SILENT[name](nav2_with_tools())).findings] == []
+
+
+def test_both_robots_may_send_the_world_above_them() -> None:
+    ends = (PUBLISHES, "/tf_static", TF)
+    graph = EMPTY
+    for robot in ("robot1", "robot2"):
+        odometry = (PUBLISHES, f"/{robot}/odom", ODOMETRY)
+        velocity = (SUBSCRIBES, f"/{robot}/cmd_vel", TWIST)
+        graph = added(f"/{robot}/localizer", ends, odometry, velocity)(graph)
+    world = GraphFrame("map", "world", "/tf_static", True, ())
+    graph = sent(graph._replace(frames=(world,)))
+    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
+    assert diagnose(graph).findings == ()
+
+
+def test_a_namespace_with_odometry_alone_is_no_robot() -> None:
+    graph = added("/visual/tracker", (PUBLISHES, "/visual/odom", ODOMETRY))(nav2_with_tools())
+    assert [it.name for it in guess_robots(graph)] == ["robot1", "robot2"]
+
+
+def test_what_is_called_after_a_robot_inside_another_namespace_is_not_its_own() -> None:
+    graph = added("/fleet/monitor", (PUBLISHES, "/fleet/pose_robot1", ODOMETRY))(nav2_with_tools())
+    assert diagnose(graph).owners.names["/fleet/pose_robot1"] == ""
+
+
+def test_the_plan_of_what_is_seen_leaves_out_what_every_node_has() -> None:
+    plan = seen_plan(diagnose(nav2_with_tools()))
+    assert [it for it in plan.endpoints if it.type.startswith("rcl_interfaces/")] == []
+    assert "/rosout" not in {it.name for it in plan.endpoints}
