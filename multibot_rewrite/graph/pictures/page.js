@@ -77,13 +77,17 @@ function pick(row) {
   row.classList.add("picked");
 }
 
-for (const row of rows) row.querySelector("summary").addEventListener("click", () => pick(row));
+for (const row of rows) {
+  row.querySelector("summary").addEventListener("click", (event) => {
+    if (!event.target.closest("a")) pick(row);
+  });
+}
 for (const link of all('a[href^="#"]')) {
   link.addEventListener("click", (event) => {
     event.preventDefault();
-    go(link.hash || link.getAttribute("href"));
-    const row = document.querySelector(`${link.getAttribute("href")}.finding`);
-    if (row) pick(row);
+    const row = document.querySelector(`${link.hash}.finding`) || link.closest(".finding");
+    if (row && !link.matches(".rule")) pick(row);
+    go(link.hash);
   });
 }
 for (const part of all("svg.graph [data-id]")) {
@@ -96,6 +100,6 @@ for (const part of all("svg.graph [data-id]")) {
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape") clear();
 });
-for (const control of controls) control.addEventListener("input", filter);
+for (const kind of ["input", "change"]) bar.addEventListener(kind, filter);
 bar.hidden = false;
 filter();
