@@ -5,8 +5,8 @@ Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "n
 "frames" of [topic, static or not, [parent, child], ...], "headers" of [topic, type, frame, QoS words]:
 messages that it sends, ten a second or, latched, one; an image has a megabyte}. "bare": a node without
 what every node brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a
-process of its own. "arguments": what a command line tells the node. "parameters": those that it declares. "state": what it answers to
-GetState. "wait": seconds until the next node is made.
+process of its own. "arguments": what a command line tells the node. "parameters": those that it
+declares. "state": what it answers to GetState. "wait": seconds until the next node is made.
 """
 
 from __future__ import annotations
