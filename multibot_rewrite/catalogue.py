@@ -159,13 +159,16 @@ HOMES: tuple[Home, ...] = (
         DANGERS_INTRO,
     ),
     Home(
-        "MG4", "dangers of any system: tf", ("graph.dangers.transforms", "graph.dangers.tf_topics")
+        "MG4",
+        "dangers of any system: tf",
+        ("graph.dangers.transforms", "graph.dangers.tf_topics", "graph.dangers.frame_ids"),
     ),
     Home(
         "MG5",
         "dangers of any system: time and states",
         ("graph.dangers.clocks", "graph.dangers.states"),
     ),
+    Home("MG6", "recordings", ("graph.bags.rules",)),
     Home("MR1", "remap tables", ("remap.table_checks", "remap.way_checks")),
 )
 

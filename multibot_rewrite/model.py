@@ -24,7 +24,8 @@ class Site(NamedTuple):
     ``sibling=text`` where only that sibling's text makes the value a name. ``below_model`` are the
     releases in which a relative topic here stands below the namespace of the model. ``releases`` are
     the words for the only releases that read it, empty for all. ``fill`` is what is written where the
-    default cannot be, which is below the name of the model.
+    default cannot be, which is below the name of the model. ``does`` is what the consumer does with a
+    topic or service of that name (``publishes``, ``subscribes``, ``serves``), ``type`` its type.
     """
 
     path: str
@@ -43,6 +44,8 @@ class Site(NamedTuple):
     below_model: str = ""
     releases: str = ""
     fill: str = ""
+    does: str = ""
+    type: str = ""
 
 
 class Claim(NamedTuple):

@@ -16,6 +16,9 @@ from multibot_rewrite.cli.watch import WORDS, follow
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
+from multibot_rewrite.graph.bags.read import BagsUnusable, read_bag
+from multibot_rewrite.graph.bags.recording import as_snapshot
+from multibot_rewrite.graph.bags.rules import compare
 from multibot_rewrite.graph.check import check, doubts
 from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable
@@ -37,10 +40,18 @@ def run(options: argparse.Namespace) -> int:
     try:
         if options.watch:
             return _watch(options, plan)
-        return conclude(options, plan, live.graph(options))
-    except RosUnusable as error:
+        if options.bag:
+            return _recorded(options, plan)
+        return conclude(options, plan, live.with_states(options, live.graph(options)))
+    except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+
+
+def _recorded(options: argparse.Namespace, plan: Expectation) -> int:
+    recording = read_bag(options.bag)
+    topics = chosen(options, compare(plan, recording))
+    return conclude(options, plan, as_snapshot(recording, plan), topics)
 
 
 def _check_use(options: argparse.Namespace) -> None:

@@ -21,6 +21,8 @@ from multibot_rewrite.cli.report import (
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.graph.bags.read import BagsUnusable
+from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.check import doubts
 from multibot_rewrite.graph.doctor.diagnose import Diagnosis, diagnose, survey
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
@@ -28,7 +30,6 @@ from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import questions
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
@@ -49,13 +50,9 @@ def run(options: argparse.Namespace) -> int:
     try:
         if options.watch:
             return _watch(options)
-        graph = live.graph(options)
-        states = live.states(options, graph)
-        if options.state:
-            asked = {it.node for it in questions(graph)}
-            note(options, f"{len(states)} of {plural(len(asked), 'node')} answered --state")
-        return _once(options, diagnose(graph, states))
-    except RosUnusable as error:
+        graph = live.with_states(options, live.graph(options))
+        return _once(options, diagnose(graph))
+    except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
 
@@ -94,8 +91,8 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
 
 
 def _nothing_seen(graph: Snapshot) -> Iterator[str]:
-    """A graph in which nothing runs is not a healthy one."""
-    if all(is_tool(node.name) for node in graph.nodes):
+    """A graph in which nothing runs is not a healthy one; a recording never has nodes."""
+    if not is_recorded(graph) and all(is_tool(node.name) for node in graph.nodes):
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 

@@ -13,6 +13,7 @@ from multibot_rewrite.cli.tables import Grid, deliver_report
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.rosgraph.writing import to_yaml
 from multibot_rewrite.graph.snapshot import (
     QUIET,
@@ -52,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
     )
     try:
-        snapshot = live.graph(options, request)
+        snapshot = live.with_states(options, live.graph(options, request))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -112,9 +113,11 @@ def _short_processes(snapshot: Snapshot) -> dict[str, str]:
 def _headline(snapshot: Snapshot) -> str:
     around = snapshot.environment
     nodes, many = len(snapshot.nodes), around.participants
+    seen = len(machines(snapshot))
+    where = f" on {seen} machines" if seen > 1 else ""
     why = "no change any more" if around.settled == QUIET else around.settled
     return (
-        f"{plural(nodes, 'node')} in {plural(many, 'participant')}"
+        f"{plural(nodes, 'node')} in {plural(many, 'participant')}{where}"
         f" after {around.seconds:.1f} s ({why});"
         f" domain {around.domain}{_reach(around)}, {around.rmw}"
     )

@@ -121,6 +121,7 @@ def as_json(section: VocabularySection) -> dict[str, object]:
         "at": section.at,
         "blocks": section.blocks,
         "remap_only": section.topics,
+        "topics": [it._asdict() for it in section.wired],
         "rows": [_row_json(site, section) for site in section.sites],
     }
 

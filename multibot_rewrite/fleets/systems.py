@@ -168,7 +168,7 @@ def _ends_of(node: NodeFacts, given: Iterable[GivenNode]) -> Iterator[End]:
 
 def _plugin_ends(node: ReadNode) -> Iterator[End]:
     for it in node.endpoints:
-        own = (it.kind, it.role, it.full, "", it.name, str(node.number))
+        own = (it.kind, it.role, it.full, it.type, it.name, str(node.number))
         yield End(node.full_name, *own, None, not it.off)
 
 

@@ -11,6 +11,7 @@ from typing import cast
 from multibot_rewrite.findings.finding import INCONCLUSIVE, Finding
 from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.gc_pause import gc_paused
+from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.dangers.beside_plan import dangers_beside
 from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.expectation import Expectation
@@ -44,6 +45,9 @@ _MODULES = (
 )
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 RULES = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
+# What can be asked of a recording, which has no nodes.
+_ABOUT_FRAMES = (*vars(transforms).values(), *vars(frame_names).values())
+FRAME_RULES = {it.code: it for it in RULES.values() if it in _ABOUT_FRAMES}
 WAITED_FOR = "expected-not-seen"
 # Findings about something missing: an incomplete view cannot prove them.
 # With a plan and without one.
@@ -55,8 +59,10 @@ def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
     with gc_paused():
         view = make_view(plan, with_patterns(plan, graph))
-        found = [finding for rule in RULES.values() for finding in _ask(rule, view)]
-        found += dangers_beside(view, found)
+        rules = FRAME_RULES if is_recorded(graph) else RULES
+        found = [finding for rule in rules.values() for finding in _ask(rule, view)]
+        if not is_recorded(graph):
+            found += dangers_beside(view, found)
     return inconclusive_where_in_doubt(found, graph)
 
 

@@ -16,20 +16,21 @@ from multibot_rewrite.model import Site, UsageError
 from multibot_rewrite.naming import TOPIC_KINDS
 from multibot_rewrite.readback.model_namespaces import reads_it, scoped_namespace
 from multibot_rewrite.readback.parameters import sends_odometry, switched_off, values_of
+from multibot_rewrite.readback.wired import wired_of
 from multibot_rewrite.readback.xml import child_text, text_of
 from multibot_rewrite.rewriters.vocabulary import VocabularySection
 from multibot_rewrite.rosnames import BoundNode, RemapRule, bind, expand, parse_remap, resolve_bound
 
 TOPIC, SERVICE = "topic", "service"
 REMAP_FLAGS = ("-r", "--remap")
-PUBLISHES = "publishes"
-ROLES = (PUBLISHES, "subscribes", "serves")
+PUBLISHES, SERVES = "publishes", "serves"
 
 
 class ReadEndpoint(NamedTuple):
     """A topic or service of a node: its name in the code or in a parameter, and in the graph.
 
-    ``off`` are parameters that would turn it on. ``of_controllers`` is true for what the controllers
+    ``off`` are parameters that would turn it on. ``type`` is empty where it is not known.
+    ``of_controllers`` is true for what the controllers
     have that it loads, where they take no rules of it.
     """
 
@@ -40,6 +41,7 @@ class ReadEndpoint(NamedTuple):
     parameter: str = ""
     off: str = ""
     of_controllers: bool = False
+    type: str = ""
 
 
 class ReadRule(NamedTuple):
@@ -163,17 +165,18 @@ def _endpoints(
     rules: tuple[ReadRule, ...],
 ) -> Iterator[ReadEndpoint]:
     off = switched_off(plugin, section)
-    for role in ROLES:
-        kind = SERVICE if role == "serves" else TOPIC
-        for name in getattr(section, role):
-            yield ReadEndpoint(kind, role, name, _full(name, kind, bound), "", off.get(name, ""))
+    for it, path in wired_of(plugin, section):
+        kind = SERVICE if it.role == SERVES else TOPIC
+        own = (kind, it.role, it.name, _full(it.name, kind, bound))
+        yield ReadEndpoint(*own, path, off.get(it.name, ""), type=it.type)
     for site in filter(_holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
         for name in values_of(plugin, site):
-            yield ReadEndpoint(kind, "", name, _full(name, kind, bound), site.path)
-    # Topics below the plugin's own name are not in the vocabulary, but in its remap rules.
+            own = (kind, site.does, name, _full(name, kind, bound))
+            yield ReadEndpoint(*own, site.path, type=site.type)
+    # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
     for source in (it.rule.source for it in rules):
-        if source.startswith("~"):
+        if source.startswith("~") and source not in section.topics:
             yield ReadEndpoint(TOPIC, "", source, _full(source, TOPIC, bound))
 
 

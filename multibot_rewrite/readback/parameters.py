@@ -33,7 +33,7 @@ def default_of(host: _Element, default: str) -> str:
     """``x``; ``a=true,b=?x``: x where these siblings have these texts; ``topic/../x``: the value of
     a sibling with its last segment replaced; ``{model}/x``: x below what the model is spawned as."""
     conditions, asked, default = default.rpartition("?")
-    if asked and not all(_holds(host, it) for it in conditions.split(",")):
+    if asked and not holds(host, conditions):
         return ""
     sibling, derived, last = default.partition("/../")
     if not derived:
@@ -42,12 +42,24 @@ def default_of(host: _Element, default: str) -> str:
     return f"{topic.rpartition('/')[0]}/{last}" if "/" in topic else last if topic else ""
 
 
+def holds(host: _Element, conditions: str) -> bool:
+    """``a=true,../@b=x|y``: is each of them so? A flag that is not there is off."""
+    return all(_holds(host, it) for it in conditions.split(","))
+
+
 def _holds(host: _Element, condition: str) -> bool:
-    tag, _, wanted = condition.partition("=")
-    text = child_text(host, tag) or ""
+    path, _, wanted = condition.partition("=")
+    text = next(iter(given_at(host, path)), "")
     if wanted not in ("true", "false"):
-        return text == wanted
+        return text in wanted.split("|")
     return is_on(text, usual=False) == (wanted == "true")
+
+
+def given_at(host: _Element, path: str) -> list[str]:
+    """The values at a path below an element, or, after ``../``, below the one around it."""
+    below = path.removeprefix("../")
+    start = host if below == path else host.getparent()
+    return [] if start is None else list(values_at(start, below))
 
 
 def switched_off(host: _Element, section: VocabularySection) -> dict[str, str]:

@@ -117,8 +117,10 @@ def _of_nodes(nodes: tuple[ReadNode, ...]) -> Iterator[RuntimeName]:
     for node in nodes:
         if node.name:
             yield RuntimeName(NODE, node.full_name, "plugin", node.number, "@name")
+        above = {path for path, _ in node.stems}
         for it in node.endpoints:
-            if not it.off:
+            # What is below a stem is named by it.
+            if not it.off and it.parameter not in above:
                 path, of = it.parameter or it.name, it.of_controllers
                 yield RuntimeName(it.kind, it.full, "plugin", node.number, path, of)
         for path, full in node.stems:

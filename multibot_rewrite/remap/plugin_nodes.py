@@ -28,7 +28,7 @@ def plugin_nodes(reading: Reading, robot: str) -> Iterator[tuple[NodeFacts, Node
 
 def _facts(node: ReadNode) -> NodeFacts:
     endpoints = (
-        Endpoint(it.kind, it.role, it.name, parameter=it.parameter, when=it.off)
+        Endpoint(it.kind, it.role, it.name, it.type, parameter=it.parameter, when=it.off)
         for it in node.endpoints
     )
     frames = tuple(FrameParameter(*frame) for frame in node.frames)

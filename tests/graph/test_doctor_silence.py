@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from fault_changes import CHANGE_STATE, added, both
 from graph_cases import environment, qos, sent
-from graph_faults import CHANGE_STATE, added, both
 from healthy_systems import CLOCK, NAVIGATE, ODOMETRY, SCAN, TF, TRIGGER, TWIST, nav2_with_tools
 
 from multibot_rewrite.graph.doctor.diagnose import diagnose

@@ -187,6 +187,15 @@ def test_a_robot_that_keeps_to_its_machine_is_not_missing(plan: Path) -> None:
 
 
 @pytest.mark.deep
+def test_where_all_are_to_be_on_this_machine_a_robot_is_missing(plan: Path) -> None:
+    """What the message advises for a simulation: robots under SUBNET, the look under LOCALHOST."""
+    with hosts(1) as (one,), fleet((one, [node("robot1")]), **SUBNET):
+        done = run(one, "check", plan, "-v", **LOCALHOST)
+    assert (done.returncode, len(done.stdout.splitlines())) == (1, 1), done.stdout
+    assert "robot2: error: MG109" in done.stdout
+
+
+@pytest.mark.deep
 def test_what_is_advised_finds_it(plan: Path, tmp_path: Path) -> None:
     """Multicast is lost: a look on each machine, joined; and static peers."""
     with hosts(2, multicast=False) as (one, two):

@@ -139,6 +139,18 @@ def test_the_command_joins_and_check_takes_all(
     assert len(joined.endpoints) == len(whole.endpoints)
 
 
+def test_the_table_says_how_many_machines_were_seen(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = [tmp_path / "one.json", tmp_path / "two.json"]
+    for file, robot, process in zip(files, ("robot1", "robot2"), (ONE, TWO), strict=True):
+        file.write_bytes(to_json(look(node(robot, process))))
+    assert main(["snapshot", "--merge", *map(str, files)]) == 0
+    assert "2 nodes in 2 participants on 2 machines after" in capsys.readouterr().out
+    assert main(["snapshot", "--merge", str(files[0])]) == 0
+    assert "machine" not in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -145,7 +145,7 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
         pytest.param("sources:", "sources: [a]\nmore:", "unknown key 'more'", id="more"),
         pytest.param(f": {ROVER}:88", ": [1]", "sources./robot1/diff_drive: write", id="place"),
         pytest.param(
-            '/robot1/imu_driver:\n      - [publishes, topic, /robot1/imu, "", ~/out]',
+            "/robot1/imu_driver:\n      - [publishes, topic, /robot1/imu, sensor_msgs/msg/Imu, ~/out]",
             "/robot1/imu_driver: {}",
             "imu_driver is not a list",
             id="r",

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from functools import cache
 from typing import NamedTuple
 
-from graph_faults import FAULTS, LIVE, Fault, nav, shared_tf, simulation
+from fault_changes import Fault, nav, shared_tf, simulation
+from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS, plan
 
 from multibot_rewrite.findings.finding import ERROR, Finding

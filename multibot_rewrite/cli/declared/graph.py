@@ -13,6 +13,7 @@ from multibot_rewrite.cli.declared.shared import (
     PICTURES,
     RESULT_OUTPUT,
     SOURCE,
+    SOURCE_OR_BAG,
     TRUST,
     ZENOH,
 )
@@ -35,6 +36,10 @@ STATE = switch(
     "--state",
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers",
 )
+HEADERS = switch(
+    "--no-frame-ids",
+    about="do not receive a message of each sensor topic, for its frame; --watch never does",
+)
 WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 MERGE = Option(
     ("--merge",),
@@ -48,6 +53,7 @@ MERGE = Option(
         "default": [],
     },
 )
+LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
@@ -60,6 +66,7 @@ CHECK = Command(
         Example(
             "multibot check plan.yaml --zenoh tcp/localhost:7447", "a Zenoh router; needs no ROS"
         ),
+        Example("multibot check plan.yaml --bag recording/", "a bag of rosbag2; needs no ROS"),
         Example("multibot check plan.yaml --format junit -o check.xml", "in CI"),
     ),
     (
@@ -74,9 +81,10 @@ CHECK = Command(
         output_group(
             FINDINGS_OUTPUT,
             WATCH,
+            STATE,
         ),
         PICTURES,
-        SOURCE,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -111,7 +119,7 @@ DOCTOR = Command(
             ),
         ),
         PICTURES,
-        SOURCE,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -213,6 +221,8 @@ SNAPSHOT = Command(
                 ),
                 MERGE,
                 ZENOH,
+                STATE,
+                HEADERS,
                 *LIVE.options,
             )
         ),

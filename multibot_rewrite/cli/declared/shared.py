@@ -162,7 +162,15 @@ SAVED = repeated(
     "what multibot snapshot wrote, or a rosgraph_msgs/Graph in YAML, instead of the live graph;"
     " written again for each machine that was looked from",
 )
+BAG = value(
+    "--bag",
+    metavar="BAG",
+    about="a recording of rosbag2, a folder or a file .mcap or .db3: its topics and frames; needs no"
+    " ROS (docs/bags.md)",
+    type=values.path,
+)
 SOURCE = OptionGroup("where the graph comes from", (SAVED, ZENOH, *LIVE.options))
+SOURCE_OR_BAG = SOURCE._replace(options=(SAVED, BAG, ZENOH, *LIVE.options))
 
 
 EXPLAIN_OPTION = value(

@@ -42,6 +42,19 @@ def read_tf(data: bytes) -> TfMessage | None:
         return None
 
 
+def read_header_frame(data: bytes) -> str | None:
+    """The ``header.frame_id`` of a message that begins with a header, or None as above."""
+    mark = _ENDS.get(data[:2])
+    if mark is None:
+        return None
+    try:
+        reader = _Reader(data[_HEADER:], mark)
+        reader.skip(_STAMP)
+        return reader.text()
+    except (struct.error, UnicodeDecodeError, IndexError):
+        return None
+
+
 def _read(reader: _Reader) -> TfMessage:
     found = []
     for _ in range(reader.number()):

@@ -31,6 +31,7 @@ A path is child steps, then ``@attribute`` for an attribute; a step may ask for 
     empty=WORD         what the consumer makes of an element that is there and empty: ``default``, as
                        if it was not there (usual for a namespace: the root); ``model``, the model's
                        name; ``itself``, the empty text (usual for the rest)
+    publishes=TYPE     what is done with a topic of that name; the same ``subscribes=``, ``serves=``
     releases=WORDS     the only releases that read it, without blanks: ``kilted+``, ``<=jazzy``,
                        ``humble,jazzy``; a path may have a line for one release and another one
 
@@ -58,7 +59,12 @@ A line ``SETTING: TEXT`` is a setting; given twice, the texts are joined.
     select: TYPE           elements only: what it loads decides its section (plugin, hardware, sensor)
     with: BLOCK...         the lines of these blocks too; an own line at the same path wins
     ros: 1 | 2             for that ROS alone, where both have a plugin of this name
-    publishes: TOPIC...    topics that no parameter moves, where ``ros/remapping`` is read: remapped
+    publishes: TOPIC...    topics that no parameter moves, where ``ros/remapping`` is read: remapped;
+                           TOPIC=TYPE also says the type (``odom=nav_msgs/msg/Odometry``),
+                           ``={PATH:TYPE}`` that it is the one written there, or TYPE; a topic below
+                           the value at a path is ``{camera_name}/image_raw``, or with ``../`` in
+                           front of the path below that of the element around; ``a=x,../@b=y|z?TOPIC``
+                           is there on that condition
     subscribes: TOPIC...   the same
     serves: SERVICE...     the same
     switches: P=TOPIC...   parameter P turns that topic on, P=TOPIC=on: it is on unless P says false;

@@ -55,7 +55,8 @@ def _section(section: VocabularySection) -> str:
 
 
 def _note(site: Site) -> str:
-    return "; ".join(filter(None, (site.releases and f"in {site.releases}", site.note)))
+    end = f"{site.does} {site.type}" if site.does else ""
+    return "; ".join(filter(None, (end, site.releases and f"in {site.releases}", site.note)))
 
 
 def _form(form: str) -> str:

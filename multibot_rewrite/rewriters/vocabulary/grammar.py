@@ -14,6 +14,8 @@ from multibot_rewrite.model import Site, VocabularyError
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.releases import RELEASES as KNOWN
 from multibot_rewrite.releases import is_release_words, share_release
+from multibot_rewrite.rewriters.vocabulary.wired import ROLES as WIRES
+from multibot_rewrite.rewriters.vocabulary.wired import WiredTopic, role_and_type, wired_topics
 
 TYPES = ("element", "plugin", "hardware", "sensor", "block")
 SETTINGS = (
@@ -23,9 +25,7 @@ SETTINGS = (
     "with",
     "select",
     "ros",
-    "publishes",
-    "subscribes",
-    "serves",
+    *WIRES,
     "switches",
     "insert",
     "unique",
@@ -43,7 +43,7 @@ VALUES = {
 }
 ROLES = ("declares", "uses", "keep")
 KINDS = (*SEPARATORS, "collision")
-OPTIONS = ("form", "default", "when", "empty", "fill")
+OPTIONS = ("form", "default", "when", "empty", "fill", *WIRES)
 RELEASES = "releases="
 EMPTY = ("default", "model", "itself")
 FORMS = (
@@ -73,9 +73,8 @@ _PATH = lazy_compile(rf"(?=.)(?:{_STEP}(?:/{_STEP})*)?(?:@{_NAME})?")
 class VocabularySection(NamedTuple):
     """One section: what is known about an element, a plugin, a hardware class or a shared block.
 
-    ``publishes``, ``subscribes`` and ``serves`` are topics and services that no element controls:
-    only a remap rule moves them. ``switches`` are parameters that turn one of them off, each as
-    ``parameter=name``.
+    ``wired`` are topics and services that its code names. ``switches`` are parameters that turn one of
+    them off, each as ``parameter=name``.
     ``inserts`` is false where the consumer throws on children it does not know.
     ``unique`` is a kind whose bare names the plugin looks up in the whole world. ``process_wide``
     tells that its remap rules hold for every node of the process. ``hardwired`` are names it looks
@@ -91,9 +90,7 @@ class VocabularySection(NamedTuple):
     blocks: tuple[str, ...]
     select: str
     ros: str
-    publishes: tuple[str, ...]
-    subscribes: tuple[str, ...]
-    serves: tuple[str, ...]
+    wired: tuple[WiredTopic, ...]
     switches: tuple[str, ...]
     inserts: bool
     unique: str
@@ -116,7 +113,12 @@ class VocabularySection(NamedTuple):
     @property
     def topics(self) -> tuple[str, ...]:
         """All names that only a remap rule moves."""
-        return self.publishes + self.subscribes + self.serves
+        return tuple(it.name for it in self.wired if not it.is_moved)
+
+    @property
+    def publishes(self) -> tuple[str, ...]:
+        """Those of ``topics`` that it publishes."""
+        return tuple(it.name for it in self.wired if it.role == WIRES[0] and not it.is_moved)
 
 
 def read_header(place: str, row: str) -> tuple[str, ...]:
@@ -186,9 +188,7 @@ def assemble(
         words("with"),
         settings.get("select", ""),
         settings.get("ros", ""),
-        words("publishes"),
-        words("subscribes"),
-        words("serves"),
+        tuple(wired_topics(f"{file}:{line}", settings)),
         words("switches"),
         settings.get("insert", "yes") == "yes",
         settings.get("unique", ""),
@@ -232,9 +232,7 @@ def merge(first: VocabularySection, second: VocabularySection) -> VocabularySect
         blocks=first.blocks + tuple(name for name in second.blocks if name not in first.blocks),
         select=_either(first, second, "select"),
         unique=_either(first, second, "unique"),
-        publishes=first.publishes + second.publishes,
-        subscribes=first.subscribes + second.subscribes,
-        serves=first.serves + second.serves,
+        wired=first.wired + second.wired,
         switches=first.switches + second.switches,
         hardwired=first.hardwired + second.hardwired,
         inserts=first.inserts and second.inserts,
@@ -264,14 +262,14 @@ def _setting(settings: dict[str, str], place: str, words: list[str]) -> None:
     value = " ".join([settings[key], *words[1:]] if key in settings else words[1:])
     allowed = VALUES.get(key)
     if not value or (allowed and value not in allowed):
-        raise VocabularyError(
-            f"{place}: {key}: is {value!r}, use {' or '.join(allowed or ('text',))}"
-        )
+        choice = " or ".join(allowed or ("text",))
+        raise VocabularyError(f"{place}: {key}: is {value!r}, use {choice}")
     if key in ("releases", "model_namespace") and not is_release_words(value):
         raise VocabularyError(f"{place}: {key}: {_no_releases(value)}")
     wrong = [word for word in words[1:] if key == "switches" and not _SWITCH.fullmatch(word)]
     if wrong:
         raise VocabularyError(f"{place}: switches: {wrong[0]!r} is not PARAMETER=TOPIC[=on]")
+    tuple(wired_topics(place, {key: value}))
     settings[key] = value
 
 
@@ -304,7 +302,8 @@ def _site(place: str, section: str, line: int, row: str) -> Site:
     note = note.strip()
     own = (path, role, kinds, form, default, False, section, note, line)
     fill = options.get("fill", "")
-    return Site(*own, plain, when, file, empty, releases=releases, fill=fill)
+    does, type_ = role_and_type(place, options)
+    return Site(*own, plain, when, file, empty, "", releases, fill, does, type_)
 
 
 def _no_releases(words: str) -> str:

@@ -1,0 +1,1 @@
+"""Recordings of rosbag2 instead of a running graph: topics, types, QoS, frames, rates; no nodes."""

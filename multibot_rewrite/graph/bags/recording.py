@@ -1,0 +1,74 @@
+"""What a recording holds: frozen records. It knows topics and not nodes."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from multibot_rewrite.graph.expectation import Expectation
+from multibot_rewrite.graph.snapshot import (
+    QUIET,
+    Caveat,
+    Environment,
+    GraphEndpoint,
+    GraphFrame,
+    Qos,
+    Snapshot,
+)
+from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+
+# In place of the RMW: such a snapshot has no nodes, so only the rules about frames ask it.
+ROSBAG = "rosbag2"
+# In place of the nodes that sent what was recorded. A tool by its name.
+RECORDER = "/_recorded"
+
+
+class RecordedTopic(NamedTuple):
+    """A topic of a recording.
+
+    ``qos`` has one profile for each publisher that was recorded; ``frames`` are the ``header.frame_id``
+    of its first messages.
+    """
+
+    name: str
+    type: str
+    messages: int
+    qos: tuple[Qos, ...] = ()
+    frames: tuple[str, ...] = ()
+
+
+class Recording(NamedTuple):
+    """What was recorded in so many seconds, with the transforms of its tf topics."""
+
+    topics: tuple[RecordedTopic, ...]
+    transforms: tuple[GraphFrame, ...]
+    seconds: float
+    caveats: tuple[Caveat, ...] = ()
+
+
+def is_recorded(graph: Snapshot) -> bool:
+    """Whether a snapshot is of a recording."""
+    return graph.environment.rmw == ROSBAG
+
+
+def as_snapshot(found: Recording, plan: Expectation | None = None) -> Snapshot:
+    """The recording as a snapshot, for the rules about frames. A transform does not say who sent it:
+    those that publish its topic by the plan."""
+    seconds = round(found.seconds, 2)
+    senders: dict[str, dict[str, None]] = defaultdict(dict)
+    for end in plan.endpoints if plan else ():
+        if end.role == PUBLISHES:
+            senders[end.name][end.node] = None
+    frames = tuple(
+        it._replace(publishers=tuple(senders.get(it.topic, it.publishers)))
+        for it in found.transforms
+    )
+    around = Environment(0, "OFF", (), ROSBAG, "", False, 0, QUIET, seconds, found.caveats)
+    return Snapshot((), tuple(_publishers(found.topics)), frames, around)
+
+
+def _publishers(topics: Iterable[RecordedTopic]) -> Iterable[GraphEndpoint]:
+    for it in topics:
+        for qos in it.qos or (None,):
+            yield GraphEndpoint(TOPIC, PUBLISHES, it.name, it.type, "", RECORDER, qos, "")
