@@ -28,7 +28,9 @@ def run(options: argparse.Namespace) -> int:
     made = graph_of(options, order)
     if plan is not None:
         return check.conclude(options, plan, made)
-    return doctor.report_on(options, diagnose(made))
+    # What doctor is told besides: there is no snapshot, and nothing to begin.
+    whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
+    return doctor.report_on(whole, diagnose(made))
 
 
 def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:

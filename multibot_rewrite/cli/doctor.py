@@ -31,7 +31,7 @@ from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.graph.watching import Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import release_here
@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         if options.watch:
             return _watch(options)
         graph = live.with_states(options, live.graph(options))
-        return report_on(options, diagnose(graph), options.snapshot, options.suggest)
+        return report_on(options, diagnose(graph))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -77,26 +77,24 @@ def _check_suggest(options: argparse.Namespace) -> None:
             raise UsageError(f"{path} is there already; name another folder with --suggest")
 
 
-def report_on(
-    options: argparse.Namespace,
-    seen: Diagnosis,
-    files: Sequence[str] = (),
-    suggest: str | None = None,
-) -> int:
-    """Say what is seen, report the findings, write what is asked for; the exit code.
-
-    ``files`` are where the graph comes from, ``suggest`` is the folder for the files of a fleet.
-    """
+def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
+    """Say what is seen, report the findings, write what is asked for; the exit code."""
     for line in survey(seen):
         note(options, line)
     findings = chosen(options, seen.findings)
-    failed = _report(options, seen, findings, files)
+    failed = _report(options, seen, findings)
     unsure = [caveat.message for caveat in doubts(seen.graph)] or list(_nothing_seen(seen.graph))
     for reason in unsure:
         say(f"incomplete: {reason}", PROGRAM)
-    _write(options, seen, findings, suggest)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
-    return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+    verdict = Verdict.WRONG if failed else inconclusive
+    _write(options, seen, findings, _outcome(verdict, unsure))
+    return _sum_up(options, len(findings), verdict)
+
+
+def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
+    words = WORDS[verdict]
+    return Outcome(verdict, words, "multibot doctor", planned=False, reasons=tuple(reasons))
 
 
 def _nothing_seen(graph: Snapshot) -> Iterator[str]:
@@ -106,25 +104,20 @@ def _nothing_seen(graph: Snapshot) -> Iterator[str]:
 
 
 def _write(
-    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], suggest: str | None
+    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
 ) -> None:
     """The pictures and the files that the options ask for."""
     if any(vars(options)[name] for name in pictures.NAMES):
-        pictures.deliver(options, seen_plan(seen), seen.graph, findings)
-    if suggest:
+        pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
+    if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))
-        paths = {os.path.join(suggest, name): text for name, text in files.items()}
+        paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
         write_files(options, [(path, text.encode()) for path, text in paths.items()])
         note(options, f"wrote {', '.join(paths)}: see {next(iter(paths))}")
 
 
-def _report(
-    options: argparse.Namespace,
-    seen: Diagnosis,
-    findings: Sequence[Finding],
-    files: Sequence[str],
-) -> bool:
-    about = About(files, by_themselves(seen.owners.robots))
+def _report(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> bool:
+    about = About(options.snapshot, by_themselves(seen.owners.robots))
     return report_first(options, findings, about)
 
 
@@ -139,8 +132,8 @@ def _watch(options: argparse.Namespace) -> int:
         note(options, "ended before anything was seen")
         return live.INCONCLUSIVE
     if options.output:
-        _report(options, diagnose(last.graph), last.findings, options.snapshot)
-    _write(options, diagnose(last.graph), last.findings, options.suggest)
+        _report(options, diagnose(last.graph), last.findings)
+    _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
     return _sum_up(options, len(last.findings), final(last))
 
 
