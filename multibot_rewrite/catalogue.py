@@ -118,6 +118,7 @@ HOMES: tuple[Home, ...] = (
             "evidence.nodes",
             "evidence.launch_findings",
             "fleets.launched_files",
+            "fleets.simulators",
             "fleets.shared_nodes",
             "fleets.closing",
             "fleets.closing_bridges",

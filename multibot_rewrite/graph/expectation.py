@@ -128,15 +128,17 @@ def expect(
     named: Mapping[str, Sequence[str]] = NOTHING,
     sources: Mapping[str, str] = NOWHERE,
     words: Mapping[str, str] = NOWHERE,
+    maybe_real: Container[str] = (),
 ) -> Expectation:
     """The plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
     ``facts`` describe the nodes that every robot runs. ``words`` has the name of a robot in its
-    frames, where that is another one than its name.
+    frames, where that is another one than its name; plugins of ``maybe_real`` robots may be missing.
     """
     known = tuple(facts)
-    nodes, optional = _nodes(table), {node.name for node in known if node.when}
+    nodes, conditional = _nodes(table), {node.name for node in known if node.when}
+    plugins = {node.node for node in table.nodes if node.home.written and node.robot in maybe_real}
     private = _private_nodes(table.names)
     always = _private_nodes(it for it in table.names if not it.endpoint.when)
     usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
@@ -147,6 +149,7 @@ def expect(
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
         made = private.get(name, ())
         full = tuple(dict.fromkeys((*(it for _, it in nodes.get(name, ())), *made)))
+        optional = conditional | plugins if name in maybe_real else conditional
         may_miss = _may_miss(nodes.get(name, ()), optional, made, always.get(name, ()))
         tag = word if word != name else ""
         tf = tf_topic(name, naming)
