@@ -46,7 +46,7 @@ class RobotSpec(NamedTuple):
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
-    something, by path.
+    something, by path. ``use_sim_time`` is what all its nodes have, None if the file does not say.
     """
 
     name: str
@@ -64,6 +64,7 @@ class RobotSpec(NamedTuple):
     line: int
     launch: tuple[LaunchOrder, ...] = ()
     filled: tuple[tuple[str, str], ...] = ()
+    use_sim_time: bool | None = None
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -232,6 +233,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         file,
         line,
         tuple(_launch(data, own, place)),
+        use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
     )
 
 

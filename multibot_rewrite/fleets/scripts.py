@@ -57,6 +57,7 @@ class LoadedRobot:
         self.model: str = spec.model
         self.tag: str = spec.tag
         self.pose: Pose | None = spec.pose
+        self.use_sim_time: bool | None = spec.use_sim_time
         namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 
