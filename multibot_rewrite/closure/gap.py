@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from multibot_rewrite.evidence.records import Place
@@ -23,3 +24,11 @@ class Gap(NamedTuple):
     near: str = ""
     near_place: Place | None = None
     at: Place | None = None
+
+
+def by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
+    """The gaps of each node that are written at one place."""
+    found: dict[object, list[Gap]] = {}
+    for it in gaps:
+        found.setdefault((it.node, it.place), []).append(it)
+    return found.values()

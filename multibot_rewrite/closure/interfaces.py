@@ -7,16 +7,16 @@ activated) and its chaining: a controller's own interfaces are called ``CONTROLL
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.evidence.claims import Claimed, claimed_twice, claims_of
-from multibot_rewrite.evidence.hardware import Exported
+from multibot_rewrite.evidence.hardware import COMMAND, Exported
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.nearest import Guesses
 from multibot_rewrite.remap.records import NodeFacts
 
-INTERFACE, TWICE = "interface", "claimed twice"
+INTERFACE, TWICE, CONTESTED = "interface", "claimed twice", "contested"
 PLACEHOLDER = re.compile(r"<|\$\(|\{")
 
 
@@ -51,6 +51,33 @@ def _beside(name: str, exports: Iterable[Exported]) -> Place | None:
     """Where another interface of the same joint, sensor or gpio is."""
     owner = name.rpartition("/")[0]
     return next((it.place for it in exports if it.name.rpartition("/")[0] == owner), None)
+
+
+def claims_any(
+    given: Iterable[GivenNode], known: Mapping[str, NodeFacts], exports: Iterable[Exported]
+) -> bool:
+    """Do the controllers claim an interface of this hardware? Else they are for another robot."""
+    there = {(it.kind, it.name) for it in exports}
+    return any((it.kind, it.name) in there for one in given for it in _claims(one, known))
+
+
+def contested_gaps(
+    given: Iterable[GivenNode], known: Mapping[str, NodeFacts], active: Collection[str]
+) -> Iterator[Gap]:
+    """Command interfaces that two controllers claim which are both ``active``: the first of each pair.
+
+    ``name`` is the interface, ``near`` the controller that claims it first.
+    """
+    first: dict[tuple[str, str], tuple[GivenNode, Place]] = {}
+    for it in (it for it in given if it.manager and it.name in active):
+        against = set()
+        for claim in (claim for claim in _claims(it, known) if claim.kind == COMMAND):
+            other, where = first.setdefault((it.manager, claim.name), (it, claim.place or it.place))
+            if other is not it and other.name not in against:
+                against.add(other.name)
+                key = (CONTESTED, it.name, other.name)
+                place = claim.place or it.place
+                yield Gap(CONTESTED, claim.name, it.name, key, place, other.name, where)
 
 
 def twice_gaps(given: Sequence[GivenNode], known: Mapping[str, NodeFacts]) -> Iterator[Gap]:

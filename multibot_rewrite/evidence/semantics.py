@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import Robot, read_robot
+from multibot_rewrite.checks.planning_groups import groups_of, joints_of, text_of
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.lint.facts.robot import Robot, read_robot
-from multibot_rewrite.lint.rules.srdf.planning_groups import groups_of, joints_of, text_of
 
 FIXED = "fixed"
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from multibot_rewrite.closure.gap import Gap
-from multibot_rewrite.closure.interfaces import interface_gaps, twice_gaps
+from multibot_rewrite.closure.gap import Gap, by_place
+from multibot_rewrite.closure.interfaces import contested_gaps, interface_gaps, twice_gaps
 from multibot_rewrite.closure.lists import list_gaps
 from multibot_rewrite.closure.moveit import moveit_gaps
 from multibot_rewrite.closure.undeclared import undeclared_gaps
@@ -33,6 +33,25 @@ _ARM = """\
     </joint>
   </ros2_control>
 </robot>
+"""
+_SPAWNED = """\
+structure:
+  nodes:
+    /controller_manager: {pkg: controller_manager, exec: ros2_control_node}
+    /spawner_one: {pkg: controller_manager, exec: spawner, args: [one]}
+    /spawner_two: {pkg: controller_manager, exec: spawner, args: [two]}
+    /spawner_three: {pkg: controller_manager, exec: spawner, args: [three, --inactive]}
+"""
+_TWO = """\
+controller_manager:
+  ros__parameters:
+    one: {{type: forward_command_controller/ForwardCommandController}}
+    two: {{type: forward_command_controller/ForwardCommandController}}
+    three: {{type: forward_command_controller/ForwardCommandController}}
+{}:
+  ros__parameters: {{joints: [elbow], interface_name: position}}
+{}:
+  ros__parameters: {{joints: [elbow], interface_name: position}}
 """
 NO_INTERFACE = declare(
     "MF811",
@@ -155,6 +174,21 @@ drive:
     line=7,
     formats=("params",),
 )
+CONTESTED = declare(
+    "MF807",
+    "interface-claimed-by-two",
+    WARNING,
+    what="A robot's launch files start two controllers active that claim the same command interface. "
+    "Without launch files such controllers count as alternatives: the plan says so, none has to run.",
+    why="An interface has one owner: the controller manager refuses to activate the second controller.",
+    fix="Spawn one of them with --inactive.",
+    bad=_TWO.format("one", "two"),
+    good=_TWO.format("one", "three"),
+    line=9,
+    formats=("params",),
+    beside={"robot.urdf": _ARM, "system_model.yaml": _SPAWNED},
+    options={"launch": "system_model.yaml"},
+)
 NOT_LISTED = declare(
     "MF819",
     "listed-name-without-parameters",
@@ -186,11 +220,17 @@ def controller_findings(
     after: System,
     known: Mapping[str, NodeFacts],
     texts: Sequence[OutputText],
+    active: Collection[str],
 ) -> Iterator[Finding]:
     """What is open in a robot's controllers and lists of parameters, before and after the rewrite;
-    ``texts`` are the files that were made."""
+    ``texts`` are the files that were made, ``active`` the controllers that launch files start so."""
     old, new = (list(interface_gaps(it.given, known, it.exports)) for it in (before, after))
     yield from _interfaces(robot, old, [in_source(it, texts) for it in new])
+    for it in contested_gaps(before.given, known, active):
+        both = f"{it.node} and {it.near} of {robot.spec.name}"
+        message = f"{both} are both started active, and claim command interface {it.name}"
+        hint = f"spawn one of them with --inactive; {it.near}: {it.near_place}"
+        yield at_gap(CONTESTED, robot, it, message, hint)
     for it in twice_gaps(before.given, known):
         message = f"{it.node} of {robot.spec.name} claims {it.name} by two parameters"
         yield at_gap(
@@ -219,19 +259,11 @@ def _interfaces(
     known = {it.key for it in before}
     rest = [it for it in after if it.key not in known]
     for level, gaps in ((WARNING, before), (ERROR, rest)):
-        for first, *more in _by_place(gaps):
+        for first, *more in by_place(gaps):
             names = f"{first.name} and {len(more)} more" if more else first.name
             claims = f"{first.node} of {robot.spec.name} claims {names}"
             message = f"{claims}, which no ros2_control exports"
             yield at_gap(NO_INTERFACE, robot, first, message, meant(first), level)
-
-
-def _by_place(gaps: Iterable[Gap]) -> Iterable[list[Gap]]:
-    """The gaps of each controller that are written at one place."""
-    found: dict[object, list[Gap]] = {}
-    for it in gaps:
-        found.setdefault((it.node, it.place), []).append(it)
-    return found.values()
 
 
 def _moveit(

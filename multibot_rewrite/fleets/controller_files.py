@@ -15,10 +15,10 @@ from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.output_file import path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.lazy import lazy_compile
-from multibot_rewrite.lint.files.packages import package_of
 from multibot_rewrite.model import Edit
 from multibot_rewrite.rewriters.insert import ESCAPES
 from multibot_rewrite.rewriters.text import text_of
+from multibot_rewrite.sources.packages import package_of
 from multibot_rewrite.steps.apply import cut
 from multibot_rewrite.steps.document import text_slot
 

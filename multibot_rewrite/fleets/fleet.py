@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
@@ -234,12 +234,21 @@ def expected(fleet: Fleet) -> Expectation:
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     tags, places = fleet.tags, fleet.sources
     plan = expect(fleet.table, fleet.naming, frames, fleet.facts, named, places, tags)
-    plan = plan._replace(origins=tuple(fleet.origins.items()))
+    plan = plan._replace(origins=tuple(fleet.origins.items()), sends=tuple(_sends(fleet)))
     nothing = vacuous(plan)
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
     return plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
+
+
+def _sends(fleet: Fleet) -> Iterator[tuple[str, str]]:
+    """By full name: the transforms that a node's parameters name."""
+    described = {it.name for it in fleet.facts if it.package == STATE_PUBLISHER}
+    for it in fleet.table.nodes:
+        edges = fleet.edges.get((it.robot, it.node), ())
+        if edges and it.node not in described:
+            yield it.full_name, ", ".join(f"{edge.parent} -> {edge.child}" for edge in edges)
 
 
 def possible(fleet: Fleet) -> tuple[PlannedEndpoint, ...]:

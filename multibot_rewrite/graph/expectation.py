@@ -83,7 +83,8 @@ class Expectation(NamedTuple):
     own how it gets rules (``remap.ways``), and from which node, if it is in the process of one.
     ``topics`` say more of some topics; of each group in ``one_of`` one node runs, and not more.
     ``gaps`` are findings about what is open in the robots as they are planned: a name that is read
-    and not sent, for example.
+    and not sent, for example. ``sends`` has for a node the transforms that it sends, but for those of
+    the description, as ``odom -> base_link, map -> odom``.
     """
 
     layout: str
@@ -100,6 +101,7 @@ class Expectation(NamedTuple):
     topics: tuple[PlannedTopic, ...] = ()
     one_of: tuple[tuple[str, ...], ...] = ()
     gaps: tuple[Finding, ...] = ()
+    sends: tuple[tuple[str, str], ...] = ()
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:

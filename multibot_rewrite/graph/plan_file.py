@@ -22,7 +22,8 @@ HEAD = """\
 # Take out what is not started, add what is: `multibot check` compares exactly this.
 # optional: nodes that may be missing. other_frames: frames that may come besides. ignored_nodes:
 # patterns of nodes that may come and go, beside the usual tools. sources: the plugin that starts a
-# node. from: the file or stack that names a node. distro: the ROS 2 release that the nodes are of.
+# node. from: the file or stack that names a node. sends: the transforms that a node sends, but for
+# those of its description. distro: the ROS 2 release that the nodes are of.
 # spelled: what stands for a robot in its frames, where that is not its name. More can be said of a
 # topic, `topics: {/robot1/cmd_vel: {senders: [/robot1/twist_mux], one_sender: true,
 # qos: {durability: transient_local}}}`, and of nodes of which one runs, `one_of: [[/a, /b]]`.

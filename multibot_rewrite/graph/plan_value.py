@@ -26,7 +26,7 @@ TOPIC_KEYS = ("senders", "one_sender", "qos", "bridge", "type")
 # Policies whose value is a word.
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
-BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways"}
+BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways", "sends": "sends"}
 OPEN = "open"
 OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
@@ -89,7 +89,9 @@ def from_value(value: object, file: str) -> Expectation:
         robot, ends = _read_robot(str(name), given, file)
         robots.append(robot)
         endpoints += ends
-    sources, origins, ways = (tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE)
+    sources, origins, ways, sends = (
+        tuple(_by_node(top.get(key, {}), file, key)) for key in BY_NODE
+    )
     plan = Expectation(
         str(top["layout"]),
         tuple(robots),
@@ -105,6 +107,7 @@ def from_value(value: object, file: str) -> Expectation:
         tuple(_read_topics(top.get("topics", {}), file)),
         tuple(_read_groups(top.get("one_of", []), file)),
         tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
+        sends,
     )
     nothing = vacuous(plan)
     if nothing:

@@ -19,7 +19,7 @@ from multibot_rewrite.launch.substitutions import FILE, as_value, substitution_c
 
 COMPONENT = "multibot_composable_node"
 # launch knows typing.List[...], and not list[...].
-_SEVERAL: Any = import_module("typing").List
+_SEVERAL: Any = vars(import_module("typing"))["List"]
 Parsed = tuple[Any, dict[str, Any]]
 
 
@@ -134,8 +134,7 @@ def _component(entity: Any, parser: Any) -> dict[str, Any]:
 
 def _nested(entity: Any, word: str) -> list[Any]:
     """The elements of this name in an element."""
-    # launch does not know list[...].
-    several = list.__getitem__(of_launch("frontend").Entity)
+    several = _SEVERAL[of_launch("frontend").Entity]
     return entity.get_attr(word, data_type=several, optional=True) or []
 
 

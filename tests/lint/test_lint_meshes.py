@@ -8,7 +8,7 @@ import pytest
 
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.files import packages
+from multibot_rewrite.sources import packages
 
 
 def manifest(folder: Path, name: str) -> Path:

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 from lxml import etree
 
+from multibot_rewrite.checks.links_and_joints import loops, read_robot
+from multibot_rewrite.checks.numbers import number, vector
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.lint.check import lint_file
 from multibot_rewrite.lint.config.settings import Settings
-from multibot_rewrite.lint.facts.numbers import number, vector
-from multibot_rewrite.lint.facts.robot import loops, read_robot
 from multibot_rewrite.lint.registry import RULES
 
 GROUP = Settings(select=("MB5",))

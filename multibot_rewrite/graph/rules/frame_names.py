@@ -10,8 +10,10 @@ from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.causes import tf_rule
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
+from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes
 from multibot_rewrite.graph.rules.ownership import SEPARATORS, without_tag_once
 from multibot_rewrite.graph.rules.similar_names import similar
+from multibot_rewrite.graph.rules.tf_senders import state_publisher
 from multibot_rewrite.graph.rules.tf_trees import TfTree, frames_in
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
@@ -151,12 +153,16 @@ def undeclared_frame(view: View) -> Iterator[Finding]:
     """A frame that a driver adds below its sensor's link is none."""
     for tree in view.trees:
         children = {edge.child: edge for edge in tree.edges}
-        found: dict[str, list[str]] = defaultdict(list)
-        for robot, name in _not_in_a_description(view, tree, children):
-            own = name in children and not _of_a_sensor(view, robot, name, children)
-            if own and not _has_name_twice(view, view.robots[robot], name):
-                found[robot].append(name)
-        yield from (_undeclared(view, view.robots[robot], it) for robot, it in found.items())
+        for robot, names in _not_in_a_description(view, tree, children).items():
+            prefixed = added_prefixes(view.robots[robot], names)
+            found = [
+                name
+                for name in names
+                if name in children and not _of_a_sensor(view, robot, name, children)
+                if name not in prefixed and not _has_name_twice(view, view.robots[robot], name)
+            ]
+            if found:
+                yield _undeclared(view, view.robots[robot], found)
 
 
 def _undeclared(view: View, robot: PlannedRobot, names: Sequence[str]) -> Finding:
@@ -195,7 +201,8 @@ def _first_word(view: View, frame: str, robot: str) -> str:
     "MG206",
     "robot-name-twice",
     ERROR,
-    what="A frame has the robot's name twice, or has it although the layout does not add it.",
+    what="A frame has the robot's name twice, has it although the layout does not add it, or has a"
+    " prefix in front that the plan does not have.",
     why="No other node uses that frame: every tf lookup fails.",
     fix="Leave `frame_prefix` empty, and set `tf_frame_prefix_enable: false`.",
     bad="""\
@@ -212,21 +219,38 @@ def robot_name_twice(view: View) -> Iterator[Finding]:
     """Parents and children."""
     for tree in view.trees:
         children = {edge.child: edge for edge in tree.edges}
-        found: dict[str, list[str]] = defaultdict(list)
-        for robot, name in _not_in_a_description(view, tree, children):
-            if _has_name_twice(view, view.robots[robot], name):
-                found[robot].append(name)
-        yield from (_doubled(view, view.robots[robot], it) for robot, it in found.items())
+        for name, names in _not_in_a_description(view, tree, children).items():
+            robot = view.robots[name]
+            twice = [it for it in names if _has_name_twice(view, robot, it)]
+            if twice:
+                yield _doubled(view, robot, twice)
+            prefixed = added_prefixes(robot, names)
+            others = [it for it in prefixed if it not in twice]
+            if others:
+                yield _prefixed(robot, others, prefixed[others[0]])
 
 
 def _not_in_a_description(
     view: View, tree: TfTree, children: Mapping[str, GraphFrame]
-) -> Iterator[tuple[str, str]]:
-    """The frames of a tree that are a robot's and not in its description, with the robot."""
+) -> dict[str, list[str]]:
+    """By robot: the frames of a tree that are its own and not in its description."""
+    found: dict[str, list[str]] = defaultdict(list)
     for name in frames_in(tree):
         robot = _robot_without_frame(view, tree, name, children)
         if robot:
-            yield robot, name
+            found[robot].append(name)
+    return found
+
+
+def _prefixed(robot: PlannedRobot, names: Sequence[str], prefix: str) -> Finding:
+    verb = "is" if len(names) == 1 else "are"
+    what = f"{_frames(names).rpartition(' ')[0]} {verb}"
+    message = f"{what} planned without {prefix!r} in front"
+    sender = state_publisher(robot) or f"the robot_state_publisher of {robot.name}"
+    cause = (
+        f"frame_prefix of {sender} is {prefix!r}, on top of a rewritten description: set it to ''"
+    )
+    return robot_name_twice.finding(message, cause, robot=robot.name, names=tuple(names))
 
 
 def _doubled(view: View, robot: PlannedRobot, names: Sequence[str]) -> Finding:

@@ -9,13 +9,15 @@ from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
+from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes
 from multibot_rewrite.graph.rules.name_variants import name_variants
+from multibot_rewrite.graph.rules.silent_topics import silent_topics
+from multibot_rewrite.graph.rules.tf_causes import JOINT_STATES
+from multibot_rewrite.graph.rules.tf_senders import described_robots, sent_by_robot, state_publisher
 from multibot_rewrite.graph.rules.tf_trees import frames_in
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
-from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
-
-JOINT_STATES = "sensor_msgs/msg/JointState"
+from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
 
 @graph_rule(
@@ -46,13 +48,14 @@ def frame_not_received(view: View) -> Iterator[Finding]:
     """One finding for a robot whose senders all run. Where no transform was received at all, tf may
     not have been looked at."""
     senders = _senders(view) if view.graph.frames else {}
-    trees = _trees_of(view)
+    trees, strays = _trees_of(view), _strays(view)
     for robot in view.plan.robots:
         needed = senders.get(robot.name, set()) - view.may_miss
         if not needed or not needed <= view.seen.keys():
             continue
         heard = trees.get(robot.name, ())
-        missing = [it for it in robot.frames if not _is_heard(view, robot, it, heard)]
+        prefixes = set(added_prefixes(robot, strays.get(robot.name, ())).values())
+        missing = [it for it in robot.frames if not _is_heard(view, robot, it, heard, prefixes)]
         if missing:
             yield _not_received(view, robot, missing)
 
@@ -83,11 +86,31 @@ def _trees_of(view: View) -> Mapping[str, list[Set[str]]]:
     return found
 
 
-def _is_heard(view: View, robot: PlannedRobot, frame: str, heard: Sequence[Set[str]]) -> bool:
+def _strays(view: View) -> Mapping[str, list[str]]:
+    """By robot: frames that are not planned and are its own by name, or by the topic."""
+    ownership = view.frame_ownership
+    found: dict[str, list[str]] = defaultdict(list)
+    for tree in view.trees:
+        home = tree.home[0] if len(tree.home) == 1 else ""
+        for name in frames_in(tree):
+            if name not in ownership.exact:
+                found[ownership.robot(name) or home].append(name)
+    return found
+
+
+def _is_heard(
+    view: View,
+    robot: PlannedRobot,
+    frame: str,
+    heard: Sequence[Set[str]],
+    prefixes: Set[str],
+) -> bool:
+    """Under its name, or under a wrong one, which has a finding of its own."""
     if any(frame in frames for frames in heard):
         return True
     plain = view.frame_ownership.without_robot(frame, robot.name)
     variants = [*name_variants(plain, frame, view.frame_ownership.tag(robot.name))]
+    variants += [f"{prefix}{frame}" for prefix in prefixes]
     return any(not frames.isdisjoint(variants) for frames in heard)
 
 
@@ -100,20 +123,20 @@ def _not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> Fi
 
 
 def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> str:
-    if len(missing) == len(robot.frames):
-        publisher = next((it for it in robot.nodes if STATE_PUBLISHER in it), STATE_PUBLISHER)
-        return f"has {publisher} the description of {robot.name}, or that of another robot?"
-    silent = next(_silent_joint_states(view, robot), "")
+    silent = min(silent_topics(view, robot, JOINT_STATES), default="")
     if silent:
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"
         return f"nothing publishes {silent}: is {source} started for {robot.name}?"
+    sent = sent_by_robot(view, robot)
+    described = set(robot.frames).difference(*(it[1:] for it in sent))
+    if described and described.issubset(missing):
+        publisher = state_publisher(robot) or STATE_PUBLISHER
+        whose = next(described_robots(view, robot), "")
+        if whose:
+            return f"{publisher} has the description of {whose}, whose transforms it sends"
+        return f"has {publisher} the description of {robot.name}, or that of another robot?"
+    unsent = [it for it in sent if not set(it[1:]).isdisjoint(missing)]
+    if unsent:
+        first = unsent[0]
+        return f"by the plan {first.node} sends {first}: has it the parameters of {robot.name}?"
     return "which node sends it? is its joint in the joint states, is its plugin loaded?"
-
-
-def _silent_joint_states(view: View, robot: PlannedRobot) -> Iterator[str]:
-    """The topics of joint states that the robot reads and nothing publishes."""
-    for node, kind, role, name in view.planned:
-        type_ = view.planned[node, kind, role, name].type if role == SUBSCRIBES else ""
-        own = type_ == JOINT_STATES and view.robot_of.get(node) == robot.name
-        if own and name not in view.published_topics:
-            yield name

@@ -10,7 +10,8 @@ from multibot_rewrite.graph.expectation import PlannedRobot
 from multibot_rewrite.graph.rules.causes import Cause, caused, plugin_of, tf_rule
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.rules.name_variants import name_variants
+from multibot_rewrite.graph.rules.tf_causes import why_disconnected
+from multibot_rewrite.graph.rules.tf_senders import planned_transforms, senders_there
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
@@ -45,10 +46,19 @@ def two_parents(view: View) -> Iterator[Finding]:
             if len(found) > 1:
                 both = " and ".join(sorted(found))
                 message = f"frame {child} on {tree.topic} has the parents {both}"
-                cause = "two nodes send it, or two robots share its name; publishers of the topic: "
-                cause += shorten(_senders(tree)) or "none any more"
                 robot = _robot_of_frame(view, tree, child)
+                cause = _why_two_parents(view, tree, robot, child)
                 yield two_parents.finding(message, cause, robot=robot, names=(child,))
+
+
+def _why_two_parents(view: View, tree: TfTree, robot: str, child: str) -> str:
+    """By the plan one of the two is right; the robot's own nodes are the first that may be wrong."""
+    planned = [it for it in planned_transforms(view.plan) if it.child == child]
+    found = senders_there(tree, robot, dict.fromkeys(it.node for it in planned))
+    cause = "two nodes send it, or two robots share its name; "
+    if planned:
+        cause += f"by the plan {planned[0].node} sends {planned[0]}; "
+    return f"{cause}publishers of the topic: {shorten(found) or 'none any more'}"
 
 
 def _senders(tree: TfTree) -> list[str]:
@@ -86,14 +96,13 @@ def disconnected_tf_tree(view: View) -> Iterator[Finding]:
     """On the robot's own tf topic."""
     for tree in view.trees:
         parent_of: dict[str, dict[str, str]] = defaultdict(dict)
-        children = {edge.child for edge in tree.edges}
         for edge in tree.edges:
             for robot in _robots_at_home(view, tree, edge):
                 parent_of[robot][edge.child] = edge.parent
         for robot, parents in parent_of.items():
             roots = sorted({parent for parent in parents.values() if parent not in parents})
             if len(roots) > 1:
-                yield _disconnected(view, children, view.robots[robot], roots)
+                yield _disconnected(view, view.robots[robot], roots)
 
 
 def _robots_at_home(view: View, tree: TfTree, edge: GraphFrame) -> Set[str]:
@@ -108,23 +117,12 @@ def _robot_at_home(view: View, tree: TfTree, frame: str) -> str:
     return robot if robot and tree_topic(view.robots[robot].tf) == tree.topic else ""
 
 
-def _disconnected(
-    view: View, children: Set[str], robot: PlannedRobot, roots: Sequence[str]
-) -> Finding:
+def _disconnected(view: View, robot: PlannedRobot, roots: Sequence[str]) -> Finding:
     message = f"the tf tree of {robot.name} has {len(roots)} roots: {', '.join(roots)}"
-    cause = (
-        "a transform between them is missing: no joint_states for a moving joint, no odometry, "
-        "no localization, or a frame has another name on one side"
+    cause = why_disconnected(view, robot, roots)
+    return disconnected_tf_tree.finding(
+        message, **cause._asdict(), robot=robot.name, names=tuple(roots)
     )
-    ownership = view.frame_ownership
-    for root in roots:
-        plain = ownership.without_robot(root, robot.name)
-        variants = name_variants(plain, root, ownership.tag(robot.name))
-        # Under one of these names the root is in the tree.
-        other = next((name for name in variants if name in children), "")
-        if other:
-            cause = f"{other} and {root} are one frame with two names: see the other findings"
-    return disconnected_tf_tree.finding(message, cause, robot=robot.name, names=tuple(roots))
 
 
 @graph_rule(

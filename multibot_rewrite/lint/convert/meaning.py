@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.numbers import number
 from multibot_rewrite.lint.convert.capsules import capsules, ends_of
 from multibot_rewrite.lint.convert.pose import ROTATIONS, pose_of
 from multibot_rewrite.lint.convert.rotation import NO_ROTATION, SAME, matrix_of_quaternion
-from multibot_rewrite.lint.facts.numbers import number
 
 _IDENTITY = matrix_of_quaternion(NO_ROTATION)
 _UNREAD = {"origin": ("xyz", *ROTATIONS), "robot": ("version",)}

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.numbers import Vector, numbers, vector
 from multibot_rewrite.lint.convert.rotation import (
     Matrix,
     Quaternion,
     matrix_of_quaternion,
     quaternion_of_rpy,
 )
-from multibot_rewrite.lint.facts.numbers import Vector, numbers, vector
 
 ZERO = "0 0 0"
 ROTATIONS = ("rpy", "quat_xyzw")

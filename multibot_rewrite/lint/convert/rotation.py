@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from math import atan2, cos, hypot, isfinite, sin, sqrt
 
-from multibot_rewrite.lint.facts.numbers import Vector
+from multibot_rewrite.checks.numbers import Vector
 
 Quaternion = tuple[float, float, float, float]
 Matrix = tuple[Vector, Vector, Vector]

@@ -10,14 +10,14 @@ from glob import escape, glob
 from io import StringIO
 from typing import NamedTuple
 
+from multibot_rewrite.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.settings import Settings, matches
-from multibot_rewrite.lint.facts.robot import Robot, read_robot
-from multibot_rewrite.lint.files.packages import package_folder
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach
+from multibot_rewrite.sources.packages import package_folder
 from multibot_rewrite.sources.read import read_file
 from multibot_rewrite.steps.collect import NOTHING, Inventory, collect
 from multibot_rewrite.steps.document import read_document

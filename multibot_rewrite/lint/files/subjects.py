@@ -11,17 +11,17 @@ from typing import NamedTuple
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import read_robot
 from multibot_rewrite.findings.rule import SRDF, URDF, XACRO
 from multibot_rewrite.lint.config.settings import ArgumentSet, Settings, matches
 from multibot_rewrite.lint.facts.elements import Elements
-from multibot_rewrite.lint.facts.robot import read_robot
-from multibot_rewrite.lint.files.packages import package_folder
 from multibot_rewrite.lint.files.pairing import SRDF_MARK, find_pair, reach_of
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.schema.faults import read_faults
 from multibot_rewrite.model import InputError
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
+from multibot_rewrite.sources.packages import package_folder
 from multibot_rewrite.steps.collect import NOTHING, collect
 from multibot_rewrite.steps.collect import SRDF as SRDF_SECTION
 from multibot_rewrite.steps.document import Document, read_document

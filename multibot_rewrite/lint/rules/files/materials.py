@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from lxml import etree
 
+from multibot_rewrite.checks.numbers import numbers
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.facts.numbers import numbers
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.nearest import Guesses
 

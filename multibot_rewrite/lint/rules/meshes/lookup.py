@@ -12,10 +12,10 @@ from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.files.packages import entries, find_in, package_folders
 from multibot_rewrite.lint.files.subjects import EXPANDED
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.meshes.shared import MESH, Used, problem, used_files
+from multibot_rewrite.sources.packages import entries, find_in, package_folders
 
 
 class Lookup(NamedTuple):

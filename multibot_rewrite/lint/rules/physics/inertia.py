@@ -7,11 +7,11 @@ from math import hypot, sqrt
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import MOMENTS
+from multibot_rewrite.checks.numbers import vector
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.facts.numbers import vector
-from multibot_rewrite.lint.facts.robot import MOMENTS
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.physics.moments import fault_of, impossible, is_negative
 from multibot_rewrite.lint.rules.physics.shared import (

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.links_and_joints import WORLD, Link, Robot, reached
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.facts.robot import WORLD, Link, Robot, reached
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_joint, a_link, block
 from multibot_rewrite.lint.rules.physics.shared import (

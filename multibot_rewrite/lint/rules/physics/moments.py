@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import acos, cos, pi, sqrt
 
-from multibot_rewrite.lint.facts.numbers import Vector
-from multibot_rewrite.lint.facts.robot import WORLD, Inertial, Link, Robot
+from multibot_rewrite.checks.links_and_joints import WORLD, Inertial, Link, Robot
+from multibot_rewrite.checks.numbers import Vector
 from multibot_rewrite.lint.rules.physics.shared import NOTHING, inertials, parts_with_mass
 
 # Relative; CAD programs print four digits and more.

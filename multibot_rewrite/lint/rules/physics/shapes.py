@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.numbers import Vector, vector
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
 from multibot_rewrite.lint.facts.elements import Elements
 from multibot_rewrite.lint.facts.memo import memoized
-from multibot_rewrite.lint.facts.numbers import Vector, vector
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.physics.shared import (
     BOX,

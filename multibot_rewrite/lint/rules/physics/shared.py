@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.facts.numbers import numbers
-from multibot_rewrite.lint.facts.robot import Inertial, Link, Robot
+from multibot_rewrite.checks.links_and_joints import Inertial, Link, Robot
+from multibot_rewrite.checks.numbers import numbers
 from multibot_rewrite.lint.rules.examples import a_joint, block
 
 # What MuJoCo takes for nothing (mjMINVAL).

@@ -1,5 +1,13 @@
 """MB2: names that nothing declares, or that are declared twice."""
 
-from multibot_rewrite.lint.rules.references import control, duplicates, frames, gazebo, undeclared
+from multibot_rewrite.lint.rules.references import (
+    control,
+    controllers,
+    duplicates,
+    frames,
+    gazebo,
+    transforms,
+    undeclared,
+)
 
-THEMES = (undeclared, frames, duplicates, gazebo, control)
+THEMES = (undeclared, frames, duplicates, gazebo, control, controllers, transforms)

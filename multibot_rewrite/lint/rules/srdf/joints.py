@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.links_and_joints import Robot
+from multibot_rewrite.checks.planning_groups import text_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
-from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.srdf.planning_groups import text_of
 from multibot_rewrite.lint.rules.srdf.shared import ARM, VIRTUAL, srdf_rule
 from multibot_rewrite.nearest import nearest
 

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.checks.planning_groups import text_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import NOTE, WARNING
-from multibot_rewrite.lint.facts.robot import Joint, Robot
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.references.lookup import undeclared
-from multibot_rewrite.lint.rules.srdf.planning_groups import text_of
 from multibot_rewrite.lint.rules.srdf.shared import APART, ARM, SHOWN, srdf_rule
 
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from multibot_rewrite.checks.planning_groups import chain, groups_of, links_of, text_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.srdf.planning_groups import chain, groups_of, links_of, text_of
 from multibot_rewrite.lint.rules.srdf.shared import ARM, ELEMENTS, srdf_rule
 
 

@@ -7,11 +7,11 @@ from math import isfinite
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import Joint
+from multibot_rewrite.checks.planning_groups import groups_of, joints_of, text_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, WARNING
-from multibot_rewrite.lint.facts.robot import Joint
 from multibot_rewrite.lint.records import Subject
-from multibot_rewrite.lint.rules.srdf.planning_groups import groups_of, joints_of, text_of
 from multibot_rewrite.lint.rules.srdf.shared import STATE, srdf_rule
 
 # How many numbers a joint's state has; other types have one.

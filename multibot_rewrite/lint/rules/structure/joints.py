@@ -8,11 +8,11 @@ from math import hypot
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.checks.numbers import vector
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.facts.numbers import vector
-from multibot_rewrite.lint.facts.robot import Joint, Robot
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     LIMIT,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from multibot_rewrite.checks.links_and_joints import Robot
+from multibot_rewrite.checks.numbers import value_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.facts.numbers import value_of
-from multibot_rewrite.lint.facts.robot import Robot
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.examples import a_joint, a_link
 from multibot_rewrite.lint.rules.structure.shared import (

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from lxml.etree import _Element
 
+from multibot_rewrite.checks.links_and_joints import Joint, Robot
+from multibot_rewrite.checks.numbers import value_of
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING
 from multibot_rewrite.findings.rule import rule
-from multibot_rewrite.lint.facts.numbers import value_of
-from multibot_rewrite.lint.facts.robot import Joint, Robot
 from multibot_rewrite.lint.records import Subject
 from multibot_rewrite.lint.rules.structure.shared import (
     BOUNDED,

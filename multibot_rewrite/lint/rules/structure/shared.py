@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.facts.robot import Joint, Robot
+from multibot_rewrite.checks.links_and_joints import Joint, Robot
 from multibot_rewrite.lint.rules.examples import a_joint, a_link
 
 TYPES = ("fixed", "revolute", "continuous", "prismatic", "floating", "planar")

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.facts.robot import Joint, Robot
+from multibot_rewrite.checks.links_and_joints import Joint, Robot
 
 Groups = Mapping[str, _Element]
 

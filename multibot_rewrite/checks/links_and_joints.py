@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeVar
 
 from lxml.etree import _Element
 
-from multibot_rewrite.lint.facts.numbers import number, value_of
+from multibot_rewrite.checks.numbers import number, value_of
 
 MOMENTS = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WORLD = "world"

@@ -1,0 +1,136 @@
+"""Interfaces that controllers claim, in the file of their parameters that belongs to a description."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from lxml.etree import _Element
+
+from multibot_rewrite.checks.problem import Problem
+from multibot_rewrite.findings.finding import WARNING
+from multibot_rewrite.findings.rule import rule
+from multibot_rewrite.lazy import lazy_compile
+from multibot_rewrite.lint.records import Subject
+from multibot_rewrite.lint.rules.examples import block
+from multibot_rewrite.lint.rules.references.shared import ARM, a_system
+from multibot_rewrite.model import InputError
+from multibot_rewrite.rewriters.text import text_of
+from multibot_rewrite.sources.packages import entries, find_in, package_folder
+from multibot_rewrite.sources.read import read_file
+
+if TYPE_CHECKING:
+    from multibot_rewrite.closure.gap import Gap
+
+_IN_PACKAGE = lazy_compile(r"(?:\$\(find(?:-pkg-share)?\s+([^)\s]+)\)|package://([^/]+))/(.+)")
+_YAML = (".yaml", ".yml")
+_BESIDE = "controllers"
+_LOADS = block(
+    "<gazebo>",
+    block(
+        '<plugin name="gz_ros2_control::GazeboSimROS2ControlPlugin" '
+        'filename="gz_ros2_control-system">',
+        "<parameters>controllers.yaml</parameters>",
+    ),
+)
+_VELOCITY = block('<joint name="j">', '<command_interface name="velocity"/>')
+_POSITION = block('<joint name="j">', '<command_interface name="position"/>')
+
+
+@rule(
+    "MB229",
+    "claimed-interface",
+    WARNING,
+    what="A controller claims an interface that no <ros2_control> exports, or the same one twice. Its "
+    "parameters are in the file that the description loads, or, if it loads none, in the one file "
+    "called *controllers*.yaml in its folder.",
+    why="The controller manager does not activate a controller whose interfaces do not exist.",
+    fix="Name an interface that the description has, or add it to the <ros2_control>.",
+    bad=ARM + a_system(_VELOCITY) + _LOADS,
+    good=ARM + a_system(_POSITION) + _LOADS,
+    line=13,
+    beside={
+        "controllers.yaml": "controller_manager:\n  ros__parameters:\n    forward: "
+        "{type: forward_command_controller/ForwardCommandController}\nforward:\n  ros__parameters: "
+        "{joints: [j], interface_name: position}\n"
+    },
+)
+def claimed_interface(subject: Subject) -> Iterator[Problem]:
+    """Controllers of each file that belongs to a description with a ``<ros2_control>``."""
+    systems = subject.elements.tops("ros2_control")
+    if not systems:
+        return
+    for element, path, is_sure in _files(subject, systems[0]):
+        at = "" if element.tag == "parameters" else None
+        for message, hint in _found_in(subject, path, is_sure):
+            yield Problem(element, message, at, hint)
+
+
+def _missing(gap: Gap, more: int, expanded: bool) -> tuple[str, str]:
+    names = f"{gap.name} and {more} more" if more else gap.name
+    # Lines of an expanded xacro are in no file.
+    line = f" (line {gap.near_place.line})" if gap.near_place and not expanded else ""
+    near = f"did you mean {gap.near}{line}?" if gap.near else ""
+    message = f"{_at(gap)}: {gap.node} claims {names}, which no <ros2_control> exports"
+    return message, near or "name an interface that is there, or add it"
+
+
+def _at(gap: Gap) -> str:
+    return f"{os.path.basename(gap.place.file)}:{gap.place.line}" if gap.place else gap.node
+
+
+def _files(subject: Subject, system: _Element) -> Iterator[tuple[_Element, str, bool]]:
+    """Each file of controllers, where it is named, and whether it is surely this robot's."""
+    named = [
+        element
+        for host in subject.inventory.hosts
+        if host.node.section and host.node.section.process_wide
+        for element in host.element.iterchildren("parameters")
+    ]
+    for element in named:
+        path = _found(subject, text_of(element))
+        if path.endswith(_YAML) and os.path.isfile(path):
+            yield element, path, True
+    if not named:
+        folder = os.path.dirname(os.path.abspath(subject.document.file))
+        beside = [it for it in entries(folder) if _BESIDE in it and it.endswith(_YAML)]
+        if len(beside) == 1:
+            yield system, os.path.join(folder, beside[0]), False
+
+
+def _found(subject: Subject, text: str) -> str:
+    """The path of a file as it is named; empty if its package is not there."""
+    file = subject.document.file
+    named = _IN_PACKAGE.fullmatch(text)
+    if not named:
+        return os.path.join(os.path.dirname(file), text.removeprefix("file://"))
+    folder = package_folder(named[1] or named[2], file, subject.settings.roots)
+    below = find_in(folder, named[3]) if folder else ""
+    return os.path.join(folder, below) if below else ""
+
+
+def _found_in(subject: Subject, path: str, is_sure: bool) -> Iterator[tuple[str, str]]:
+    """Message and hint for what controllers claim and the description lacks."""
+    # Most descriptions have no such file, and a lint of them loads nothing of this.
+    from multibot_rewrite.closure.gap import by_place
+    from multibot_rewrite.closure.interfaces import claims_any, interface_gaps, twice_gaps
+    from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+    from multibot_rewrite.companions.yaml_text import read_yaml
+    from multibot_rewrite.evidence.hardware import exported
+    from multibot_rewrite.evidence.parameter_files import given_nodes
+    from multibot_rewrite.remap.stacks import load_nodes
+
+    release, document = subject.settings.distro, subject.document
+    try:
+        given = given_nodes([read_yaml(read_file(path), path)], load_known_nodes("", release))
+    except InputError:
+        # It is said where the file itself is read.
+        return
+    known, exports = load_nodes(release), tuple(exported(document.root, document.file))
+    if not is_sure and not claims_any(given, known, exports):
+        return
+    for first, *more in by_place(interface_gaps(given, known, exports)):
+        yield _missing(first, len(more), bool(subject.origins))
+    for it in twice_gaps(given, known):
+        yield f"{_at(it)}: {it.node} claims {it.name} twice", "name another joint in one of them"
