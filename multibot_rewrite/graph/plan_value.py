@@ -15,6 +15,7 @@ from multibot_rewrite.graph.expectation import (
     vacuous,
 )
 from multibot_rewrite.graph.plan_gaps import gap_value, read_gaps
+from multibot_rewrite.graph.plan_states import read_states, state_value
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
@@ -27,8 +28,8 @@ TOPIC_KEYS = ("senders", "one_sender", "qos", "bridge", "type")
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
 BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways", "sends": "sends"}
-OPEN = "open"
-OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", *BY_NODE, OPEN)
+OPEN, STATES = "open", "states"
+OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", STATES, *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -52,6 +53,7 @@ def value_of(plan: Expectation) -> dict[str, object]:
     more = {
         "topics": {it.name: _topic_value(it) for it in plan.topics},
         "one_of": plan.one_of,
+        STATES: {it.node: own for it in plan.states if (own := state_value(it))},
         **{key: dict(getattr(plan, field)) for key, field in BY_NODE.items()},
         OPEN: [gap_value(it) for it in plan.gaps],
     }
@@ -108,6 +110,7 @@ def from_value(value: object, file: str) -> Expectation:
         tuple(_read_groups(top.get("one_of", []), file)),
         tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
         sends,
+        tuple(read_states(top.get(STATES), file)),
     )
     nothing = vacuous(plan)
     if nothing:
