@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
@@ -37,16 +37,18 @@ NO_NAME = "the launch file gives it no name"
 
 class Programs(NamedTuple):
     """Executables whose node is known under another word, those whose node has another name, and those
-    that are no node of a robot."""
+    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs."""
 
     nodes: Mapping[str, str]
     names: Mapping[str, str]
     passing: Collection[str]
+    simulators: Collection[str]
 
 
 class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, the controllers that are spawned by theirs, if that is all that runs, and findings."""
+    its name, the controllers that are spawned by theirs, if that is all that runs, findings, and if
+    they start a simulator, or what is for one."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[GivenNode, ...]
@@ -54,6 +56,7 @@ class Launched(NamedTuple):
     spawned: Mapping[str, Spawned]
     whole: bool
     findings: tuple[Finding, ...]
+    simulated: bool = False
 
 
 class _Pair(NamedTuple):
@@ -67,7 +70,9 @@ def programs() -> Programs:
     """Those of ``launch_programs.yaml``."""
     text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
     data = load_yaml(text)
-    return Programs(data["nodes"], data["names"], frozenset(data["passing"]))
+    return Programs(
+        data["nodes"], data["names"], frozenset(data["passing"]), frozenset(data["simulators"])
+    )
 
 
 def with_launched(
@@ -80,7 +85,7 @@ def with_launched(
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
     graph = graph._replace(notes=(*graph.notes, *notes))
-    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
+    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
@@ -101,6 +106,7 @@ def with_launched(
         {_stripped(it.full_name.strip("/"), words): it for it in spawned},
         graph.whole,
         tuple(launch_findings(graph, unknown, left)),
+        any(it.package in programs().simulators for it in graph.nodes),
     )
 
 
@@ -121,7 +127,8 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
             yield it
 
 
-def _passes(it: LaunchedNode) -> bool:
+def passes(it: LaunchedNode) -> bool:
+    """Does the program do its work and end, or is it a simulator?"""
     program = f"{it.package}/{it.executable}"
     return not it.package or is_spawner(it) or program in programs().passing
 
@@ -132,7 +139,7 @@ def _pair(
     known: Mapping[str, NodeFacts],
     words: Collection[str],
 ) -> _Pair:
-    base = _base(it, stack, known)
+    base = known_node(it, stack, known)
     own = programs().names.get(f"{it.package}/{it.executable}") or (base.name if base else "")
     name = it.name or own or it.executable.rpartition(":")[2]
     facts = base or NodeFacts(name, it.package, ())
@@ -150,7 +157,7 @@ def _pair(
     return _Pair(it, found, base is not None)
 
 
-def _base(
+def known_node(
     it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
     """What is known of a node: by its name in a stack, else by its package and executable."""
@@ -211,7 +218,7 @@ def _controllers(
     places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
     for manager, texts in texts_of(spawned, own):
         above = _stripped(manager.strip("/"), words)
-        documents = [_document(it) for it in texts if _has_sections(it)]
+        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
         found: dict[str, GivenNode] = {}
         for it in given_nodes(documents, parameters):
             name = _stripped(it.name, words)
@@ -237,8 +244,8 @@ def _given(
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
     # launch_ros gives a component the values of a file without such a key; it names no node.
-    files_ = (it for it in pair.node.parameters if _has_sections(it))
-    documents = [_document(it) for it in (first, *files_)]
+    files_ = (it for it in pair.node.parameters if has_sections(it))
+    documents = [document_of(it.file, it.text) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
         mine = without_robot(it, words)
@@ -266,22 +273,27 @@ def _stripped(name: str, words: Collection[str]) -> str:
     return rest if slash and above in words else name
 
 
-def _has_sections(it: ParameterText) -> bool:
+def has_sections(it: ParameterText) -> bool:
+    """Is it a parameter file with sections of nodes?"""
     try:
-        return any(True for _ in raw_sections(_document(it)))
+        return any(True for _ in raw_sections(document_of(it.file, it.text)))
     except InputError:
         return False
 
 
-def _document(it: ParameterText) -> YamlText:
-    return read_yaml(it.text.encode(), it.file or _OWN)
+@lru_cache(maxsize=64)
+def document_of(file: str, text: str) -> YamlText:
+    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
+    return read_yaml(text.encode(), file or _OWN)
 
 
 def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
     """The node with the remap rules of its launch file; those of tf belong to the layout."""
-    above, name = namespace.rstrip("/"), node.name.rpartition("/")[2]
+    above = namespace.rstrip("/")
+    below, _, name = node.name.rpartition("/")
+    home = above.removesuffix(f"/{below}") if below else above
     targets = {
-        expand(old, above, name): new.removeprefix(f"{above}/") if above else new
+        expand(old, above, name): _target(new, above, home)
         for old, new in reversed([it for it in rules if it[0] not in _TF])
     }
     ends = []
@@ -289,3 +301,11 @@ def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str)
         target = targets.get(expand(it.name, above, name), it.name)
         ends.append(it._replace(remapped=target) if target != it.name else it)
     return node._replace(endpoints=tuple(ends))
+
+
+def _target(new: str, above: str, home: str) -> str:
+    """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
+    ``home``."""
+    inner = above != home and not new.startswith(("/", "~"))
+    full = f"{above}/{new}" if inner else new
+    return full.removeprefix(f"{home}/") if home else full

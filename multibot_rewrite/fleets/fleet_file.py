@@ -26,6 +26,8 @@ LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topi
 POLICY = tuple(Policy.__annotations__)
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
+# What ``simulator`` says of a real robot.
+REAL = "none"
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 
 
@@ -46,7 +48,8 @@ class RobotSpec(NamedTuple):
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
-    something, by path.
+    something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
+    ``use_sim_time`` is what all its nodes have, None if the file does not say.
     """
 
     name: str
@@ -64,6 +67,8 @@ class RobotSpec(NamedTuple):
     line: int
     launch: tuple[LaunchOrder, ...] = ()
     filled: tuple[tuple[str, str], ...] = ()
+    simulator: str = ""
+    use_sim_time: bool | None = None
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -235,6 +240,8 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         file,
         line,
         tuple(_launch(data, own, place)),
+        simulator=own.get("simulator", data.get("simulator", "")),
+        use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
     )
 
 

@@ -24,6 +24,9 @@ from multibot_rewrite.launch.graph.made_files import source_of
 from multibot_rewrite.launch.graph.places import place_of
 
 _LIMIT = 1 << 24
+# The commands of Gazebo, and what ROS starts it with.
+_SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
+_GAZEBO = ("ros_gz_sim", "gzserver")
 # ament_index_python and Python say it so.
 _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
 
@@ -111,10 +114,10 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
 
 
 def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
-    """The node of a ``ros2 run`` line; another process is no node that is known."""
+    """The node of a ``ros2 run`` line, or a simulator; another process is no node that is known."""
     line = [text(it, here.context) for it in getattr(action, "cmd", ())]
     words = [word for it in line for word in it.split()]
-    run = ros2_run(words)
+    run = ros2_run(words) or _simulator(words)
     if run is None:
         return
     given = ros_arguments(run[2])
@@ -122,6 +125,11 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
     yield LaunchedNode(*names, given.rules, values, "", given.own, here.later, here.place)
+
+
+def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
+    program = os.path.basename(words[0]) if words else ""
+    return (*_GAZEBO, []) if program in _SIMULATORS else None
 
 
 def _kept(action: Any, name: str) -> Any:
@@ -178,11 +186,19 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         return
     if isinstance(found, dict):
         yield _values(found)
+        yield from _made(found.values(), here)
     elif isinstance(found, pathlib.PurePath):
         yield from _file(str(found), here)
     else:
         name, value = found.evaluate(here.context)
         yield _values({name: value})
+
+
+def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
+    """The texts of files that the launch makes and names in values, such as that of a bridge."""
+    for path in (it for it in values if isinstance(it, str) and "\n" not in it):
+        if os.path.isfile(path) and not _kept_file(path):
+            yield from _file(path, here)
 
 
 def _values(values: Any) -> ParameterText:
@@ -193,7 +209,10 @@ def _values(values: Any) -> ParameterText:
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(name): _plain(it) for name, it in value.items()}
-    if isinstance(value, str | bytes) or not hasattr(value, "__iter__"):
+    if isinstance(value, str):
+        # The folder with links to sources is gone when this is read.
+        return _kept_file(value) or value
+    if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]
 
@@ -225,4 +244,6 @@ def _is_made(path: str) -> bool:
 
 def _kept_file(path: str) -> str:
     """The real path of a file that is there when the launch is over, else nothing."""
+    if "\n" in path:
+        return ""
     return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)
