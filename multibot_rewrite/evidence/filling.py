@@ -80,7 +80,14 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
         if holds(bound.condition, lookup(node, values)):
             decided = bool(binding or bound.condition)
             named = bound._replace(when="" if decided else bound.when)
-            yield from _named(named, values, _ending(node, raw))
+            typed = _typed(named, lookup(node, values))
+            yield from _named(typed, values, _ending(node, raw))
+
+
+def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
+    """The endpoint with the one type that its parameters choose."""
+    chosen = next((type_ for it, type_ in endpoint.types if holds(it, value_of)), "")
+    return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
 
 
 def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
@@ -145,6 +152,7 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
         fixed=endpoint.fixed if name == endpoint.name else "",
         parameter=_put(endpoint.parameter, binding),
         condition=_put(endpoint.condition, binding),
+        types=tuple((_put(it, binding), type_) for it, type_ in endpoint.types),
     )
 
 

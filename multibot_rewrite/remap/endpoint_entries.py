@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
+    checked_condition,
     condition_of,
     releases_of,
     source_of,
@@ -34,7 +35,8 @@ from multibot_rewrite.remap.yaml_with_lines import (
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")
-ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", "if", "above", *FACT_KEYS)
+ENDPOINT_OTHERS = ("also", "types", "transport", "helper", "if", "above")
+ENDPOINT_KEYS = (*ENDPOINT_WORDS, *ENDPOINT_OTHERS, *FACT_KEYS)
 _TYPE = lazy_compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 # Part of a name that is only known at run time.
 _MADE = lazy_compile(r"<[^<>/]+>")
@@ -64,7 +66,17 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         releases=releases_of(keys),
         source=source_of(keys),
     )
-    return checked_endpoint(item, endpoint)
+    every = (endpoint.type, *endpoint.also)
+    return checked_endpoint(item, endpoint._replace(types=tuple(_types(keys, every))))
+
+
+def _types(keys: Mapping[str, YamlItem], every: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Conditions with the type of each, which is one of ``every``."""
+    for condition, item in table_of(keys, "types").items():
+        checked_condition(item, condition)
+        if item.value not in every:
+            wrong(item, f"{item.value!r} is neither the type nor in also ({', '.join(every)})")
+        yield condition, str(item.value)
 
 
 def _kind(role: str, type_: str) -> str:
