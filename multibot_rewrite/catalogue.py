@@ -158,7 +158,9 @@ HOMES: tuple[Home, ...] = (
         DANGERS_INTRO,
     ),
     Home(
-        "MG4", "dangers of any system: tf", ("graph.dangers.transforms", "graph.dangers.tf_topics")
+        "MG4",
+        "dangers of any system: tf",
+        ("graph.dangers.transforms", "graph.dangers.tf_topics", "graph.dangers.frame_ids"),
     ),
     Home(
         "MG5",

@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
             return _watch(options, plan)
         if options.bag:
             return _recorded(options, plan)
-        return conclude(options, plan, live.graph(options))
+        return conclude(options, plan, live.with_states(options, live.graph(options)))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS

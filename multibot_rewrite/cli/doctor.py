@@ -30,7 +30,6 @@ from multibot_rewrite.graph.doctor.suggestion import FILES, suggestion
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import questions
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.watching import Verdict, final
 from multibot_rewrite.model import UsageError
@@ -51,12 +50,8 @@ def run(options: argparse.Namespace) -> int:
     try:
         if options.watch:
             return _watch(options)
-        graph = live.graph(options)
-        states = live.states(options, graph)
-        if options.state:
-            asked = {it.node for it in questions(graph)}
-            note(options, f"{len(states)} of {plural(len(asked), 'node')} answered --state")
-        return _once(options, diagnose(graph, states))
+        graph = live.with_states(options, live.graph(options))
+        return _once(options, diagnose(graph))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS

@@ -7,19 +7,21 @@ from __future__ import annotations
 
 import argparse
 import os
-from collections.abc import Generator
+from collections.abc import Collection, Generator, Mapping
 from math import inf
 
+from multibot_rewrite.cli.output import note
 from multibot_rewrite.graph.bags.read import read_bag
 from multibot_rewrite.graph.bags.recording import as_snapshot
 from multibot_rewrite.graph.environment import settings
 from multibot_rewrite.graph.live import child
 from multibot_rewrite.graph.live.request import Request
+from multibot_rewrite.graph.questions import NO_MORE, questions
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshots
-from multibot_rewrite.graph.states import NodeState, questions
 from multibot_rewrite.graph.zenoh import observe
 from multibot_rewrite.model import UsageError
+from multibot_rewrite.plural import plural
 
 INCONCLUSIVE, NO_ROS = 3, 4
 # How long a single look takes at most.
@@ -30,12 +32,12 @@ ASK_SECONDS = 5.0
 
 def check_source(options: argparse.Namespace) -> None:
     """Raises UsageError where options name two sources, or a saved one is to be watched."""
-    saved = bool(options.snapshot)
+    saved, watching = bool(options.snapshot), getattr(options, "watch", False)
     if getattr(options, "bag", None):
         _check_bag(options)
-    if saved and getattr(options, "watch", False):
+    if saved and watching:
         raise UsageError("--watch is for the live graph, leave out --snapshot")
-    if getattr(options, "state", False) and (saved or options.zenoh or options.watch):
+    if getattr(options, "state", False) and (saved or options.zenoh or watching):
         hint = "leave out --snapshot, --zenoh and --watch"
         raise UsageError(f"--state asks nodes of the live graph, once; {hint}")
     if saved and options.zenoh:
@@ -60,16 +62,26 @@ def graph(options: argparse.Namespace, request: Request | None = None) -> Snapsh
     if getattr(options, "bag", None):
         return as_snapshot(read_bag(options.bag))
     asked = request or Request(options.timeout or LOOK_SECONDS)
+    asked = asked._replace(headers=vars(options).get("no_frame_ids") is False)
     if options.zenoh:
         return observe.look(asked, _router(options))
     return child.observe(asked, environ(options.domain))
 
 
-def states(options: argparse.Namespace, seen: Snapshot) -> tuple[NodeState, ...]:
-    """What the nodes of the live graph answer to ``--state``; empty without it."""
+def with_states(
+    options: argparse.Namespace,
+    seen: Snapshot,
+    parameters: Mapping[str, Collection[str]] = NO_MORE,
+) -> Snapshot:
+    """The live graph with what its nodes answer to ``--state``, and a line of how many did; without it
+    the graph as it is. ``parameters`` are asked of the nodes besides."""
     if not options.state:
-        return ()
-    return child.ask(questions(seen), ASK_SECONDS, environ(options.domain))
+        return seen
+    asked = list(questions(seen, parameters))
+    found = child.ask(asked, ASK_SECONDS, environ(options.domain))
+    nodes = plural(len({it.node for it in asked}), "node")
+    note(options, f"{len(found)} of {nodes} answered --state")
+    return seen._replace(states=found)
 
 
 def watched(options: argparse.Namespace) -> Generator[Snapshot, None, None]:

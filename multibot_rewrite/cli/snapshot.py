@@ -53,7 +53,7 @@ def run(options: argparse.Namespace) -> int:
         options.timeout or live.LOOK_SECONDS, tuple(options.expect), tuple(options.topic)
     )
     try:
-        snapshot = live.graph(options, request)
+        snapshot = live.with_states(options, live.graph(options, request))
     except RosUnusable as error:
         say(str(error), PROGRAM)
         return live.NO_ROS

@@ -81,6 +81,7 @@ class FleetFile(NamedTuple):
     """A fleet file with its includes. ``policy`` are the options of ``make_naming`` that it sets,
     ``files`` all files of the fleet except the robots' own: the fleet file, what it includes, nodes,
     parameters, vocabulary. ``shared_nodes`` are nodes of the stacks that run once for all robots.
+    ``sros2`` asks for a policy.
     ``installed`` is where the results are when they are used, empty for where
     they are written."""
 
@@ -96,6 +97,7 @@ class FleetFile(NamedTuple):
     robots: tuple[RobotSpec, ...]
     files: tuple[str, ...] = ()
     shared_nodes: tuple[str, ...] = ()
+    sros2: bool = False
 
 
 class _Read(NamedTuple):
@@ -137,6 +139,7 @@ def read_fleet(path: str, distro: str, environment: Mapping[str, str]) -> FleetF
         robots,
         tuple(filter(None, (*read.files, nodes, *described, parameters, *vocabulary))),
         tuple(it.strip("/") for it in listed(data.get("shared_nodes", []))),
+        data.get("sros2", False),
     )
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import cast
 
 Reader = Callable[[object], object]
 _TYPE_NAMES = {str: "text", int: "a whole number", bool: "true or false"}
@@ -59,11 +60,12 @@ def read_seconds(value: object) -> object:
 
 def read_list(reader: Reader, value: object) -> object:
     """A list of what ``reader`` reads."""
-    if not isinstance(value, list):
+    # An empty tuple is the default of a key that is left out.
+    if not isinstance(value, list) and value != ():
         raise unexpected("a list", value)
     result = []
     try:
-        for item in value:
+        for item in cast(Iterable[object], value):
             result.append(reader(item))
     except WrongValue as wrong:
         wrong.keys.append(f"[{len(result)}]")

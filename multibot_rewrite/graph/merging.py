@@ -24,6 +24,7 @@ from multibot_rewrite.graph.snapshot import (
     GraphNode,
     Snapshot,
 )
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import UsageError
 
 _FROM_GOOD_TO_BAD = (EXPECTED, QUIET, TIMEOUT, CHANGING)
@@ -49,7 +50,10 @@ def merged(looks: Sequence[Look]) -> Snapshot:
     nodes = tuple(_nodes([look.snapshot.nodes for look in looks]))
     endpoints = tuple(_endpoints([look.snapshot.endpoints for look in looks]))
     frames = tuple(_frames(frame for look in looks for frame in look.snapshot.frames))
-    return Snapshot(nodes, endpoints, frames, _environment(looks, nodes, endpoints))
+    heard = tuple(sorted({it for look in looks for it in look.snapshot.heard}))
+    states = tuple(_states(state for look in looks for state in look.snapshot.states))
+    around = _environment(looks, nodes, endpoints)
+    return Snapshot(nodes, endpoints, frames, around, heard, states)
 
 
 def _refuse_strangers(looks: Sequence[Look]) -> None:
@@ -118,6 +122,20 @@ def _frames(frames: Iterable[GraphFrame]) -> Iterator[GraphFrame]:
         static = any(frame.static for frame in same)
         several = any(frame.several for frame in same)
         yield GraphFrame(child, parent, topic, static, tuple(sorted(publishers)), several)
+
+
+def _states(states: Iterable[NodeState]) -> Iterator[NodeState]:
+    """Of each node the answer that says most."""
+    best: dict[str, NodeState] = {}
+    for state in states:
+        before = best.setdefault(state.node, state)
+        best[state.node] = max(before, state, key=_answered)
+    return iter(sorted(best.values(), key=lambda it: it.node))
+
+
+def _answered(state: NodeState) -> int:
+    known = (state.lifecycle != "", state.sim_time is not None, bool(state.controllers))
+    return sum(known) + len(state.parameters)
 
 
 def _environment(

@@ -26,6 +26,7 @@ from multibot_rewrite.graph.json_values import (
     shown,
     unexpected,
 )
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import KINDS, ROLES
 
@@ -102,6 +103,13 @@ class GraphFrame(NamedTuple):
     several: bool = False
 
 
+class HeardFrame(NamedTuple):
+    """The ``header.frame_id`` of a message that was received on ``topic``, as it is written there."""
+
+    topic: str
+    frame: str
+
+
 class Caveat(NamedTuple):
     """What to know about a view; with ``incomplete`` something may be missing in it."""
 
@@ -130,12 +138,18 @@ class Environment(NamedTuple):
 
 
 class Snapshot(NamedTuple):
-    """The graph at one moment."""
+    """The graph at one moment.
+
+    ``heard`` are frames that messages name, one message a topic; ``states`` what nodes answered. Both
+    are empty where nobody listened or asked.
+    """
 
     nodes: tuple[GraphNode, ...]
     endpoints: tuple[GraphEndpoint, ...]
     frames: tuple[GraphFrame, ...]
     environment: Environment
+    heard: tuple[HeardFrame, ...] = ()
+    states: tuple[NodeState, ...] = ()
 
 
 _ALLOWED_WORDS: Mapping[tuple[type, str], tuple[str, ...]] = {
@@ -148,6 +162,8 @@ _FULL_NAMES = {
     (GraphEndpoint, "name"),
     (GraphEndpoint, "node"),
     (GraphFrame, "topic"),
+    (HeardFrame, "topic"),
+    (NodeState, "node"),
 }
 # By their keys.
 _FREQUENT: Mapping[tuple[str, ...], Any] = {
@@ -164,26 +180,28 @@ def incomplete(snapshot: Snapshot) -> tuple[Caveat, ...]:
 def to_json(snapshot: Snapshot) -> bytes:
     """The snapshot as JSON, one record on each line, in the order of the records."""
     parts = [f'"schema": {SCHEMA}']
-    for name in ("nodes", "endpoints", "frames"):
+    for name in ("nodes", "endpoints", "frames", "heard", "states"):
         lines = ",\n  ".join(_line(record) for record in getattr(snapshot, name))
-        parts.append(f'"{name}": [\n  {lines}\n ]' if lines else f'"{name}": []')
-    environment = json.dumps(_plain_value(snapshot.environment), indent=1, ensure_ascii=False)
+        if lines or name not in Snapshot._field_defaults:
+            parts.append(f'"{name}": [\n  {lines}\n ]' if lines else f'"{name}": []')
+    environment = json.dumps(plain_value(snapshot.environment), indent=1, ensure_ascii=False)
     parts.append('"environment": ' + environment.replace("\n", "\n "))
     return ("{\n " + ",\n ".join(parts) + "\n}\n").encode("utf-8", "backslashreplace")
 
 
 def _line(record: object) -> str:
-    return json.dumps(_plain_value(record), ensure_ascii=False)
+    return json.dumps(plain_value(record), ensure_ascii=False)
 
 
-def _plain_value(value: object) -> object:
+def plain_value(value: object) -> object:
+    """A record as JSON has it, without what is as usual."""
     if isinstance(value, tuple):
         fields = getattr(value, "_fields", None)
         if fields is None:
-            return [_plain_value(item) for item in value]
+            return [plain_value(item) for item in value]
         usual = type(value)._field_defaults  # type: ignore[attr-defined]
         pairs = zip(fields, value, strict=True)
-        return {name: _plain_value(it) for name, it in pairs if usual.get(name, ...) != it}
+        return {name: plain_value(it) for name, it in pairs if usual.get(name, ...) != it}
     if isinstance(value, float) and math.isinf(value):
         return None
     return value

@@ -22,6 +22,7 @@ import yaml
 from fleet_folder import SMALL, fleet_folder, mixed
 from hypothesis import given
 from hypothesis import strategies as st
+from lxml import etree
 
 from multibot_rewrite.cli import folders
 from multibot_rewrite.cli.files import write_new
@@ -80,6 +81,20 @@ def test_the_smallest_fleet_gives_everything(out: Path) -> None:
         "robot2/params.yaml",
         "one_robot.rviz",
     }
+
+
+def test_a_policy_of_sros2_is_written_where_it_is_asked_for(tmp_path: Path) -> None:
+    """An enclave for each robot, in which the other robot's command topic is nowhere."""
+    fleet_folder(tmp_path)
+    fleet = tmp_path / "fleet.yaml"
+    fleet.write_text(f"sros2: true\n{fleet.read_text()}")
+    assert build(tmp_path) == 0
+    policy = etree.parse(tmp_path / "out" / "policy.xml").getroot()
+    text = {it.get("path"): etree.tostring(it).decode() for it in policy.iter("enclave")}
+    assert {"/robot1", "/robot2"} <= text.keys()
+    assert "robot1" in text["/robot1"]
+    assert "robot2" not in text["/robot1"]
+    assert "robot1" not in text["/robot2"]
 
 
 def test_the_manifest_names_what_was_read_and_written(out: Path) -> None:

@@ -34,14 +34,9 @@ from multibot_rewrite.graph.doctor.robots import guess_robots
 from multibot_rewrite.graph.doctor.seen_plan import seen_plan
 from multibot_rewrite.graph.live.voices import Voices
 from multibot_rewrite.graph.plan_file import from_yaml, to_yaml
+from multibot_rewrite.graph.questions import questions
 from multibot_rewrite.graph.snapshot import Caveat, GraphFrame, Snapshot, from_json, to_json
-from multibot_rewrite.graph.states import (
-    Controller,
-    NodeState,
-    from_message,
-    questions,
-    to_message,
-)
+from multibot_rewrite.graph.states import Controller, NodeState
 from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
 
 EMPTY = Snapshot((), (), (), environment())
@@ -287,12 +282,6 @@ def test_whom_to_ask() -> None:
     assert list(questions(graph._replace(nodes=(*graph.nodes, *graph.nodes)))) == []
 
 
-def test_states_in_a_message_are_the_same() -> None:
-    own = (Controller("arm", "active", ("joint1/position",)),)
-    states = (NodeState("/a", "inactive", True), NodeState("/b", "", None, own))
-    assert from_message(to_message(states)) == states
-
-
 def test_a_healthy_robot_by_its_states() -> None:
     """Inactive controllers beside an active one, the same ones in another robot, tools."""
     own = (Controller("arm", "active", ("j1/position",)), Controller("spare", "inactive", ()))
@@ -305,13 +294,17 @@ def test_a_healthy_robot_by_its_states() -> None:
     graph = nav()
     for state in states:
         graph = with_node(graph, state.node)
-    assert diagnose(graph, states).findings == ()
+    assert diagnose(graph._replace(states=states)).findings == ()
 
 
 def test_nobody_manages_it_so_it_may_be_meant() -> None:
-    (found,) = diagnose(nav(), (NodeState("/robot1/camera", "unconfigured"),)).findings
+    camera, amcl = (
+        NodeState("/robot1/camera", "unconfigured"),
+        NodeState("/robot1/amcl", "inactive"),
+    )
+    (found,) = diagnose(nav()._replace(states=(camera,))).findings
     assert (found.code, found.level) == ("MG511", "warning")
-    (found,) = diagnose(nav(), (NodeState("/robot1/amcl", "inactive"),)).findings
+    (found,) = diagnose(nav()._replace(states=(amcl,))).findings
     assert (found.code, found.level) == ("MG511", "error")
     assert "/robot1/lifecycle_manager_localization" in found.hint
 

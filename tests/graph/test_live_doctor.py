@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
+from pathlib import Path
 from typing import NamedTuple
 
 import live_commands
@@ -18,6 +19,7 @@ from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
 
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.snapshot_file import read_snapshot
 
 pytestmark = pytest.mark.live
 
@@ -121,6 +123,37 @@ def test_states_that_nodes_are_asked_for(needed: Mapping[str, str]) -> None:
     assert "MG511 /robot1/amcl is inactive, not active" in done.stdout
     assert "MG514 use_sim_time is " in done.stdout
     assert "MG501" in done.stdout and done.returncode == 1
+
+
+def test_frames_of_messages_that_are_sent(needed: Mapping[str, str], tmp_path: Path) -> None:
+    """Best effort, large, latched before the look, another robot's, and one that is never sent."""
+    scan, image, map_ = ("LaserScan", "Image", "OccupancyGrid")
+    tf = [[f"robot{at}/base", f"robot{at}/laser"] for at in (1, 2)]
+    joints = ["robot1/joints", "sensor_msgs/msg/JointState", "hardware"]
+    nodes = [
+        {"name": "tf", "frames": [["/tf_static", True, ["map", "robot1/base"], *tf]]},
+        {"name": "map_server", "headers": [["/map", f"nav_msgs/msg/{map_}", "map", "latched"]],
+         "subscriptions": [["/map", f"nav_msgs/msg/{map_}", "latched"]]},
+        {"name": "lidar", "namespace": "robot1", "publishers": [["odom", "nav_msgs/msg/Odometry"]],
+         "headers": [["scan", f"sensor_msgs/msg/{scan}", "laser", "best_effort"], joints]},
+        {"name": "camera", "namespace": "robot2", "publishers": [["odom", "nav_msgs/msg/Odometry"]],
+         "headers": [["image", f"sensor_msgs/msg/{image}", "robot1/laser", "best_effort"]]},
+    ]  # fmt: skip
+    domain, file = live_commands.domain(17), str(tmp_path / "g.json")
+    env = {**live_fleet.environ(domain), **needed}
+    with live_fleet.running(domain, nodes, **needed):
+        live_commands.multibot("snapshot", "-o", file, env=env)
+        without = live_commands.multibot("snapshot", "--no-frame-ids", "-o", "-", env=env)
+    assert '"heard"' not in without.stdout and "lidar" in without.stdout
+    assert set(read_snapshot(file).heard) == {
+        ("/robot1/scan", "laser"),
+        ("/robot2/image", "robot1/laser"),
+        ("/map", "map"),
+    }
+    said = live_commands.multibot("doctor", "--snapshot", file, env=env).stdout
+    assert "MG412 frame_id of /robot1/scan is laser" in said, said
+    assert "sent by /robot1/lidar" in said and "to robot1/laser" in said
+    assert "MG411 frame_id of /robot2/image is robot1/laser, a frame of robot1" in said
 
 
 @pytest.mark.deep

@@ -24,7 +24,7 @@ from multibot_rewrite.graph.plan_file import from_yaml
 from multibot_rewrite.graph.transforms import description_edges
 from multibot_rewrite.library import rewrite
 from multibot_rewrite.releases import NEWEST_LTS
-from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES, TOPIC
+from multibot_rewrite.remap.records import PUBLISHES, SERVES, SUBSCRIBES
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.steps.collect import collect
 from multibot_rewrite.steps.document import read_document
@@ -38,7 +38,6 @@ GRAPHS = ROOT / "fixtures" / "graphs"
 ROVER = str(ROOT / "fixtures" / "robots" / "rover.urdf")
 LISTS = {PUBLISHES: "publishers", SUBSCRIBES: "subscriptions", SERVES: "services"}
 TF = "tf2_msgs/msg/TFMessage"
-TEXT, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
 ROUNDS, LOOKS = 7, 3
 # The first ones are enough for a usual run; the deep one has all.
 AT_ONCE = 6
@@ -63,18 +62,14 @@ def fleet_of(layout: str) -> Fleet:
     """The fleet exactly as planned, its tf as the rewritten descriptions say."""
     path = plan_of(layout)
     plan = from_yaml(path.read_bytes(), str(path))
-    types = {it.name: it.type for it in plan.endpoints if it.type}
     nodes: dict[str, dict[str, Any]] = {}
     for robot in plan.robots:
         for node in robot.nodes:
             space, _, name = node.rpartition("/")
             nodes[node] = {"name": name, "namespace": space, **_lists()}
     for it in plan.endpoints:
-        # A plan does not know the type of every topic of a plugin.
-        unknown = TEXT if it.kind == TOPIC else TRIGGER
-        kept = it.type if it.type == TF else types.get(it.name, unknown)
-        if kept != TF:
-            nodes[it.node][LISTS[it.role]].append([it.name, kept])
+        if it.type != TF:
+            nodes[it.node][LISTS[it.role]].append([it.name, it.type])
     fleet = {robot.name: {node: nodes[node] for node in robot.nodes} for robot in plan.robots}
     for robot in plan.robots:
         state, drive = (next(n for n in robot.nodes if w in n) for w in ("state_pub", "diff_drive"))
@@ -134,6 +129,19 @@ def other_type(fleet: Fleet) -> None:
     fleet["pilot"] = {"/robot2/pilot": fleet["robot2"].pop("/robot2/pilot")}
 
 
+def once_silent(fleet: Fleet) -> None:
+    """What was "as planned" for long: the description of the other robot, and lidars in two ways."""
+    state = fleet["robot2"]["/robot2/robot_state_publisher"]
+    moving, fixed = edges("robot1", L2)
+    state["frames"] = [["/tf", False, *moving[:-1]], ["/tf_static", True, *fixed]]
+    (scan,) = fleet["robot2"]["/robot2/lidar_driver"]["publishers"]
+    scan[0] = "/robot2/lidar_driver/out"
+    lidar = fleet["robot1"].pop("/robot1/lidar_driver")
+    lidar["publishers"][0][1] = "sensor_msgs/msg/PointCloud2"
+    # One process has no two types of a topic.
+    fleet["lidar"] = {"/robot1/lidar_driver": lidar}
+
+
 def two_parents(fleet: Fleet) -> None:
     edge = ["base_link/robot2", "imu_link/robot1"]
     fleet["robot2"]["/robot2/pilot"]["frames"] = [["/tf", False, edge]]
@@ -161,6 +169,13 @@ SCENARIOS = (
         frozenset({("MG102", "/robot1/diff_drive"), ("MG103", "/robot1/diff_drive")}),
     ),
     Scenario("cross-talk", L2, cross_talk, frozenset({("MG104", "/robot1/pilot")})),
+    Scenario(
+        "once silent", L2, once_silent,
+        frozenset({
+            ("MG208", "robot2"), ("MG102", "/robot2/lidar_driver"), ("MG106", "/robot1/lidar_driver"),
+            ("MG408", "robot1"),
+        }),
+    ),
     Scenario("clash", L2, clash, frozenset({("MG105", "/robot1/pilot")})),
     Scenario("qos", L2, qos, frozenset({("MG107", "/robot2/pilot")})),
     Scenario("type", L2, other_type, frozenset({("MG106", "/robot2/diff_drive")})),

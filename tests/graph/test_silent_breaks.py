@@ -27,6 +27,8 @@ from multibot_rewrite.graph.snapshot import GraphFrame, Snapshot
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 LAYOUTS = ("frames-per-robot", "tf-per-robot", "both", "postfix")
+# Those in which frames have the robot's name.
+NAMED = ("frames-per-robot", "both", "postfix")
 TWIST, SCAN = "geometry_msgs/msg/Twist", "sensor_msgs/msg/LaserScan"
 CLOUD = "sensor_msgs/msg/PointCloud2"
 
@@ -58,6 +60,27 @@ def test_the_description_of_robot1_in_both_publishers(layout: str) -> None:
 
     (finding,) = hints(layout, reframed(lost)(healthy(layout)), "MG208")
     assert (finding.robot, finding.level) == ("robot2", ERROR)
+    publisher = named(layout, "robot_state_publisher")
+    assert finding.hint == f"has {publisher} the description of robot2, or that of another robot?"
+
+
+@pytest.mark.parametrize("layout", NAMED)
+def test_the_description_of_robot1_is_recognized_by_its_frames(layout: str) -> None:
+    """They come twice, or on the topic of robot2."""
+
+    def lost(frame: GraphFrame) -> GraphFrame | None:
+        if not is_of("robot2", frame):
+            return frame._replace(several=True) if layout == "frames-per-robot" else frame
+        if frame.child.startswith("base_footprint"):
+            return frame
+        if layout == "frames-per-robot":
+            return None
+        parent, child = (it.replace("robot2", "robot1") for it in (frame.parent, frame.child))
+        return frame._replace(parent=parent, child=child)
+
+    (finding,) = hints(layout, reframed(lost)(healthy(layout)), "MG208")
+    publisher = named(layout, "robot_state_publisher")
+    assert finding.hint.startswith(f"{publisher} has the description of robot1")
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -136,9 +159,6 @@ def torn(layout: str, change: Callable[[GraphFrame], GraphFrame | None]) -> list
 def spelled(layout: str, frame: str) -> str:
     plan = read_plan(layout)
     return next(it for it in plan.robots[1].frames if frame in it)
-
-
-NAMED = ("frames-per-robot", "both", "postfix")
 
 
 @pytest.mark.parametrize("layout", NAMED)

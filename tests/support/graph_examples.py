@@ -14,6 +14,7 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     enclave PATH of NODE                the enclave of SROS2 that a running node is in
     transform PARENT -> CHILD on TOPIC [by NODES] [twice]    a transform, who publishes on its topic,
                                                      and whether several of them send it
+    frame_id FRAME on TOPIC             the frame that a message on the topic names
     NODE is STATE, NODE has use_sim_time VALUE       what it answers when it is asked for its state
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
 
@@ -39,7 +40,14 @@ from multibot_rewrite.graph.expectation import (
     PlannedRobot,
     PlannedTopic,
 )
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, GraphNode, Qos, Snapshot
+from multibot_rewrite.graph.snapshot import (
+    GraphEndpoint,
+    GraphFrame,
+    GraphNode,
+    HeardFrame,
+    Qos,
+    Snapshot,
+)
 from multibot_rewrite.graph.states import Controller, NodeState
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
@@ -57,6 +65,7 @@ ONE_OF = re.compile(r"one of (.+)")
 STATE = re.compile(r"(/\S+) is (\w+)")
 SIM_TIME = re.compile(r"(/\S+) has use_sim_time (true|false)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
+FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
 ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS)
 ROBOT = re.compile(r"robot\d+")
@@ -92,9 +101,8 @@ def read_danger(text: str) -> tuple[Snapshot, Owners]:
     return graph, owners_of(graph, tuple(guessed))
 
 
-def read_states(text: str) -> tuple[NodeState, ...]:
+def read_states(lines: list[str]) -> tuple[NodeState, ...]:
     """What the nodes of an example answer."""
-    lines = [it[2] for it in map(LINE.fullmatch, text.splitlines()) if it]
     managed = (NodeState(node, lifecycle=state) for node, state in _words(STATE, lines))
     timed = (NodeState(node, sim_time=it == "true") for node, it in _words(SIM_TIME, lines))
     active = [
@@ -110,7 +118,7 @@ def read_states(text: str) -> tuple[NodeState, ...]:
 
 def _is_known(line: str) -> bool:
     planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE)
-    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, *planned, *ANSWERS))
+    return any(it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, *planned, *ANSWERS))
 
 
 def _words(pattern: re.Pattern[str], lines: Iterable[str]) -> Iterator[tuple[str, ...]]:
@@ -180,6 +188,8 @@ def read_graph(lines: list[str]) -> Snapshot:
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),
+        tuple(HeardFrame(topic, frame) for frame, topic in _words(FRAME_ID, lines)),
+        read_states(lines),
     )
 
 

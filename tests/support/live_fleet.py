@@ -2,10 +2,11 @@
 
 Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "namespace", and lists
 "publishers", "subscriptions", "services", "clients", "actions" of [name, type, QoS words],
-"frames" of [topic, static or not, [parent, child], ...]}. "bare": a node without what every node
-brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a process of its own.
-"arguments": what a command line tells the node. "state": what it answers to GetState. "wait": seconds
-until the next node is made.
+"frames" of [topic, static or not, [parent, child], ...], "headers" of [topic, type, frame, QoS words]:
+messages that it sends, ten a second or, latched, one; an image has a megabyte}. "bare": a node without
+what every node brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a
+process of its own. "arguments": what a command line tells the node. "state": what it answers to
+GetState. "wait": seconds until the next node is made.
 """
 
 from __future__ import annotations
@@ -85,7 +86,7 @@ def main(spec: str) -> None:
         nodes.append(_node(one, executor))
         time.sleep(one.get("wait", 0))
     # Nobody is answered; a large fleet that spins would keep the machine busy.
-    sends = any(one.get("frames") or one.get("state") for one in specs)
+    sends = any(one.get("frames") or one.get("state") or one.get("headers") for one in specs)
     print(READY, flush=True)
     stop = _input_closed()
     while not stop.done():
@@ -131,6 +132,8 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
         _answer_state(node, spec["state"])
     for topic, static, *edges in spec.get("frames", ()):
         _send_frames(node, topic, static, edges)
+    for header in spec.get("headers", ()):
+        _send_header(node, *header)
     return node
 
 
@@ -172,6 +175,18 @@ def _send_frames(node: Any, topic: str, static: bool, edges: list[list[str]]) ->
         message.transforms.append(transform)
     publisher = node.create_publisher(type_, topic, _qos(["latched"] if static else []))
     if static:
+        publisher.publish(message)
+    else:
+        node.create_timer(0.1, lambda: publisher.publish(message))
+
+
+def _send_header(node: Any, topic: str, type_: str, frame: str, *words: str) -> None:
+    message = _type(type_)()
+    message.header.frame_id = frame
+    if hasattr(message, "encoding"):
+        message.data = bytes(1 << 20)
+    publisher = node.create_publisher(type(message), topic, _qos(list(words)))
+    if "latched" in words:
         publisher.publish(message)
     else:
         node.create_timer(0.1, lambda: publisher.publish(message))

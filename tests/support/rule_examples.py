@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import yaml
-from graph_examples import read_danger, read_example, read_states
+from graph_examples import read_danger, read_example
 
 from multibot_rewrite import RewriteRefused, rewrite_all, strip
 from multibot_rewrite.companions.lua import frames_to_edit
@@ -179,7 +179,7 @@ def graph_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
 
 def danger_example(rule: Rule, example: str, folder: Path) -> list[Finding]:
     """A graph in the same lines, without a plan."""
-    return find_dangers(*read_danger(example), read_states(example))
+    return find_dangers(*read_danger(example))
 
 
 RUNNERS: dict[str, Callable[[Rule, str, Path], list[Finding]]] = {

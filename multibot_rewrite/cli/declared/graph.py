@@ -36,6 +36,10 @@ STATE = switch(
     "--state",
     about="also ask nodes for their state, within 5 s: life cycle, use_sim_time, controllers",
 )
+HEADERS = switch(
+    "--no-frame-ids",
+    about="do not receive a message of each sensor topic, for its frame; --watch never does",
+)
 WATCH = switch("--watch", about="show every change until Ctrl-C or --timeout")
 MERGE = Option(
     ("--merge",),
@@ -49,6 +53,7 @@ MERGE = Option(
         "default": [],
     },
 )
+LISTENING = SOURCE_OR_BAG._replace(options=(*SOURCE_OR_BAG.options, HEADERS))
 CHECK = Command(
     "check",
     "check",
@@ -76,9 +81,10 @@ CHECK = Command(
         output_group(
             FINDINGS_OUTPUT,
             WATCH,
+            STATE,
         ),
         PICTURES,
-        SOURCE_OR_BAG,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -113,7 +119,7 @@ DOCTOR = Command(
             ),
         ),
         PICTURES,
-        SOURCE_OR_BAG,
+        LISTENING,
         FINDINGS,
         GENERAL,
     ),
@@ -215,6 +221,8 @@ SNAPSHOT = Command(
                 ),
                 MERGE,
                 ZENOH,
+                STATE,
+                HEADERS,
                 *LIVE.options,
             )
         ),

@@ -12,6 +12,7 @@ from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.dangers import (
     clocks,
     commands,
+    frame_ids,
     matching,
     names,
     nodes,
@@ -24,20 +25,19 @@ from multibot_rewrite.graph.dangers import (
 )
 from multibot_rewrite.graph.dangers.seen import Owners, Seen, look_at
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import NodeState
 
-_MODULES = (nodes, names, matching, commands, sharing, transforms, tf_topics, clocks, states_)
+_MODULES = (
+    nodes, names, matching, commands, sharing, transforms, tf_topics, frame_ids, clocks, states_,
+)  # fmt: skip
 _FOUND = [it for module in _MODULES for it in vars(module).values() if isinstance(it, Rule)]
 DANGERS = {it.code: it for it in sorted(_FOUND, key=lambda it: it.code)}
 TF_DANGERS = {it.code: it for it in DANGERS.values() if it in vars(transforms).values()}
 
 
-def find_dangers(
-    graph: Snapshot, owners: Owners, states: tuple[NodeState, ...] = ()
-) -> list[Finding]:
+def find_dangers(graph: Snapshot, owners: Owners) -> list[Finding]:
     """All findings in the order of the rules; empty for a system that is as it should be."""
     with gc_paused():
-        seen = look_at(graph, owners, states)
+        seen = look_at(graph, owners)
         # A recording has no nodes.
         rules = TF_DANGERS if is_recorded(graph) else DANGERS
         return [it for rule in rules.values() for it in _ask(rule, seen)]

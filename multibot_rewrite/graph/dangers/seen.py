@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphFrame, Snapshot
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.remap.records import CALLS, PUBLISHES, SERVES, SUBSCRIBES
 
 # They look, or pass on what a person asks for: no part of a robot, and no sender of their own.
@@ -70,16 +69,12 @@ class Tree(NamedTuple):
 
 
 class Seen(NamedTuple):
-    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones.
-
-    ``states`` is what nodes answered, empty where they were not asked.
-    """
+    """A graph with its robots; ``names`` has the ends of each (kind, name), without hidden ones."""
 
     graph: Snapshot
     owners: Owners
     names: Mapping[tuple[str, str], Ends]
     trees: tuple[Tree, ...]
-    states: tuple[NodeState, ...] = ()
 
     def robot(self, name: str) -> str:
         """The robot of a node or name; empty for none."""
@@ -90,10 +85,10 @@ class Seen(NamedTuple):
         return self.owners.plain_names.get(name, name)
 
 
-def look_at(graph: Snapshot, owners: Owners, states: tuple[NodeState, ...] = ()) -> Seen:
+def look_at(graph: Snapshot, owners: Owners) -> Seen:
     """The look-ups that the rules share, made once."""
     names = {(it.kind, it.name): it for it in _ends(graph.endpoints)}
-    return Seen(graph, owners, names, tuple(_trees(graph, names.values())), states)
+    return Seen(graph, owners, names, tuple(_trees(graph, names.values())))
 
 
 def _ends(endpoints: Iterable[GraphEndpoint]) -> Iterator[Ends]:

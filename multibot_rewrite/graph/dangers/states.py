@@ -7,8 +7,8 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.dangers.seen import Seen, is_viewer
+from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.rules.declaration import danger_rule
-from multibot_rewrite.graph.states import SIM_TIME
 from multibot_rewrite.graph.tool_nodes import is_tool
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.remap.records import SERVICE
@@ -40,7 +40,7 @@ running: /robot1/amcl is active
 def not_active(seen: Seen) -> Iterator[Finding]:
     """One finding for the nodes of a robot that are in one state and have one manager."""
     found: dict[tuple[str, str, str], list[str]] = defaultdict(list)
-    for it in seen.states:
+    for it in seen.graph.states:
         if it.lifecycle not in ("", ACTIVE):
             found[seen.robot(it.node), it.lifecycle, _manager(seen, it.node)].append(it.node)
     for (robot, state, manager), nodes in found.items():
@@ -83,7 +83,7 @@ running: /robot1/gripper/controller_manager controls finger/position by gripper_
 def interface_commanded_twice(seen: Seen) -> Iterator[Finding]:
     """One controller manager refuses it by itself."""
     claims: dict[tuple[str, str], dict[str, str]] = defaultdict(dict)
-    for it in seen.states:
+    for it in seen.graph.states:
         for controller in (one for one in it.controllers if one.state == ACTIVE):
             for interface in controller.claims:
                 claims[seen.robot(it.node), interface][it.node] = controller.name
@@ -111,7 +111,7 @@ def interface_commanded_twice(seen: Seen) -> Iterator[Finding]:
 )
 def no_controller_active(seen: Seen) -> Iterator[Finding]:
     """Some inactive ones beside active ones are usual."""
-    for it in seen.states:
+    for it in seen.graph.states:
         if it.controllers and all(one.state != ACTIVE for one in it.controllers):
             listed = shorten((f"{one.name} ({one.state})" for one in it.controllers), SEVERAL)
             message = f"none of its controllers is active: {listed}"
@@ -140,7 +140,7 @@ running: /robot1/driver has use_sim_time true
 def use_sim_time_differs(seen: Seen) -> Iterator[Finding]:
     """Tools and bridges have the machine's time beside any robot."""
     by_robot: dict[str, dict[bool, list[str]]] = defaultdict(lambda: defaultdict(list))
-    for it in seen.states:
+    for it in seen.graph.states:
         if it.sim_time is not None and not is_tool(it.node) and not is_viewer(it.node):
             by_robot[seen.robot(it.node)][it.sim_time].append(it.node)
     for robot, found in by_robot.items():

@@ -255,6 +255,9 @@ def transform_of_two_senders(seen: Seen) -> Iterator[Finding]:
             nodes = [it for it in tree.senders if seen.robot(it) in ("", who)] or tree.senders
             listed_nodes = shorten(nodes, SEVERAL)
             cause = f"stop one, or its tf (publish_tf, enable_odom_tf): two of {listed_nodes}"
+            others = [it for it in tree.senders if it not in nodes]
+            if others:
+                cause += f"; or {shorten(others)} with the description or parameters of {who}"
             names = tuple(it.child for it in own)
             yield transform_of_two_senders.finding(message, cause, robot=who, names=names)
 

@@ -13,7 +13,6 @@ from multibot_rewrite.graph.dangers.seen import TF, Owners
 from multibot_rewrite.graph.doctor.robots import GuessedRobot, guess_robots, owners_of
 from multibot_rewrite.graph.rules.tf_trees import tree_topic
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.graph.wording import SEVERAL, shorten
 from multibot_rewrite.naming import LAYOUTS, Layout
 from multibot_rewrite.plural import plural
@@ -36,11 +35,11 @@ class Diagnosis(NamedTuple):
     findings: tuple[Finding, ...]
 
 
-def diagnose(graph: Snapshot, states: tuple[NodeState, ...] = ()) -> Diagnosis:
-    """Look at a graph without a plan, and at what its nodes answered."""
+def diagnose(graph: Snapshot) -> Diagnosis:
+    """Look at a graph without a plan."""
     robots = guess_robots(graph)
     owners = owners_of(graph, robots)
-    found = inconclusive_where_in_doubt(find_dangers(graph, owners, states), graph)
+    found = inconclusive_where_in_doubt(find_dangers(graph, owners), graph)
     tf = tuple(_tf_senders(graph))
     return Diagnosis(graph, robots, owners, _layout(robots, owners, tf), tf, tuple(found))
 

@@ -11,33 +11,31 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from multibot_rewrite.graph.live import ros
 from multibot_rewrite.graph.live.worker import Send, run_worker
-from multibot_rewrite.graph.states import (
-    GET_PARAMETERS,
-    GET_STATE,
-    SIM_TIME,
-    Controller,
-    NodeState,
-    Question,
-    to_message,
-)
+from multibot_rewrite.graph.questions import GET_PARAMETERS, GET_STATE, SIM_TIME, Question
+from multibot_rewrite.graph.snapshot import plain_value
+from multibot_rewrite.graph.states import Controller, NodeState, Parameter, parameter_text
 
 POLL_SECONDS = 0.05
-# rcl's ParameterType for bool.
-_BOOL = 1
+# rcl_interfaces/msg/ParameterType -> the field of ParameterValue; bytes are left out.
+_FIELDS = {
+    1: "bool_value", 2: "integer_value", 3: "double_value", 4: "string_value",
+    6: "bool_array_value", 7: "integer_array_value", 8: "double_array_value", 9: "string_array_value",
+}  # fmt: skip
 
 
 def main(order: str, stop: threading.Event, send: Send) -> int:
     """Ask as ``order`` says, ``[seconds, questions]``; returns the exit code."""
-    seconds, asked = json.loads(order)
+    seconds, given = json.loads(order)
+    asked = [Question(node, name, type_, tuple(own)) for node, name, type_, own in given]
     with ros.opened() as session:
         node = ros.add_node(session, f"_multibot_ask_{os.getpid()}")
-        found = _ask(session, node, [Question(*it) for it in asked], float(seconds), stop)
-    send(to_message(tuple(found.values())))
+        found = _ask(session, node, asked, float(seconds), stop)
+    send(json.dumps(plain_value(tuple(found.values()))).encode())
     return 0
 
 
@@ -49,42 +47,78 @@ def _ask(
     stop: threading.Event,
 ) -> dict[str, NodeState]:
     end = time.monotonic() + seconds
-    waiting = {it: client for it in asked if (client := _client(node, it))}
+    clients: dict[str, Any] = {}
+    waiting = [it for it in asked if _client(node, it, clients)]
     sent: dict[Question, Any] = {}
     found: dict[str, NodeState] = {}
     while (waiting or sent) and time.monotonic() < end and not stop.is_set():
-        ready = [it for it, client in waiting.items() if client.service_is_ready()]
-        for it in ready:
-            sent[it] = waiting.pop(it).call_async(_request(it))
+        ready = [it for it in waiting if clients[it.service].service_is_ready()]
+        sent |= {it: clients[it.service].call_async(_request(it)) for it in ready}
+        waiting = [it for it in waiting if it not in sent]
         ros.spin(session, POLL_SECONDS)
         for it in [it for it, answer in sent.items() if answer.done()]:
             before = found.get(it.node, NodeState(it.node))
-            found[it.node] = _with_answer(before, it, sent.pop(it).result())
+            answer = sent.pop(it).result()
+            found[it.node] = _with_answer(before, it, answer)
+            waiting += _halves(it, answer)
     return found
 
 
-def _client(node: Any, asked: Question) -> Any:
-    """A client for the question; None where its type is not installed."""
+def _halves(asked: Question, answer: Any) -> list[Question]:
+    """What is asked again: for a parameter that it does not have, a node of rclcpp gives none."""
+    names = asked.parameters
+    if len(names) < 2 or len(answer.values) == len(names):
+        return []
+    middle = len(names) // 2
+    return [asked._replace(parameters=it) for it in (names[:middle], names[middle:])]
+
+
+def _client(node: Any, asked: Question, clients: dict[str, Any]) -> bool:
+    """Make a client for the question; whether its type is installed."""
     class_, _ = ros.message_class(asked.type)
-    return node.create_client(class_, asked.service) if class_ else None
+    if class_ and asked.service not in clients:
+        clients[asked.service] = node.create_client(class_, asked.service)
+    return bool(class_)
 
 
 def _request(asked: Question) -> Any:
     class_, _ = ros.message_class(asked.type)
-    return class_.Request(names=[SIM_TIME]) if asked.type == GET_PARAMETERS else class_.Request()
+    if asked.type == GET_PARAMETERS:
+        return class_.Request(names=list(asked.parameters))
+    return class_.Request()
 
 
 def _with_answer(state: NodeState, asked: Question, answer: Any) -> NodeState:
     if asked.type == GET_STATE:
         return state._replace(lifecycle=str(answer.current_state.label))
     if asked.type == GET_PARAMETERS:
-        known = [bool(it.bool_value) for it in answer.values if it.type == _BOOL]
-        return state._replace(sim_time=known[0] if known else None)
+        return _with_parameters(state, asked, answer.values)
     own = (
         Controller(str(it.name), str(it.state), tuple(map(str, it.claimed_interfaces)))
         for it in answer.controller
     )
     return state._replace(controllers=tuple(own))
+
+
+def _with_parameters(state: NodeState, asked: Question, values: Sequence[Any]) -> NodeState:
+    known = {
+        name: text
+        for name, value in zip(asked.parameters, values, strict=False)
+        if (text := _plain(value)) is not None
+    }
+    timed = known.pop(SIM_TIME, None)
+    others = tuple(sorted({*state.parameters, *(Parameter(*it) for it in known.items())}))
+    sim_time = state.sim_time if timed is None else timed == "true"
+    return state._replace(sim_time=sim_time, parameters=others)
+
+
+def _plain(value: Any) -> str | None:
+    """The value as the records have it; None for a parameter that is not set."""
+    field = _FIELDS.get(value.type)
+    if field is None:
+        return None
+    found = getattr(value, field)
+    return parameter_text(list(found) if field.endswith("_array_value") else found)
 
 
 if __name__ == "__main__":

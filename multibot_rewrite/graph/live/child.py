@@ -13,11 +13,19 @@ import threading
 import time
 from collections.abc import Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager, suppress
-from typing import IO, NamedTuple
+from typing import IO, NamedTuple, cast
 
 from multibot_rewrite.graph.live.request import ENDED, NO_RCLPY, RMW_MISMATCH, Request, to_text
-from multibot_rewrite.graph.snapshot import UNKNOWN_NODE, ZENOH, Caveat, Snapshot, from_json
-from multibot_rewrite.graph.states import NodeState, Question, from_message
+from multibot_rewrite.graph.questions import Question
+from multibot_rewrite.graph.snapshot import (
+    UNKNOWN_NODE,
+    ZENOH,
+    Caveat,
+    Snapshot,
+    from_json,
+    record_from,
+)
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import MultibotError
 
 INSTALL = (
@@ -121,7 +129,8 @@ def ask(
     with running(ASK, order, environ, seconds + SLACK_SECONDS) as child:
         data = child.next_message()
     assert data is not None
-    return from_message(data)
+    states = record_from(tuple[NodeState, ...], json.loads(data), "the answers of nodes")
+    return cast(tuple[NodeState, ...], states)
 
 
 @contextmanager

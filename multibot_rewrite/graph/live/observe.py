@@ -9,13 +9,14 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from typing import Any, NamedTuple
 
 from multibot_rewrite.graph import environment
 from multibot_rewrite.graph.live import assemble, queries, ros
+from multibot_rewrite.graph.live.headers import HeaderSamples
 from multibot_rewrite.graph.live.request import ENDED, Request, from_text
 from multibot_rewrite.graph.live.tf_subscriptions import Callback, TfSubscriptions
 from multibot_rewrite.graph.live.worker import Send, run_worker
@@ -38,6 +39,8 @@ POLL_SECONDS, PAUSE_FACTOR, LONG_PAUSE_FACTOR = 0.1, 10, 30
 LONGEST_PAUSE_SECONDS = 1.0
 # tf has 10 Hz or more; a shared topic of 100 robots took 1.3 s to be received completely.
 TF_SECONDS = (1.5, 3.0)
+# Sensors have 5 Hz or more; what is sent once a minute is not waited for.
+HEADER_SECONDS = 1.5
 # After so long without a change there will probably be none; tf is received until that is known.
 IDLE_SECONDS = assemble.QUIET_SECONDS - TF_SECONDS[0]
 # What a look may take beyond its timeout, for the last queries.
@@ -91,20 +94,39 @@ def _open_session(request: Request, stop: threading.Event) -> Iterator[GraphSess
 def take_snapshot(session: GraphSession) -> Snapshot:
     """A snapshot, once the graph is settled; not usable if ``stop`` was set meanwhile."""
     cache: queries.TopicCache = {}
-    tf = TfSubscriptions(partial(_subscribe, session))
-    why, clock = _wait_until_settled(session, cache, tf)
+    ears = _Ears(session)
+    why, clock = _wait_until_settled(session, cache, ears)
     seconds = session.now()
     names, endpoints = _complete_view(session, cache)
     more = [*clock.starved(), *(assemble.cut_short() if session.over() else ())]
-    tf.update(endpoints, session.request.substitutes)
-    while not session.over() and tf.keep_waiting(*TF_SECONDS):
+    ears.update(endpoints)
+    while not session.over() and ears.keep_waiting():
         ros.spin(session.ros, POLL_SECONDS)
-    return _snapshot(session, names, endpoints, tf, (why, seconds), more)
+    return _snapshot(session, names, endpoints, ears, (why, seconds), more)
+
+
+class _Ears:
+    """What is received while the graph is looked at: transforms, and headers if they are asked for."""
+
+    def __init__(self, session: GraphSession) -> None:
+        self._request = session.request
+        self.tf = TfSubscriptions(partial(_subscribe, session))
+        self.headers = HeaderSamples(partial(_subscribe_to_headers, session))
+
+    def update(self, endpoints: Sequence[GraphEndpoint]) -> None:
+        """Subscribe to what is published now."""
+        self.tf.update(endpoints, self._request.substitutes)
+        if self._request.headers:
+            self.headers.update(endpoints)
+
+    def keep_waiting(self) -> bool:
+        """Whether something may still come."""
+        return self.tf.keep_waiting(*TF_SECONDS) or self.headers.keep_waiting(HEADER_SECONDS)
 
 
 def watch(session: GraphSession) -> Iterator[Snapshot]:
     """A snapshot after each change, and one when nothing has changed for a while."""
-    tf = TfSubscriptions(partial(_subscribe, session))
+    ears = _Ears(session)
     cache: queries.TopicCache = {}
     before: object = None
     sent: object = None
@@ -114,7 +136,7 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
         ros.spin(session.ros, pause)
         clock = clock.after(session.now(), pause + spent)
         now, began = clock.observed, time.thread_time()
-        state = (*_overview(session), tf.transforms())
+        state = (*_overview(session), ears.tf.transforms())
         pause = _pause_after(time.thread_time() - began, PAUSE_FACTOR)
         if state != before:
             before, changed = state, now
@@ -125,9 +147,9 @@ def watch(session: GraphSession) -> Iterator[Snapshot]:
             if quiet:
                 cache.clear()
             names, endpoints = _view(session, cache)
-            tf.update(endpoints, session.request.substitutes)
+            ears.tf.update(endpoints, session.request.substitutes)
             why = QUIET if quiet else CHANGING
-            yield _snapshot(session, names, endpoints, tf, (why, session.now()))
+            yield _snapshot(session, names, endpoints, ears, (why, session.now()))
         spent = time.thread_time() - began
 
 
@@ -141,7 +163,7 @@ def _overview(session: GraphSession) -> tuple[list[str], list[GraphEndpoint]]:
 
 
 def _wait_until_settled(
-    session: GraphSession, cache: queries.TopicCache, tf: TfSubscriptions
+    session: GraphSession, cache: queries.TopicCache, ears: _Ears
 ) -> tuple[str, assemble.ObservationClock]:
     """Wait until the graph is settled; returns why it is, empty if the observation was stopped.
 
@@ -169,7 +191,7 @@ def _wait_until_settled(
         idle = now - changed.all >= IDLE_SECONDS or now >= timeout - TF_SECONDS[1]
         if idle and queried != view:
             queried = view
-            tf.update(_view(session, cache)[1], request.substitutes)
+            ears.update(_view(session, cache)[1])
         spent = time.thread_time() - began
     return "", clock
 
@@ -238,11 +260,18 @@ def _subscribe(
     return ros.subscribe(session.node, class_, topic, latched, callback) if class_ else reason
 
 
+def _subscribe_to_headers(
+    session: GraphSession, topic: str, type_: str, latched: bool, callback: Callable[[bytes], None]
+) -> Callable[[], None] | None:
+    class_, _ = ros.message_class(type_)
+    return class_ and ros.subscribe_to_headers(session.node, class_, topic, latched, callback)
+
+
 def _snapshot(
     session: GraphSession,
     names: list[str],
     endpoints: list[GraphEndpoint],
-    tf: TfSubscriptions,
+    ears: _Ears,
     settled: tuple[str, float],
     more: Iterable[Caveat] = (),
 ) -> Snapshot:
@@ -255,7 +284,8 @@ def _snapshot(
     caveats = [
         *environment.setting_caveats(os.environ),
         *environment.view_caveats(nodes, placed, asked, why, session.request.expected),
-        *tf.caveats(),
+        *ears.tf.caveats(),
+        *ears.headers.caveats(),
         *more,
     ]
     around = Environment(
@@ -273,8 +303,9 @@ def _snapshot(
     return Snapshot(
         tuple(nodes),
         placed,
-        tuple(assemble.frames(tf.transforms(), placed, tf.of_several())),
+        tuple(assemble.frames(ears.tf.transforms(), placed, ears.tf.of_several())),
         around,
+        ears.headers.heard(),
     )
 
 

@@ -17,7 +17,8 @@ class Request(NamedTuple):
     The observation ends when the nodes of ``expected`` (full names) are in the graph, and after
     ``timeout`` seconds at the latest. The snapshot has QoS and process of ``topics``. With
     ``watch`` it does not end, and there is a snapshot after each change. With ``substitutes``
-    transforms are also read from the messages that a rehearsal has without tf2_msgs.
+    transforms are also read from the messages that a rehearsal has without tf2_msgs. With
+    ``headers`` one message a sensor topic is received, for its frame; not when watching.
     """
 
     timeout: float
@@ -25,6 +26,7 @@ class Request(NamedTuple):
     topics: tuple[str, ...] = ()
     watch: bool = False
     substitutes: bool = False
+    headers: bool = False
 
 
 def to_text(order: tuple[Any, ...]) -> str:
@@ -34,8 +36,8 @@ def to_text(order: tuple[Any, ...]) -> str:
 
 def from_text(text: str) -> Request:
     """Read what ``to_text`` made of a Request."""
-    timeout, expected, topics, watch, substitutes = json.loads(text)
-    return Request(float(timeout), tuple(expected), tuple(topics), watch, substitutes)
+    timeout, expected, topics, *switches = json.loads(text)
+    return Request(float(timeout), tuple(expected), tuple(topics), *switches)
 
 
 def framed(data: bytes) -> bytes:

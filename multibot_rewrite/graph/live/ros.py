@@ -160,6 +160,22 @@ def subscribe(
     return lambda: node.destroy_subscription(subscription)
 
 
+def subscribe_to_headers(
+    node: Node, type_: Any, topic: str, latched: bool, callback: Callable[[bytes], None]
+) -> Callable[[], None] | None:
+    """Subscribe to serialized messages; returns what ends it, None for a type without a header first.
+
+    Only the last message waits to be taken: there may be large images.
+    """
+    fields = list(type_.get_fields_and_field_types().values())
+    if fields[:1] != ["std_msgs/Header"]:
+        return None
+    qos = _qos(latched, latched)
+    qos.depth = 1
+    subscription = node.create_subscription(type_, topic, callback, qos, raw=True)
+    return lambda: node.destroy_subscription(subscription)
+
+
 def publish(node: Node, type_: Any, topic: str, latched: bool) -> Any:
     """A reliable publisher; with ``latched`` later subscribers receive its messages too."""
     return node.create_publisher(type_, topic, _qos(latched, True))

@@ -13,7 +13,7 @@ from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes
 from multibot_rewrite.graph.rules.name_variants import name_variants
 from multibot_rewrite.graph.rules.silent_topics import silent_topics
 from multibot_rewrite.graph.rules.tf_causes import JOINT_STATES
-from multibot_rewrite.graph.rules.tf_senders import sent_by_robot, state_publisher
+from multibot_rewrite.graph.rules.tf_senders import described_robots, sent_by_robot, state_publisher
 from multibot_rewrite.graph.rules.tf_trees import frames_in
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 from multibot_rewrite.graph.wording import shorten
@@ -123,16 +123,20 @@ def _not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> Fi
 
 
 def _why_not_received(view: View, robot: PlannedRobot, missing: Sequence[str]) -> str:
-    if len(missing) == len(robot.frames):
-        publisher = state_publisher(robot) or STATE_PUBLISHER
-        return f"has {publisher} the description of {robot.name}, or that of another robot?"
     silent = min(silent_topics(view, robot, JOINT_STATES), default="")
     if silent:
         source = "joint_state_publisher, joint_state_broadcaster or the bridge"
         return f"nothing publishes {silent}: is {source} started for {robot.name}?"
-    sent = [
-        it for it in sent_by_robot(view, robot) if not {it.parent, it.child}.isdisjoint(missing)
-    ]
-    if sent:
-        return f"by the plan {sent[0].node} sends {sent[0]}: has it the parameters of {robot.name}?"
+    sent = sent_by_robot(view, robot)
+    described = set(robot.frames).difference(*(it[1:] for it in sent))
+    if described and described.issubset(missing):
+        publisher = state_publisher(robot) or STATE_PUBLISHER
+        whose = next(described_robots(view, robot), "")
+        if whose:
+            return f"{publisher} has the description of {whose}, whose transforms it sends"
+        return f"has {publisher} the description of {robot.name}, or that of another robot?"
+    unsent = [it for it in sent if not set(it[1:]).isdisjoint(missing)]
+    if unsent:
+        first = unsent[0]
+        return f"by the plan {first.node} sends {first}: has it the parameters of {robot.name}?"
     return "which node sends it? is its joint in the joint states, is its plugin loaded?"

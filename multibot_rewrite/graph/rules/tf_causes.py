@@ -9,7 +9,13 @@ from multibot_rewrite.graph.rules.causes import Cause, caused
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.name_variants import name_variants
 from multibot_rewrite.graph.rules.silent_topics import silent_topics
-from multibot_rewrite.graph.rules.tf_senders import Sent, sender_of, sent_by_robot, where_set
+from multibot_rewrite.graph.rules.tf_senders import (
+    Sent,
+    foreign,
+    sender_of,
+    sent_by_robot,
+    where_set,
+)
 from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
 from multibot_rewrite.graph.snapshot import GraphFrame
 
@@ -76,15 +82,11 @@ def _not_sent(view: View, robot: PlannedRobot, planned: Sent) -> Cause:
 
 
 def _whose(view: View, robot: PlannedRobot, planned: Sent) -> Iterator[str]:
-    """The robots whose transform several nodes send, or a node on the tf topic of this one."""
+    """The robots of whom this transform is, and is sent for this one."""
     plain = _plain(view, planned.parent, planned.child, robot.name)
-    for tree in _trees(view, robot):
-        own = len(tree.home) == 1
-        for edge in tree.edges:
-            other = view.frame_ownership.robot(edge.child)
-            alike = _plain(view, edge.parent, edge.child, other) == plain
-            if alike and (own or edge.several) and other not in ("", robot.name):
-                yield other
+    for other, edge in foreign(view, robot):
+        if _plain(view, edge.parent, edge.child, other) == plain:
+            yield other
 
 
 def _plain(view: View, parent: str, child: str, robot: str) -> tuple[str, ...]:

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 from multibot_rewrite.graph.expectation import Expectation, PlannedRobot
 from multibot_rewrite.graph.rules.comparison import View
-from multibot_rewrite.graph.rules.tf_trees import TfTree
+from multibot_rewrite.graph.rules.tf_trees import TfTree, tree_topic
+from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER
 
 
@@ -35,6 +36,23 @@ def sent_by_robot(view: View, robot: PlannedRobot) -> list[Sent]:
     """Those of one robot's nodes."""
     own = (it for it in planned_transforms(view.plan) if view.robot_of.get(it.node) == robot.name)
     return list(own)
+
+
+def foreign(view: View, robot: PlannedRobot) -> Iterator[tuple[str, GraphFrame]]:
+    """Transforms of other robots, each with its robot, that a node of this one may send: all on a tf
+    topic of its own, else what several nodes send."""
+    for tree in view.trees:
+        if tree.topic != tree_topic(robot.tf):
+            continue
+        for edge in tree.edges:
+            other = view.frame_ownership.robot(edge.child)
+            if other not in ("", robot.name) and (len(tree.home) == 1 or edge.several):
+                yield other, edge
+
+
+def described_robots(view: View, robot: PlannedRobot) -> Iterator[str]:
+    """The robots whose description a node of this one seems to have, by fixed transforms of theirs."""
+    return (other for other, edge in foreign(view, robot) if edge.static)
 
 
 def sender_of(view: View, robot: PlannedRobot, frame: str) -> str:

@@ -1,0 +1,225 @@
+"""Frames that headers of messages name: who is told what, and what is healthy."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+from fault_changes import nav, shared_tf
+from graph_examples import read_danger, read_example
+from healthy_systems import SYSTEMS, plan
+
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.dangers.find import find_dangers
+from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.live.headers import HeaderSamples, sensor_topics
+from multibot_rewrite.graph.merging import Look, merged
+from multibot_rewrite.graph.snapshot import (
+    GraphEndpoint,
+    HeardFrame,
+    Snapshot,
+    from_json,
+    to_json,
+)
+from multibot_rewrite.graph.states import Controller, NodeState, Parameter
+from multibot_rewrite.graph.zenoh.cdr import read_header_frame
+from multibot_rewrite.model import InputError
+from multibot_rewrite.remap.records import PUBLISHES, TOPIC
+
+SCAN, JOINTS = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/JointState"
+TWO_ROBOTS = """\
+running: transform map -> robot1/odom on /tf
+running: transform robot1/odom -> robot1/camera_link on /tf
+running: transform map -> robot2/odom on /tf
+running: transform robot2/odom -> robot2/camera_link on /tf
+running: /robot1/camera publishes /robot1/image sensor_msgs/msg/Image
+running: /robot1/camera publishes /robot1/camera_info sensor_msgs/msg/CameraInfo
+running: /robot1/planner publishes /robot1/goal geometry_msgs/msg/PoseStamped
+"""
+
+
+def serialized(frame: str, mark: bytes = b"\x00\x01", rest: bytes = b"\x00" * 9) -> bytes:
+    """A message as DDS has it: encapsulation, stamp, text with its length and a zero, the rest."""
+    order = "<" if mark == b"\x00\x01" else ">"
+    text = frame.encode() + b"\x00"
+    return mark + b"\x00\x00" + struct.pack(f"{order}iII", 7, 8, len(text)) + text + rest
+
+
+def found(*lines: str) -> list[Finding]:
+    return find_dangers(*read_danger(TWO_ROBOTS + "".join(f"running: {it}\n" for it in lines)))
+
+
+def heard(graph: Snapshot, topic: str, frame: str) -> Snapshot:
+    return graph._replace(heard=(HeardFrame(topic, frame),))
+
+
+def test_a_camera_has_several_topics_and_one_finding() -> None:
+    (it,) = found(
+        "frame_id camera_link on /robot1/image", "frame_id camera_link on /robot1/camera_info"
+    )
+    assert (it.code, it.level, it.robot, it.node) == ("MG412", ERROR, "robot1", "/robot1/camera")
+    assert "set the frame of /robot1/camera to robot1/camera_link" in it.hint
+    assert "/robot1/camera_info, /robot1/image" in it.message or "/robot1/image, " in it.message
+
+
+def test_another_robots_frame_is_named_with_both() -> None:
+    (it,) = found("frame_id robot2/camera_link on /robot1/image")
+    assert (it.code, it.robot) == ("MG411", "robot1")
+    assert "a frame of robot2; sent by /robot1/camera" in it.message
+
+
+def test_a_name_like_none_is_a_warning() -> None:
+    (it,) = found("frame_id thermal on /robot1/image")
+    assert (it.code, it.level) == ("MG412", WARNING)
+    assert "send a transform for it" in it.hint
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "frame_id robot1/camera_link on /robot1/image",
+        "frame_id /robot1/camera_link on /robot1/image",
+        "frame_id map on /robot1/goal",
+        # A follower's goal is in the frame of the robot in front.
+        "frame_id robot2/camera_link on /robot1/goal",
+        # Nobody publishes it any more.
+        "frame_id camera_link on /robot1/gone",
+    ],
+)
+def test_healthy_headers(line: str) -> None:
+    assert found(line) == []
+
+
+def test_an_empty_frame_and_no_tf_say_nothing() -> None:
+    graph, owners = read_danger(TWO_ROBOTS)
+    assert find_dangers(heard(graph, "/robot1/image", ""), owners) == []
+    assert find_dangers(heard(graph._replace(frames=()), "/robot1/image", "x"), owners) == []
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_systems_whose_headers_are_right(name: str) -> None:
+    """Every sensor topic in a frame of its robot's tree: a leaf, where there is one."""
+    graph = SYSTEMS[name]()
+    owners = diagnose(graph).owners
+    own = {owners.frames.get(it.child, ""): it.child for it in graph.frames}
+    topics = [it.name for it in sensor_topics(graph.endpoints)]
+    names = [HeardFrame(it, own.get(owners.names.get(it, ""), "")) for it in topics]
+    findings = diagnose(graph._replace(heard=tuple(names))).findings
+    assert [str(it) for it in findings] == []
+
+
+def test_check_says_it_as_well() -> None:
+    """With a plan, whether tf is shared or each robot's own; the topic itself is planned."""
+    bare = heard(shared_tf(), "/robot1/scan", "base_link")
+    assert "MG412" in {it.code for it in check(plan(("nav2",), "L2"), bare)}
+    graph = nav()
+    frames = sorted({it.child for it in graph.frames if "robot1" in it.topic})
+    right = heard(graph, "/robot1/scan", frames[0])
+    assert {it.code for it in check(plan(("nav2",), "L1"), right)} <= {"MG108"}
+    other = heard(graph, "/robot1/scan", "no_such_frame")
+    assert "MG412" in {it.code for it in check(plan(("nav2",), "L1"), other)}
+
+
+def test_with_a_plan_the_example_is_found() -> None:
+    """The topic is as planned, and its header is not."""
+    text = """\
+planned: frames of robot1 on /tf: robot1/base_link, robot1/lidar_link
+running: transform robot1/base_link -> robot1/lidar_link on /tf
+as planned: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan
+running: frame_id lidar_link on /robot1/scan
+"""
+    assert [it.code for it in check(*read_example(text))] == ["MG412"]
+
+
+# ---------------------------------------------------------------- what is received
+
+
+@pytest.mark.parametrize("mark", [b"\x00\x01", b"\x00\x00"])
+def test_the_frame_of_a_serialized_message(mark: bytes) -> None:
+    assert read_header_frame(serialized("robot1/größe", mark)) == "robot1/größe"
+    assert read_header_frame(serialized("", mark)) == ""
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"\x00\x01", serialized("lidar")[:18], b"\x00\x07" + b"\x00" * 40]
+)
+def test_what_is_no_header_has_no_frame(data: bytes) -> None:
+    assert read_header_frame(data) is None
+
+
+def end(topic: str, type_: str = SCAN, node: str = "/a") -> GraphEndpoint:
+    return GraphEndpoint(TOPIC, PUBLISHES, topic, type_, "", node, None, "")
+
+
+def test_one_message_of_one_publisher_ends_its_subscription() -> None:
+    callbacks, ended = {}, []
+
+    def subscribe(topic: str, type_: str, latched: bool, callback: object) -> object:
+        callbacks[topic] = callback
+        return lambda: ended.append(topic)
+
+    samples = HeaderSamples(subscribe)  # type: ignore[arg-type]
+    ends = [
+        end("/scan"),
+        end("/two"),
+        end("/two", node="/b"),
+        end("/joints", JOINTS),
+        end("/silent"),
+    ]
+    for _ in range(2):
+        samples.update(ends)
+    assert set(callbacks) == {"/scan", "/two", "/silent"}
+    for frame in ("x", "y"):
+        callbacks["/two"](serialized(frame))  # type: ignore[operator]
+    callbacks["/scan"](serialized("laser"))  # type: ignore[operator]
+    assert ended == ["/scan"]
+    assert samples.heard() == (("/scan", "laser"), ("/two", "x"), ("/two", "y"))
+    assert samples.keep_waiting(1000) and not samples.keep_waiting(0)
+
+
+# ---------------------------------------------------------------- the file
+
+
+def test_a_snapshot_keeps_what_was_heard_and_answered() -> None:
+    own = (Controller("arm", "active", ("joint1/position",)), Controller("spare", "inactive"))
+    states = (
+        NodeState("/a", "inactive", True, (), (Parameter("rate", "5.0"),)),
+        NodeState("/b", "", None, own),
+        NodeState("/c"),
+    )
+    graph = nav()._replace(heard=(HeardFrame("/scan", "/laser"),), states=states)
+    assert from_json(to_json(graph), "g") == graph
+    assert b'"heard"' not in to_json(nav()) and b'"states"' not in to_json(nav())
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ('"heard": 3, ', "heard: expected a list, not 3"),
+        ('"heard": [{"topic": "scan", "frame": ""}], ', "heard[0].topic: expected a full name"),
+        (
+            '"states": [{"node": "/a", "sim_time": "no"}], ',
+            "states[0].sim_time: expected true or false",
+        ),
+        ('"states": [{"lifecycle": "active"}], ', "states[0].node: missing"),
+    ],
+)
+def test_wrong_records_are_said_with_their_place(text: str, said: str) -> None:
+    data = to_json(nav()).decode().replace('"nodes"', f'{text}"nodes"', 1)
+    with pytest.raises(InputError, match="g: ") as raised:
+        from_json(data.encode(), "g")
+    assert said in str(raised.value)
+
+
+def test_looks_from_two_machines_are_joined() -> None:
+    first = nav()._replace(
+        heard=(HeardFrame("/b", "x"), HeardFrame("/a", "x")),
+        states=(NodeState("/n"), NodeState("/m", "active")),
+    )
+    second = nav()._replace(
+        heard=(HeardFrame("/a", "x"), HeardFrame("/a", "y")), states=(NodeState("/n", "inactive"),)
+    )
+    both = merged([Look("1", first), Look("2", second)])
+    assert both.heard == (("/a", "x"), ("/a", "y"), ("/b", "x"))
+    assert both.states == (NodeState("/m", "active"), NodeState("/n", "inactive"))
