@@ -244,10 +244,16 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
     try:
         for text in listed(own.get("launch", data.get("launch", []))):
             order = launch_order(text, roots)
-            filled(dict(order.arguments), own["name"])
-            yield order
+            full = filled(dict(order.arguments), own["name"])
+            # Robots with files of their own start other nodes; else one look is enough for all.
+            yield order._replace(arguments=tuple(_own_file(it, full) for it in order.arguments))
     except UsageError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
+
+
+def _own_file(argument: tuple[str, str], full: Mapping[str, str]) -> tuple[str, str]:
+    name, text = argument
+    return name, full[name] if os.path.splitext(text)[1] else text
 
 
 def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:
