@@ -12,7 +12,7 @@ from multibot_rewrite.cli.output import note, print_lines, say
 from multibot_rewrite.cli.process import DONE, PROGRAM, STOPPED
 from multibot_rewrite.cli.report import TEXT, About, check_report, chosen, report_first
 from multibot_rewrite.cli.walk import check_target
-from multibot_rewrite.cli.watch import WORDS, follow
+from multibot_rewrite.cli.watch import follow
 from multibot_rewrite.findings.finding import ERROR, INCONCLUSIVE, NOTE, Finding
 from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
@@ -24,7 +24,7 @@ from multibot_rewrite.graph.expectation import Expectation, robot_words
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.plan_file import is_json, read_plan
 from multibot_rewrite.graph.snapshot import Snapshot
-from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.graph.watching import WORDS, Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import facts_of_release
@@ -42,10 +42,25 @@ def run(options: argparse.Namespace) -> int:
             return _watch(options, plan)
         if options.bag:
             return _recorded(options, plan)
-        return conclude(options, plan, live.with_states(options, live.graph(options)))
+        graph = live.graph(options)
+        if options.state or graph.states:
+            plan = _with_files(options, plan)
+        return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+
+
+def _with_files(options: argparse.Namespace, plan: Expectation) -> Expectation:
+    """The plan with the parameters in the files beside it."""
+    from multibot_rewrite.fleets.built_states import with_built
+
+    return with_built(plan, options.built or os.path.dirname(options.plan))
+
+
+def _parameters(plan: Expectation) -> dict[str, list[str]]:
+    """What the nodes of the plan are asked for."""
+    return {it.node: [own.name for own in it.parameters] for it in plan.states}
 
 
 def _recorded(options: argparse.Namespace, plan: Expectation) -> int:
@@ -58,10 +73,19 @@ def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
+    if options.built:
+        _check_built(options)
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
         check_target(options.output, [options.plan, *options.snapshot])
+
+
+def _check_built(options: argparse.Namespace) -> None:
+    if not os.path.isdir(options.built):
+        raise UsageError(f"{options.built}: no folder; name the one that multibot build wrote")
+    if not (options.state or options.snapshot):
+        raise UsageError("--built is compared with what nodes answer: add --state")
 
 
 def plan_of(options: argparse.Namespace) -> Expectation:
@@ -104,20 +128,20 @@ def conclude(
 
     ``before`` are findings from before there was a graph.
     """
-    found = check(plan, graph)
-    of_graph, gaps = [*before, *chosen(options, found)], _gaps(options, plan)
+    found = chosen(options, check(plan, graph))
+    of_graph, gaps = [*before, *found], _gaps(options, plan)
     findings = [*of_graph, *gaps]
     about = About([plan_name(options)], robot_words(plan), plan.release)
     failed = report_first(options, findings, about)
     caveats = doubts(graph)
     for caveat in caveats:
         say(f"incomplete: {caveat.message}", PROGRAM)
-    codes = {it.code for it in findings}
-    pictures.deliver(options, plan, graph, [it for it in found if it.code in codes])
     unsure = caveats or any(it.level == INCONCLUSIVE for it in of_graph)
     verdict = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
     verdict = Verdict.WRONG if fails(of_graph, options.fail_on) else verdict
-    _sum_up(options, plan, findings, verdict, gaps)
+    outcome = _outcome(options, verdict, gaps)
+    pictures.deliver(options, plan, graph, findings, outcome)
+    _sum_up(options, plan, findings, outcome)
     return STOPPED if failed else CODES[verdict]
 
 
@@ -140,19 +164,22 @@ def plan_name(options: argparse.Namespace) -> str:
     return str(given.get("plan") or given["input"])
 
 
+def _outcome(options: argparse.Namespace, verdict: Verdict, gaps: Sequence[Finding]) -> Outcome:
+    """A graph may be as planned, and the plan not close."""
+    is_open = any(it.level != NOTE for it in gaps)
+    word = "but" if verdict == Verdict.PLANNED else "and"
+    but = f", {word} the plan does not close" if is_open else ""
+    return Outcome(verdict, f"{WORDS[verdict]}{but}", f"{options.program} {options.command}")
+
+
 def _sum_up(
     options: argparse.Namespace,
     plan: Expectation,
     findings: Sequence[Finding],
-    verdict: Verdict,
-    gaps: Sequence[Finding],
+    outcome: Outcome,
 ) -> None:
-    """A graph may be as planned, and the plan not close."""
     counted = f"{plural(len(plan.robots), 'robot')}, {plural(len(findings), 'finding')}"
-    is_open = any(it.level != NOTE for it in gaps)
-    word = "but" if verdict == Verdict.PLANNED else "and"
-    but = f", {word} the plan does not close" if is_open else ""
-    note(options, f"{counted}: {WORDS[verdict]}{but}{facts_of_release(plan.release)}")
+    note(options, f"{counted}: {outcome.words}{facts_of_release(plan.release)}")
 
 
 def _watch(options: argparse.Namespace, plan: Expectation) -> int:
@@ -165,7 +192,8 @@ def _watch(options: argparse.Namespace, plan: Expectation) -> int:
     findings = [*last.findings, *gaps]
     if options.output:
         report_first(options, findings, About([options.plan], robot_words(plan), plan.release))
-    pictures.deliver(options, plan, last.graph, last.findings)
     verdict = final(last)
-    _sum_up(options, plan, findings, verdict, gaps)
+    outcome = _outcome(options, verdict, gaps)
+    pictures.deliver(options, plan, last.graph, findings, outcome)
+    _sum_up(options, plan, findings, outcome)
     return STOPPED if any(it.level == ERROR for it in gaps) else CODES[verdict]

@@ -31,7 +31,7 @@ from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.live.child import RosUnusable
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.tool_nodes import is_tool
-from multibot_rewrite.graph.watching import Verdict, final
+from multibot_rewrite.graph.watching import Outcome, Verdict, final
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.releases import release_here
@@ -85,9 +85,15 @@ def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
     unsure = [caveat.message for caveat in doubts(seen.graph)] or list(_nothing_seen(seen.graph))
     for reason in unsure:
         say(f"incomplete: {reason}", PROGRAM)
-    _write(options, seen, findings)
     inconclusive = Verdict.INCONCLUSIVE if unsure else Verdict.PLANNED
-    return _sum_up(options, len(findings), Verdict.WRONG if failed else inconclusive)
+    verdict = Verdict.WRONG if failed else inconclusive
+    _write(options, seen, findings, _outcome(verdict, unsure))
+    return _sum_up(options, len(findings), verdict)
+
+
+def _outcome(verdict: Verdict, reasons: Sequence[str] = ()) -> Outcome:
+    words = WORDS[verdict]
+    return Outcome(verdict, words, "multibot doctor", planned=False, reasons=tuple(reasons))
 
 
 def _nothing_seen(graph: Snapshot) -> Iterator[str]:
@@ -96,10 +102,12 @@ def _nothing_seen(graph: Snapshot) -> Iterator[str]:
         yield "no node of a robot is in this graph, so there is nothing to judge"
 
 
-def _write(options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding]) -> None:
+def _write(
+    options: argparse.Namespace, seen: Diagnosis, findings: Sequence[Finding], outcome: Outcome
+) -> None:
     """The pictures and the files that the options ask for."""
     if any(vars(options)[name] for name in pictures.NAMES):
-        pictures.deliver(options, seen_plan(seen), seen.graph, findings)
+        pictures.deliver(options, seen_plan(seen), seen.graph, findings, outcome)
     if options.suggest:
         files = suggestion(seen, built_in(release_here(None)))
         paths = {os.path.join(options.suggest, name): text for name, text in files.items()}
@@ -124,7 +132,7 @@ def _watch(options: argparse.Namespace) -> int:
         return live.INCONCLUSIVE
     if options.output:
         _report(options, diagnose(last.graph), last.findings)
-    _write(options, diagnose(last.graph), last.findings)
+    _write(options, diagnose(last.graph), last.findings, _outcome(final(last)))
     return _sum_up(options, len(last.findings), final(last))
 
 

@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from itertools import islice
 
 from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.watching import Outcome
 from multibot_rewrite.model import UsageError
 
 NAMES = ("report", "mermaid", "dot")
 # What a command may have read.
 _INPUTS = ("plan", "input")
+# How much of a source is shown: lines before and after the one, letters of each.
+_AROUND, _LONGEST = 2, 160
 
 
 def check(options: argparse.Namespace) -> None:
@@ -23,20 +28,53 @@ def check(options: argparse.Namespace) -> None:
 
 
 def deliver(
-    options: argparse.Namespace, plan: Expectation, graph: Snapshot, found: Sequence[Finding]
+    options: argparse.Namespace,
+    plan: Expectation,
+    graph: Snapshot,
+    found: Sequence[Finding],
+    outcome: Outcome,
 ) -> None:
     """Write the pictures asked for, all or none; raises UsageError where one cannot be written."""
     wanted = list(_wanted(options))
     if not wanted:
         return
+    from multibot_rewrite.catalogue import rules
     from multibot_rewrite.graph.pictures.dot import to_dot  # few checks draw
     from multibot_rewrite.graph.pictures.mermaid import to_mermaid
     from multibot_rewrite.graph.pictures.page import to_html
-    from multibot_rewrite.graph.pictures.scene import make_scene
+    from multibot_rewrite.graph.pictures.scene import Scene, make_scene
 
-    drawn = dict(zip(NAMES, (to_html, to_mermaid, to_dot), strict=True))
-    scene = make_scene(plan, graph, found)
+    scene = make_scene(plan, graph, found, outcome)
+    page = partial(to_html, rules=rules(), snippets=snippets(row.place for row in scene.rows))
+    draw: tuple[Callable[[Scene], bytes], ...] = (page, to_mermaid, to_dot)
+    drawn = dict(zip(NAMES, draw, strict=True))
     write_files(options, [(target, drawn[name](scene)) for name, target in wanted])
+
+
+def snippets(places: Iterable[str]) -> dict[str, list[str]]:
+    """By ``file:line``: that line of the file with those around it, each with its number.
+
+    A file that is not there any more, or is no text, has none.
+    """
+    found = {}
+    for place in dict.fromkeys(places):
+        file, _, line = place.rpartition(":")
+        if file and line.isdecimal():
+            found[place] = _lines_around(file, int(line))
+    return {place: lines for place, lines in found.items() if lines}
+
+
+def _lines_around(file: str, line: int) -> list[str]:
+    first = max(line - 1 - _AROUND, 0)
+    try:
+        with open(file, encoding="utf-8") as text:
+            # A line may be as long as the file.
+            lines = list(islice(text, first, line + _AROUND))
+    except (OSError, ValueError):
+        return []
+    return [
+        f"{number:5d} {it.rstrip()[:_LONGEST]}" for number, it in enumerate(lines, start=first + 1)
+    ]
 
 
 def _wanted(options: argparse.Namespace) -> Iterator[tuple[str, str]]:

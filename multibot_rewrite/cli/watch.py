@@ -12,14 +12,9 @@ from multibot_rewrite.cli.tables import Grid, render
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import CHANGING, Snapshot
-from multibot_rewrite.graph.watching import Verdict, WatchState, with_found
+from multibot_rewrite.graph.watching import WORDS, Verdict, WatchState, with_found
 from multibot_rewrite.plural import plural
 
-WORDS = {
-    Verdict.PLANNED: "as planned",
-    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
-    Verdict.WRONG: "not as planned",
-}
 # As many findings as a screen holds beside the robots.
 _SHOWN = 15
 Show = Callable[[WatchState], None]

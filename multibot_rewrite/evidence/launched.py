@@ -37,16 +37,18 @@ NO_NAME = "the launch file gives it no name"
 
 class Programs(NamedTuple):
     """Executables whose node is known under another word, those whose node has another name, and those
-    that are no node of a robot."""
+    that are no node of a robot. ``simulators`` are packages that only a simulated robot needs."""
 
     nodes: Mapping[str, str]
     names: Mapping[str, str]
     passing: Collection[str]
+    simulators: Collection[str]
 
 
 class Launched(NamedTuple):
     """The nodes of stacks and launch files, what these set for nodes, what each launched node is by
-    its name, the controllers that are spawned by theirs, if that is all that runs, and findings."""
+    its name, the controllers that are spawned by theirs, if that is all that runs, findings, and if
+    they start a simulator, or what is for one."""
 
     nodes: tuple[NodeFacts, ...]
     given: tuple[GivenNode, ...]
@@ -54,6 +56,7 @@ class Launched(NamedTuple):
     spawned: Mapping[str, Spawned]
     whole: bool
     findings: tuple[Finding, ...]
+    simulated: bool = False
 
 
 class _Pair(NamedTuple):
@@ -67,7 +70,9 @@ def programs() -> Programs:
     """Those of ``launch_programs.yaml``."""
     text = files("multibot_rewrite.evidence").joinpath("launch_programs.yaml").read_text("utf-8")
     data = load_yaml(text)
-    return Programs(data["nodes"], data["names"], frozenset(data["passing"]))
+    return Programs(
+        data["nodes"], data["names"], frozenset(data["passing"]), frozenset(data["simulators"])
+    )
 
 
 def with_launched(
@@ -101,6 +106,7 @@ def with_launched(
         {_stripped(it.full_name.strip("/"), words): it for it in spawned},
         graph.whole,
         tuple(launch_findings(graph, unknown, left)),
+        any(it.package in programs().simulators for it in graph.nodes),
     )
 
 
@@ -279,9 +285,11 @@ def _document(it: ParameterText) -> YamlText:
 
 def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:
     """The node with the remap rules of its launch file; those of tf belong to the layout."""
-    above, name = namespace.rstrip("/"), node.name.rpartition("/")[2]
+    above = namespace.rstrip("/")
+    below, _, name = node.name.rpartition("/")
+    home = above.removesuffix(f"/{below}") if below else above
     targets = {
-        expand(old, above, name): new.removeprefix(f"{above}/") if above else new
+        expand(old, above, name): _target(new, above, home)
         for old, new in reversed([it for it in rules if it[0] not in _TF])
     }
     ends = []
@@ -289,3 +297,11 @@ def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str)
         target = targets.get(expand(it.name, above, name), it.name)
         ends.append(it._replace(remapped=target) if target != it.name else it)
     return node._replace(endpoints=tuple(ends))
+
+
+def _target(new: str, above: str, home: str) -> str:
+    """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
+    ``home``."""
+    inner = above != home and not new.startswith(("/", "~"))
+    full = f"{above}/{new}" if inner else new
+    return full.removeprefix(f"{home}/") if home else full

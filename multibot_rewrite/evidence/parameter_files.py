@@ -75,6 +75,21 @@ def _check_name(name: str, place: Place) -> None:
         raise InputError(f"{place}: controller {name!r}: {fault.reason}; {hint}")
 
 
+def named_values(
+    document: YamlText, nodes: Iterable[str]
+) -> Iterator[tuple[str, dict[str, Given]]]:
+    """Of the nodes (full names) that a file has a section of their name for, with all values that each
+    gets from the file.
+
+    Raises InputError for a file that is not a parameter file.
+    """
+    sections = [(_section(document, it), pattern_of(it.path)) for it in raw_sections(document)]
+    for node in nodes:
+        own = [it for it, pattern in sections if re.fullmatch(pattern, node)]
+        if any(it.name for it in own):
+            yield node, {name: value for it in own for name, value in it.values.items()}
+
+
 def _section(document: YamlText, raw: RawSection) -> _Section:
     return _Section(document.file, raw, dict(_flat(document, raw.body, "")))
 

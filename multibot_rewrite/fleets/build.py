@@ -12,7 +12,7 @@ from multibot_rewrite.companions.yaml_text import quoted
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import grouped
 from multibot_rewrite.fleets.bridge_outputs import bridge_outputs
-from multibot_rewrite.fleets.closed_plan import bridged_by, gaps_of, texts_of
+from multibot_rewrite.fleets.closed_plan import bridged_by, demanded, gaps_of, texts_of
 from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.consistency import consistency
@@ -69,7 +69,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         texts = texts_of(files)
         gaps = gaps_of(plan, fleet, texts, findings)
         findings += (*consistency(plan, fleet, texts, findings), *gaps)
-        fleet = fleet._replace(gaps=gaps, bridged=bridged_by(texts))
+        fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts)))
         files = sorted((*files, *_tables(plan, fleet)))
         _check_paths_differ(files)
         return Outputs(tuple(files), tuple(_once(plan, findings)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.findings.finding import Finding
@@ -39,7 +39,7 @@ def closed_plan(plan: FleetPlan) -> Fleet:
         found += (it for robot in few.robots for it in robot.findings)
         gaps = gaps_of(plan, fleet, texts, found)
         rows = [it for it in bridge_outputs(plan) if isinstance(it, OutputFile)]
-        return fleet._replace(gaps=gaps, bridged=bridged_by(texts_of(rows)))
+        return fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts_of(rows))))
 
 
 def bridged_by(texts: Iterable[OutputText]) -> tuple[PlannedTopic, ...]:
@@ -50,6 +50,16 @@ def bridged_by(texts: Iterable[OutputText]) -> tuple[PlannedTopic, ...]:
         PlannedTopic(end.name, bridge=(end.role,) if end.role else BOTH, type=end.type)
         for end in rows
     )
+
+
+def demanded(plan: FleetPlan, texts: Iterable[OutputText]) -> Iterator[OutputText]:
+    """The files without the bridges of robots that may be real, and without that of what all share
+    where all may be."""
+    maybe = plan.fleet.maybe_real
+    names = {it.spec.name for it in plan.robots if it.spec.namespace in maybe}
+    left = {f"{it}/{BRIDGE_FILE}" for it in names}
+    left |= {BRIDGE_FILE} if len(names) == len(plan.robots) else set()
+    return (it for it in texts if it.path not in left)
 
 
 def texts_of(files: Iterable[OutputFile]) -> list[OutputText]:

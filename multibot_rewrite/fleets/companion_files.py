@@ -59,10 +59,13 @@ def _params(plan: FleetPlan, group: RobotGroup, path: str) -> Companion:
     nodes = plan.evidence[node_sources(group.robots[0].spec)].nodes
     known = known._replace(sent=known.sent | {it for node in nodes for it in children_of(node)})
     robots = {name for it in plan.robots for name in (it.spec.namespace, it.spec.tag)}
-    made = rewrite_params(read[path], group.context, known, others, group.facts, sorted(robots))
+    own = group.robots[0].spec.words if len(group.robots) == 1 else ()
+    made = rewrite_params(
+        read[path], group.context, known, others, group.facts, sorted(robots), own
+    )
     if path != next(iter(read)):
         return made
-    more = nodes_without_section(list(read.values()), group.context, known)
+    more = nodes_without_section(list(read.values()), group.context, known, own)
     return made._replace(findings=(*made.findings, *more))
 
 

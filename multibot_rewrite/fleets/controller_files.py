@@ -12,6 +12,7 @@ from collections.abc import Iterator
 
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.fleet_file import REAL
 from multibot_rewrite.fleets.output_file import path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.lazy import lazy_compile
@@ -73,8 +74,11 @@ companions:
 def with_own_controllers(robot: RewrittenRobot, folder: str) -> tuple[bytes, tuple[Finding, ...]]:
     """The description with the paths of the files that are made for this robot in ``folder``.
 
-    Without a ``folder`` nothing is written, and it stays as it is.
+    Without a ``folder`` nothing is written, and it stays as it is. So does that of a real robot, which
+    loads no file for its simulator's plugin.
     """
+    if robot.spec.simulator == REAL:
+        return robot.description, ()
     source = robot.member.inventory.document.source
     params = robot.spec.companions.get("params", ())
     edits, findings = [], []

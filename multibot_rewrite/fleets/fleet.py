@@ -48,7 +48,8 @@ class Fleet(NamedTuple):
     description (``file:line``) of each plugin's node, ``origins`` of every other node the file or stack
     that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
-    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry."""
+    ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry;
+    ``maybe_real`` are robots of which nothing says that they are simulated."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -61,6 +62,7 @@ class Fleet(NamedTuple):
     read: tuple[str, ...]
     gaps: tuple[Finding, ...] = ()
     bridged: tuple[PlannedTopic, ...] = ()
+    maybe_real: frozenset[str] = frozenset()
 
 
 def make_fleet(
@@ -233,7 +235,9 @@ def expected(fleet: Fleet) -> Expectation:
     }
     named = {robot: named_frames(found) for robot, found in fleet.inventories.items()}
     tags, places = fleet.tags, fleet.sources
-    plan = expect(fleet.table, fleet.naming, frames, fleet.facts, named, places, tags)
+    plan = expect(
+        fleet.table, fleet.naming, frames, fleet.facts, named, places, tags, fleet.maybe_real
+    )
     plan = plan._replace(origins=tuple(fleet.origins.items()), sends=tuple(_sends(fleet)))
     nothing = vacuous(plan)
     if nothing:

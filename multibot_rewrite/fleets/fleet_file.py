@@ -26,6 +26,8 @@ LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topi
 POLICY = tuple(Policy.__annotations__)
 # Description, SRDF and arguments; the robot's name, if the arguments hold a word of it.
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
+# What ``simulator`` says of a real robot.
+REAL = "none"
 EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 
 
@@ -46,7 +48,7 @@ class RobotSpec(NamedTuple):
     ``namespace`` has no leading slash; ``tag`` is the prefix or postfix of its frames and joints;
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
-    something, by path.
+    something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
     """
 
     name: str
@@ -64,6 +66,7 @@ class RobotSpec(NamedTuple):
     line: int
     launch: tuple[LaunchOrder, ...] = ()
     filled: tuple[tuple[str, str], ...] = ()
+    simulator: str = ""
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -235,6 +238,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         file,
         line,
         tuple(_launch(data, own, place)),
+        simulator=own.get("simulator", data.get("simulator", "")),
     )
 
 
@@ -246,14 +250,12 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
             order = launch_order(text, roots)
             full = filled(dict(order.arguments), own["name"])
             # Robots with files of their own start other nodes; else one look is enough for all.
-            yield order._replace(arguments=tuple(_own_file(it, full) for it in order.arguments))
+            own_files = {
+                name: full[name] for name, text in order.arguments if os.path.splitext(text)[1]
+            }
+            yield order._replace(arguments=tuple({**dict(order.arguments), **own_files}.items()))
     except UsageError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
-
-
-def _own_file(argument: tuple[str, str], full: Mapping[str, str]) -> tuple[str, str]:
-    name, text = argument
-    return name, full[name] if os.path.splitext(text)[1] else text
 
 
 def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:

@@ -23,6 +23,7 @@ from multibot_rewrite.fleets.robot_nodes import (
     robot_nodes,
 )
 from multibot_rewrite.fleets.shared_nodes import check_shared
+from multibot_rewrite.fleets.simulators import may_be_real, note
 from multibot_rewrite.gc_pause import gc_paused
 from multibot_rewrite.naming import Naming, make_naming
 
@@ -60,7 +61,13 @@ def plan_fleet(
             for key, spec in specs.items()
         }
         check_shared(file, {node.name: node for it in evidence.values() for node in it.nodes})
-        fleet = _fleet(file, robots, naming, evidence)
+        real = [it for it in robots if may_be_real(it, evidence[node_sources(it.spec)])]
+        for it in real[:1]:
+            key = node_sources(it.spec)
+            found = evidence[key]
+            evidence[key] = found._replace(findings=(*found.findings, note(it)))
+        maybe = frozenset(it.spec.namespace for it in real)
+        fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 

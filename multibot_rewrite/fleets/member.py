@@ -5,12 +5,15 @@ from __future__ import annotations
 from itertools import islice
 from typing import NamedTuple
 
+from lxml import etree
+
 from multibot_rewrite.checks.arguments import UNREAD
 from multibot_rewrite.checks.meeting import SHARED_CODES
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.library import Rewrite
 from multibot_rewrite.model import InputError, UsageError
 from multibot_rewrite.readback.reading import Reading, read
+from multibot_rewrite.readback.xml import read_xml
 from multibot_rewrite.rewriters.vocabulary import Vocabulary
 from multibot_rewrite.rosnames import bind, resolve_bound
 from multibot_rewrite.steps.collect import Inventory, collect
@@ -35,12 +38,14 @@ class Member(NamedTuple):
     read: tuple[str, ...]
 
 
-def member(source: Rewrite, data: bytes, tag: str) -> Member:
-    """The robot of a rewrite; ``data`` is its final description.
+def member(source: Rewrite, data: bytes, tag: str, real: bool = False) -> Member:
+    """The robot of a rewrite; ``data`` is its final description, of which a ``real`` robot takes
+    nothing that is for a simulator.
 
     Raises InputError where ROS refuses the names of a plugin.
     """
     document, tree = source.template.inventory.document, source.template.tree
+    data = without_simulator(data, document.file) if real else data
     written = collect(read_document(data, document.file), tree)
     reading = read(data, document.file, tree.vocabulary)
     _check_names(reading, document)
@@ -49,6 +54,17 @@ def member(source: Rewrite, data: bytes, tag: str) -> Member:
     read_for = source.prepared.job.read.files
     words = (shared, unread, read_for)
     return Member(source.robot, tag, written, reading, document, tree.vocabulary, *words)
+
+
+def without_simulator(data: bytes, file: str) -> bytes:
+    """A description without its plugins and sensors for simulators; raises InputError."""
+    root = read_xml(data, file)
+    tags = ("plugin", "sensor") if root.tag == "sdf" else ("gazebo",)
+    for element in list(root.iter(*tags)):
+        above = element.getparent()
+        if above is not None:
+            above.remove(element)
+    return etree.tostring(root)
 
 
 def line_of(document: Document, tag: str, number: int) -> int:

@@ -13,7 +13,7 @@ from multibot_rewrite.checks.twice import CARRYING
 from multibot_rewrite.companions.names.rename_map import CompanionNames, companion_names
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.fleets.fleet_file import RobotSpec, Sources
+from multibot_rewrite.fleets.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
@@ -142,7 +142,7 @@ def _rewritten(group: Sequence[RobotSpec], jobs: Jobs) -> Iterator[RewrittenRobo
             names,
             names._replace(robot=robot.namespace),
             semantic.template.inventory.declared if semantic else NOTHING,
-            member(text, data, robot.tag),
+            member(text, data, robot.tag, robot.simulator == REAL),
             # These the fleet says, of the robots that it has.
             tuple(it for it in found if it.code not in (*SHARED_CODES, UNREAD)),
         )

@@ -25,24 +25,26 @@ from multibot_rewrite.steps.document import Document
 
 MOVE_GROUP = "move_group"
 # What decides the nodes of a robot.
-NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, Sources]
+NodeSources = tuple[tuple[str, ...], tuple[str, ...], tuple[LaunchOrder, ...], str, str, Sources]
 
 
 def node_sources(spec: RobotSpec) -> NodeSources:
     """Robots for which this is equal run the same nodes."""
     params = spec.companions.get("params", ())
-    return spec.stacks, params, spec.launch, spec.srdf, spec.sources
+    return spec.stacks, params, spec.launch, spec.srdf, spec.simulator, spec.sources
 
 
 class RobotEvidence(NamedTuple):
     """What a robot's files set for nodes, the nodes that are known by name, those that it runs,
-    where its files and stacks disagree, and the controllers that its launch files spawn."""
+    where its files and stacks disagree, the controllers that its launch files spawn, and whether
+    these start all of its nodes and no simulator."""
 
     given: tuple[GivenNode, ...]
     known: Mapping[str, NodeFacts]
     nodes: tuple[NodeFacts, ...]
     findings: tuple[Finding, ...]
     spawned: Mapping[str, Spawned]
+    unsimulated: bool = False
 
 
 def robot_nodes(
@@ -64,7 +66,9 @@ def robot_nodes(
     whole = launched is not None and launched.whole
     nodes = nodes if whole else (*nodes, *_of_srdf(spec, nodes, known))
     marked, shared = apart(nodes, file)
-    return RobotEvidence(given, known, marked, (*notes, *findings, *shared), spawned)
+    unsimulated = launched is not None and launched.whole and not launched.simulated
+    said = (*notes, *findings, *shared)
+    return RobotEvidence(given, known, marked, said, spawned, unsimulated)
 
 
 def _of_srdf(

@@ -15,7 +15,7 @@ from lxml import etree
 from multibot_rewrite.companions.names.robot_topics import NOTHING, fleet_topics, robot_topic
 from multibot_rewrite.findings.finding import WARNING, Finding
 from multibot_rewrite.findings.rule import declare
-from multibot_rewrite.fleets.fleet_file import Pose
+from multibot_rewrite.fleets.fleet_file import REAL, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
 from multibot_rewrite.naming import NAMESPACE
@@ -54,7 +54,10 @@ def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
 
 
 def is_simulated(robot: RewrittenRobot) -> bool:
-    """May Gazebo run it? Not if its ros2_control drives hardware and nothing in it is for Gazebo."""
+    """May Gazebo run it? Not if the fleet file says that it is real, nor if its ros2_control drives
+    hardware and nothing in it is for Gazebo."""
+    if robot.spec.simulator == REAL:
+        return False
     root = robot.member.inventory.document.root
     gazebo = any(
         it.find("plugin") is not None or it.find("sensor") is not None for it in root.iter("gazebo")

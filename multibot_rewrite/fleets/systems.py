@@ -16,6 +16,8 @@ from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.fleets.bridge_entry import BOTH, ROS
 from multibot_rewrite.fleets.fleet import Fleet
+from multibot_rewrite.fleets.fleet_file import REAL
+from multibot_rewrite.fleets.member import without_simulator
 from multibot_rewrite.fleets.output_file import yaml_of
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
@@ -52,7 +54,9 @@ def system_before(robot: RewrittenRobot, evidence: RobotEvidence) -> System:
     source, given, bridges = robot.member.source, evidence.given, _documents(robot, "bridge")
     moves = any(it.get("type", FIXED) != FIXED for it in source.root.iter("joint"))
     nodes = [_runs(it, moves) for it in evidence.nodes]
-    reading = read(source.source, source.file, robot.member.vocabulary)
+    real = robot.spec.simulator == REAL
+    text = without_simulator(source.source, source.file) if real else source.source
+    reading = read(text, source.file, robot.member.vocabulary)
     shared = [end for node in nodes if node.shared for end in _ends_of(node, given)]
     ends = [
         *(end for node in nodes if not node.shared for end in _ends_of(node, given)),

@@ -73,6 +73,29 @@ class PlannedTopic(NamedTuple):
     type: str = ""
 
 
+class PlannedParameter(NamedTuple):
+    """A parameter with its value, as ``states.parameter_text`` writes it.
+
+    ``place`` is the ``file:line`` that it is from, empty for the plan itself.
+    """
+
+    name: str
+    value: str
+    place: str = ""
+
+
+class PlannedState(NamedTuple):
+    """What a running node answers: the label of its life cycle, its parameters; and its machine.
+
+    ``host`` is any word: nodes of one host run on one machine, those of two on two.
+    """
+
+    node: str
+    lifecycle: str = ""
+    host: str = ""
+    parameters: tuple[PlannedParameter, ...] = ()
+
+
 class Expectation(NamedTuple):
     """The plan of a fleet.
 
@@ -84,7 +107,8 @@ class Expectation(NamedTuple):
     ``topics`` say more of some topics; of each group in ``one_of`` one node runs, and not more.
     ``gaps`` are findings about what is open in the robots as they are planned: a name that is read
     and not sent, for example. ``sends`` has for a node the transforms that it sends, but for those of
-    the description, as ``odom -> base_link, map -> odom``.
+    the description, as ``odom -> base_link, map -> odom``. ``states`` are compared with what nodes
+    answer.
     """
 
     layout: str
@@ -102,6 +126,7 @@ class Expectation(NamedTuple):
     one_of: tuple[tuple[str, ...], ...] = ()
     gaps: tuple[Finding, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
+    states: tuple[PlannedState, ...] = ()
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:
@@ -128,15 +153,17 @@ def expect(
     named: Mapping[str, Sequence[str]] = NOTHING,
     sources: Mapping[str, str] = NOWHERE,
     words: Mapping[str, str] = NOWHERE,
+    maybe_real: Container[str] = (),
 ) -> Expectation:
     """The plan that follows from a remap table.
 
     ``frames`` are the declared frames of each robot, ``named`` further frames in its description.
     ``facts`` describe the nodes that every robot runs. ``words`` has the name of a robot in its
-    frames, where that is another one than its name.
+    frames, where that is another one than its name; plugins of ``maybe_real`` robots may be missing.
     """
     known = tuple(facts)
-    nodes, optional = _nodes(table), {node.name for node in known if node.when}
+    nodes, conditional = _nodes(table), {node.name for node in known if node.when}
+    plugins = {node.node for node in table.nodes if node.home.written and node.robot in maybe_real}
     private = _private_nodes(table.names)
     always = _private_nodes(it for it in table.names if not it.endpoint.when)
     usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
@@ -147,6 +174,7 @@ def expect(
         left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
         made = private.get(name, ())
         full = tuple(dict.fromkeys((*(it for _, it in nodes.get(name, ())), *made)))
+        optional = conditional | plugins if name in maybe_real else conditional
         may_miss = _may_miss(nodes.get(name, ()), optional, made, always.get(name, ()))
         tag = word if word != name else ""
         tf = tf_topic(name, naming)

@@ -20,6 +20,27 @@ class Verdict(IntEnum):
     WRONG = 2
 
 
+WORDS = {
+    Verdict.PLANNED: "as planned",
+    Verdict.INCONCLUSIVE: "inconclusive, the view may be incomplete",
+    Verdict.WRONG: "not as planned",
+}
+
+
+class Outcome(NamedTuple):
+    """The verdict as a command says it: in which ``words``, and who says it (``by``).
+
+    Without ``planned`` there was no plan to compare with. ``reasons`` say why it is not certain,
+    besides the caveats of the graph.
+    """
+
+    verdict: Verdict
+    words: str
+    by: str = "multibot check"
+    planned: bool = True
+    reasons: tuple[str, ...] = ()
+
+
 class Progress(NamedTuple):
     """How much of a robot's plan is in the graph, each as (in the graph, planned)."""
 

@@ -56,9 +56,11 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     if isinstance(item.value, str):
         return checked_endpoint(item, Endpoint(_kind(role, item.value), role, name, item.value))
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
+    also = words_of(keys, "also")
     endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
         **{key: word_of(keys, key) for key in ENDPOINT_WORDS},
-        also=words_of(keys, "also"),
+        also=also,
+        types=tuple(_types(keys, (word_of(keys, "type"), *also))),
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper", "by" in keys),
         condition=condition_of(keys),
@@ -66,8 +68,7 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         releases=releases_of(keys),
         source=source_of(keys),
     )
-    every = (endpoint.type, *endpoint.also)
-    return checked_endpoint(item, endpoint._replace(types=tuple(_types(keys, every))))
+    return checked_endpoint(item, endpoint)
 
 
 def _types(keys: Mapping[str, YamlItem], every: Sequence[str]) -> Iterator[tuple[str, str]]:

@@ -33,6 +33,7 @@ from multibot_rewrite.companions.params.known_nodes import (
 )
 from multibot_rewrite.companions.params.page import page
 from multibot_rewrite.companions.params.rewrite import nodes_without_section, rewrite_params
+from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.template import NAMESPACE_SLOT, fill_template
 from multibot_rewrite.companions.yaml_text import quoted, read_yaml
 from multibot_rewrite.model import InputError, UsageError
@@ -157,6 +158,46 @@ def test_a_robots_name_in_a_file_is_an_error() -> None:
     found = made(source, robots=["robot1", "robot2"])[1]
     assert [(it.level, it.line) for it in found if it.code == "MF126"] == [("error", 3)]
     assert "MF126" not in codes(made(source)[1])
+
+
+OWN = """\
+robot1:
+  amcl:
+    ros__parameters: {scan_topic: scan}
+robot1/sensors/lidar:
+  driver:
+    ros__parameters: {rate: 1}
+/robot1/**:
+  ros__parameters: {use_sim_time: true}
+"""
+
+
+@pytest.mark.parametrize(
+    ("layout", "keys"),
+    [
+        ("L1", ["/robot1/amcl", "/robot1/sensors/lidar/driver", "/**"]),
+        ("L4", ["/**/amcl_robot1", "/sensors/lidar/driver_robot1", "/**"]),
+    ],
+)
+def test_a_file_for_one_robot_may_have_its_sections_in_its_namespace(
+    layout: str, keys: list[str]
+) -> None:
+    nodes = stack_of(built_in("jazzy"), "localization")
+    context = make_context(DECLARED, make_naming(layout=layout), nodes, distro="jazzy")  # type: ignore[arg-type]
+    document = read_yaml(OWN.encode(), "p")
+    robots = ["robot1", "robot2"]
+    made = rewrite_params(document, context, None, (), nodes, robots, own=["robot1"])
+    text = fill_template(made.template, "robot1", "robot1")
+    assert [it.path for it in raw_sections(read_yaml(text.encode(), "p"))] == [
+        it.lstrip("/") for it in keys
+    ]
+    assert not {it.code for it in made.findings} & {"MF104", "MF105", "MF126"}
+    others = rewrite_params(document, context, None, (), nodes, robots)
+    assert {"MF104", "MF126"} <= {it.code for it in others.findings}
+    # Another robot's name below it is wrong all the same.
+    wrong = read_yaml(OWN.replace("scan_topic: scan", "scan_topic: /robot2/scan").encode(), "p")
+    found = rewrite_params(wrong, context, None, (), nodes, robots, own=["robot1"]).findings
+    assert "MF126" in {it.code for it in found}
 
 
 def test_a_node_for_all_robots_keeps_its_section() -> None:

@@ -72,6 +72,26 @@ def test_the_name_of_a_node_is_that_of_its_launch_file_or_its_own(
     assert runs(found)[name].endpoints
 
 
+@pytest.mark.parametrize(
+    ("namespace", "target", "name"),
+    [
+        ("/robot1", "diagnostics", "diagnostics"),
+        ("/robot1/sensors/lidar", "diagnostics", "sensors/lidar/diagnostics"),
+        ("/robot1/sensors/lidar", "/robot1/diagnostics", "diagnostics"),
+        ("/robot1/sensors/lidar", "/robot1/sensors/lidar/front", "sensors/lidar/front"),
+        ("/robot1/sensors/lidar", "/diagnostics_all", "/diagnostics_all"),
+        ("/", "diagnostics", "diagnostics"),
+    ],
+)
+def test_a_rule_leads_from_the_nodes_own_namespace(namespace: str, target: str, name: str) -> None:
+    """A relative target is in the namespace of the node: rcl remap.c, rcl_expand_topic_name."""
+    rules = (("/diagnostics", target),)
+    node = started("urg_node", "urg_node_driver", "urg", namespace=namespace, remappings=rules)
+    (found,) = (it for key, it in runs(launched(node)).items() if key.endswith("urg"))
+    ends = {it.name: it.remapped for it in found.endpoints}
+    assert ends["/diagnostics"] == name
+
+
 def test_a_costmap_comes_with_the_server_that_has_it() -> None:
     found = runs(launched(started("nav2_controller", "controller_server", "controller_server")))
     assert set(found) == {PUBLISHER, "controller_server", "local_costmap/local_costmap"}

@@ -57,7 +57,7 @@ TAGS = frozenset(
     re.findall(
         r"\w+",
         """html head meta title style script body header main section h1 h2 h3 p ul li div span b em
-        a code small table thead tbody tr th td label select option output input details summary
+        a code small pre label select option output input details summary
         dl dt dd svg defs marker g path rect text tspan""",
     )
 )
@@ -104,7 +104,7 @@ def swarm() -> Expectation:
 def test_a_healthy_fleet_has_nothing_in_red(layout: str) -> None:
     plan = nav2_graphs.nav2(layout)
     scene = nav2_graphs.scene(plan, nav2_graphs.healthy(plan))
-    assert scene.verdict == Verdict.PLANNED
+    assert scene.outcome.verdict == Verdict.PLANNED
     assert {edge.state for group in scene.groups for edge in group.edges} == {OK}
     assert set(node_states(scene).values()) == {OK}
     assert [group.robot for group in scene.groups] == ["robot1", "robot2", ""]
@@ -145,7 +145,7 @@ def test_cross_talk_is_red_in_both_groups_and_an_arrow_in_the_overview() -> None
     assert scene.crossings == (("robot2", "", "robot1", CROSS_TALK, ("subscribes /robot1/scan",)),)
     drawing = pick(page(scene), "svg", "overview")[0]
     assert len(pick(drawing, "path", "reach bad")) == 1
-    assert [tile.get("class") for tile in pick(drawing, "g", "tile")] == ["tile odd", "tile bad"]
+    assert [tile.get("class") for tile in pick(drawing, "g", "tile")] == ["tile bad", "tile bad"]
 
 
 def test_a_node_that_is_not_there_is_drawn_with_its_names() -> None:
@@ -252,10 +252,10 @@ def test_in_an_incomplete_view_the_verdict_is_open() -> None:
         Caveat("participant-limit", True, "the view may be cut off at 32")
     )
     scene = nav2_graphs.scene(plan, graph._replace(environment=cut))
-    assert scene.verdict == Verdict.INCONCLUSIVE
+    assert scene.outcome.verdict == Verdict.INCONCLUSIVE
     assert {finding.level for finding in scene.findings} == {INCONCLUSIVE}
     header = pick(page(scene), "header")[0].text_content()
-    assert "inconclusive" in header
+    assert "inconclusive, the view may be incomplete" in header
     assert "the view may be cut off at 32" in header
 
 
@@ -431,7 +431,7 @@ def test_the_policy_allows_only_the_own_script_and_style() -> None:
         (element,) = pick(tree, tag)
         digest = base64.b64encode(hashlib.sha256(element.text.encode()).digest()).decode()
         assert rules[rule] == f"'sha256-{digest}'"
-    assert len(pick(tree, "script")[0].text.splitlines()) < 100
+    assert len(pick(tree, "script")[0].text.splitlines()) < 160
 
 
 def test_all_links_and_hooks_lead_somewhere() -> None:
@@ -442,7 +442,7 @@ def test_all_links_and_hooks_lead_somewhere() -> None:
         links = {a.get("href")[1:] for a in tree.iter("a")}
         assert links <= set(ids)
         hooks = {element.get("data-id") for element in tree.iter()}
-        hits = {hit for row in tree.iter("tr") for hit in row.get("data-hits", "").split()}
+        hits = {hit for row in tree.iter("details") for hit in row.get("data-hits", "").split()}
         ends = {end for path in tree.iter("path") for end in path.get("data-e", "").split()}
         assert hits <= hooks and ends <= hooks
 
@@ -451,7 +451,7 @@ def test_every_finding_is_listed_and_links_to_what_it_is_about() -> None:
     plan = nav2_graphs.nav2()
     scene = nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
     tree = page(scene)
-    rows = [row for row in tree.iter("tr") if row.get("data-level")]
+    rows = pick(tree, "details", "finding")
     assert len(rows) == len(scene.findings) > 5
     by_code = {}
     for row, finding in zip(rows, scene.findings, strict=True):
@@ -493,11 +493,12 @@ def test_a_fault_of_twenty_robots_is_one_row() -> None:
         graph = nav2_graphs.moved(graph, f"/{robot.name}/topic1", "/topic1", "driver")
     scene = nav2_graphs.scene(plan, graph)
     assert Counter(it.code for it in scene.findings) == {"MG102": 20, "MG103": 20}
-    rows = [row for row in page(scene).iter("tr") if row.get("data-level")]
+    rows = pick(page(scene), "details", "finding")
     assert [pick(row, "a", "rule")[0].text for row in rows] == ["MG102", "MG103"]
     for row in rows:
-        assert pick(row, "td")[2].text == "robot1, robot2, robot3 and 17 more"
-        assert pick(row, "td")[2].get("title").split(", ") == list(scene.robots)
+        (who,) = pick(row, "b", "who")
+        assert who.text == "robot1, robot2, robot3 and 17 more"
+        assert who.get("title").split(", ") == list(scene.robots)
         assert row.get("data-robot").split() == [str(at) for at in range(20)]
     missing, leak = (len(row.get("data-hits").split()) for row in rows)
     assert (missing, leak) == (40, 21)
@@ -512,7 +513,7 @@ def test_a_small_fleet_is_open_and_the_healthy_of_a_large_one_are_folded() -> No
     graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot7/topic1", "/topic1")
     tree = page(nav2_graphs.scene(plan, graph))
     assert unfolded(tree) == ["g6", "shared"]
-    (away,) = (it for it in tree.iter("b") if it.text == "29 more robots as planned")
+    (away,) = (it for it in tree.iter("b") if it.text == "29 more robots without findings")
     assert len(list(away.getparent().getparent().iter("details"))) == 30
 
 
@@ -550,7 +551,7 @@ def test_a_hundred_robots_are_a_small_page() -> None:
 def test_a_plan_without_robots_is_drawn() -> None:
     empty = Expectation("L2", (), (), (), (), ())
     scene = nav2_graphs.scene(empty, Snapshot((), (), (), nav2_graphs.environment()))
-    assert pick(page(scene), "svg", "overview")
+    assert pick(page(scene), "header") and not pick(page(scene), "svg", "overview")
     assert to_mermaid(scene).startswith(b"flowchart LR\n")
 
 

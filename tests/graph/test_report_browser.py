@@ -111,7 +111,7 @@ def seen(driver: webdriver.Chrome, css: str) -> list[Any]:
 
 
 def row(driver: webdriver.Chrome, code: str) -> Any:
-    return next(it for it in every(driver, "#findings tbody tr") if code in it.text)
+    return next(it for it in every(driver, "#findings .finding") if code in it.text)
 
 
 def labels(driver: webdriver.Chrome, css: str) -> set[str]:
@@ -129,12 +129,12 @@ def in_view(driver: webdriver.Chrome, element: Any) -> bool:
 def test_faults_are_first(show: Open) -> None:
     driver = show(spoiled())
     assert every(driver, "h1")[0].text.lower() == "not as planned"
-    texts = [it.text for it in seen(driver, "#findings tbody tr")]
+    texts = [it.text for it in seen(driver, "#findings .finding")]
     assert len(texts) == len(
         nav2_graphs.scene(nav2_graphs.nav2(), nav2_graphs.spoiled(nav2_graphs.nav2())).findings
     )
     assert any("/cmd_vel, which is not a name of robot1" in text for text in texts)
-    assert in_view(driver, every(driver, "#findings tbody tr")[0])
+    assert in_view(driver, every(driver, "#findings .finding")[0])
 
 
 @pytest.mark.parametrize(
@@ -151,7 +151,9 @@ def test_a_click_on_a_finding_shows_what_it_is_about(
 ) -> None:
     driver = show(spoiled())
     assert every(driver, ".hit") == []
-    row(driver, code).click()
+    row(driver, code).find_element(By.CSS_SELECTOR, "summary .level").click()
+    assert labels(driver, "g.hit") == marked
+    row(driver, code).find_element(By.CSS_SELECTOR, "a.place").click()
     assert labels(driver, "g.hit") == marked
     assert any(in_view(driver, part) for part in every(driver, "g.hit"))
     strokes = {part.value_of_css_property("stroke") for part in seen(driver, "g.hit > rect")}
@@ -167,19 +169,18 @@ def test_findings_are_filtered_by_level_and_robot(show: Open) -> None:
     graph = nav2_graphs.with_end(nav2_graphs.spoiled(plan), "/robot2/gripper", "/robot2/grip")
     scene = nav2_graphs.scene(plan, graph)
     driver = show(to_html(scene))
-    pairs = [(row.finding.level, row.finding.robot) for row in scene.rows]
-    assert not any(row.finding.others for row in scene.rows)
+    pairs = [(row.finding.level, row.robots) for row in scene.rows]
     level, robot = (Select(it) for it in every(driver, "#filters select"))
-    assert len(seen(driver, "#findings tbody tr")) == len(pairs)
+    assert len(seen(driver, "#findings .finding")) == len(pairs)
     robot.select_by_visible_text("robot2")
-    assert len(seen(driver, "#findings tbody tr")) == sum(it[1] == "robot2" for it in pairs)
+    assert len(seen(driver, "#findings .finding")) == sum("robot2" in it[1] for it in pairs)
     level.select_by_visible_text("warning")
-    shown = seen(driver, "#findings tbody tr")
-    assert len(shown) == pairs.count(("warning", "robot2")) == 1
-    assert every(driver, "#filters output")[0].text == f"1 of {len(pairs)}"
+    shown = seen(driver, "#findings .finding")
+    assert len(shown) == pairs.count(("warning", ("robot2",))) == 1
+    assert every(driver, "#filters output")[0].text == f"1 of {len(pairs)} findings"
     robot.select_by_visible_text("all robots")
     level.select_by_visible_text("all levels")
-    assert len(seen(driver, "#findings tbody tr")) == len(pairs)
+    assert len(seen(driver, "#findings .finding")) == len(pairs)
 
 
 def test_what_every_node_has_is_shown_on_request(show: Open) -> None:
@@ -228,7 +229,7 @@ def test_a_row_of_many_robots_is_found_by_each_of_them(show: Open) -> None:
         graph = nav2_graphs.moved(graph, f"/{robot.name}/topic1", "/topic1", "driver")
     driver = show(to_html(nav2_graphs.scene(plan, graph)))
     Select(every(driver, "#filters select")[1]).select_by_visible_text("robot4")
-    shown = seen(driver, "#findings tbody tr")
+    shown = seen(driver, "#findings .finding")
     assert ["robot1, robot2, robot3 and 2 more" in it.text for it in shown] == [True, True]
 
 
@@ -236,12 +237,13 @@ def test_a_large_fleet_opens_where_something_is_wrong(show: Open) -> None:
     driver = show(swarm())
     drawings = seen(driver, "svg.graph")
     assert len(drawings) == 3
-    assert len(seen(driver, "svg.overview g.tile")) == 31
+    assert len(seen(driver, "svg.overview g.tile")) == 2
+    assert len(seen(driver, ".card")) == 3
     row(driver, "MG103").click()
     assert labels(driver, "g.hit") >= {"/topic1"}
-    # A tile of a healthy robot leads into what is folded away.
-    tile = next(it for it in every(driver, "svg.overview a") if it.text.startswith("robot20"))
-    tile.click()
+    # The name of a healthy robot leads into what is folded away.
+    every(driver, ".card h3 summary")[0].click()
+    next(it for it in seen(driver, ".card a") if it.text == "robot20").click()
     assert in_view(driver, every(driver, "#g19 > summary")[0])
 
 
@@ -275,7 +277,7 @@ def test_what_is_open_is_printed_without_switches(show: Open) -> None:
     driver = show(swarm())
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     assert seen(driver, "#filters, #more, label[for=more]") == []
-    assert len(seen(driver, "svg.graph")) == 3 and seen(driver, "#findings tbody tr")
+    assert len(seen(driver, "svg.graph")) == 3 and seen(driver, "#findings .finding")
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})
 
 
@@ -309,7 +311,7 @@ def test_nothing_is_wider_than_the_page(show: Open, case: str) -> None:
 
 def test_names_from_the_graph_run_nothing(show: Open) -> None:
     driver = show(to_html(nav2_graphs.scene(*nav2_graphs.nasty(nav2_graphs.nav2()))))
-    for it in every(driver, "#findings tbody tr")[:6]:
+    for it in every(driver, "#findings .finding")[:6]:
         it.click()
     script = "return [typeof window.pwned, document.images.length, document.scripts.length]"
     assert driver.execute_script(script) == ["undefined", 0, 1]
@@ -337,7 +339,7 @@ def test_it_reads_and_links_without_scripts(
     try:
         driver.get(file.as_uri())
         assert every(driver, "#filters")[0].is_displayed() is False
-        assert seen(driver, "#findings tbody tr") and seen(driver, "svg.graph")
+        assert seen(driver, "#findings .finding") and seen(driver, "svg.graph")
         every(driver, "label[for=more]")[0].click()
         assert seen(driver, ".more")
         row(driver, "MG103").find_element(By.CSS_SELECTOR, "a.place").click()

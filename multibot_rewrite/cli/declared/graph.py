@@ -82,6 +82,13 @@ CHECK = Command(
             FINDINGS_OUTPUT,
             WATCH,
             STATE,
+            value(
+                "--built",
+                metavar="FOLDER",
+                about="what multibot build wrote: with --state, or a snapshot that has states,"
+                " parameters of nodes are compared with its files; default: the folder of PLAN",
+                type=values.path,
+            ),
         ),
         PICTURES,
         LISTENING,

@@ -7,7 +7,7 @@ what is missing. Checks: ``section_checks``, ``name_checks``, ``robot_names``, `
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
 from multibot_rewrite.companions.context import Companion, Context
 from multibot_rewrite.companions.names.node_topics import facts_by_name
@@ -34,6 +34,7 @@ from multibot_rewrite.companions.params.sections import (
     identify_sections,
     key_splices,
     raw_sections,
+    without_own,
 )
 from multibot_rewrite.companions.params.shared_defaults import (
     default_lines,
@@ -65,13 +66,16 @@ def rewrite_params(
     beside: Sequence[YamlText] = (),
     facts: Iterable[NodeFacts] = (),
     robots: Iterable[str] = (),
+    own: Iterable[str] = (),
 ) -> Companion:
     """A parameter file with slots for a robot, and the findings about it.
 
     ``known`` are the known nodes, ``beside`` the other parameter files that the robot's nodes get:
     what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
     move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
-    an error. Raises InputError for a file that is not a parameter file or that rcl rejects.
+    an error.
+    A file for one robot may have its sections below one of ``own``. Raises InputError for a file that
+    is not a parameter file or that rcl rejects.
     """
     with gc_paused():
         check_no_slots(document.text, document.file)
@@ -82,16 +86,17 @@ def rewrite_params(
             known or built_in_nodes(context.distro),
             facts_by_name(facts, context.distro),
             words,
+            tuple(own),
         )
         return _params(job, beside)
 
 
 def _params(job: ParamsJob, beside: Sequence[YamlText]) -> Companion:
     document, context, known = job.document, job.context, job.known
-    found = raw_sections(document)
+    found = without_own(raw_sections(document), job.own)
     sections = identify_sections(found, context, known)
     pages = [(it, find_names(document, it, known)) for it in sections if not it.shared]
-    others = [it for other in beside for it in raw_sections(other)]
+    others = [it for other in beside for it in without_own(raw_sections(other), job.own)]
     job = job._replace(known=known._replace(sent=known.sent | _own_frames(pages)))
     made = [*_made(job, sections, pages, others), *controller_sections(job, found, others)]
     splices = [it for it in made if isinstance(it, Splice)]
@@ -130,7 +135,7 @@ def _about_sections(
         yield from placeholders_in_key(job.document, section)
         if not section.shared:
             yield from namespace_findings(job.document, section, job.context)
-    yield from robot_in_name(job.document, sections, pages, job.robots)
+    yield from robot_in_name(job.document, sections, pages, job.robots, job.own)
 
 
 def _about_names(job: ParamsJob, section: ParamSection, names: SectionNames) -> Iterator[Finding]:
@@ -162,14 +167,17 @@ def _in_words(found: Finding) -> Finding:
 
 
 def nodes_without_section(
-    documents: Sequence[YamlText], context: Context, known: KnownNodes | None = None
+    documents: Sequence[YamlText],
+    context: Context,
+    known: KnownNodes | None = None,
+    own: Collection[str] = (),
 ) -> tuple[Finding, ...]:
     """Nodes of the stack that have no section in any of a robot's parameter files, though all robots
     would share their defaults; reported at the first file."""
     known = known or built_in_nodes(context.distro)
     if not documents:
         return ()
-    raw = [raw_sections(it) for it in documents]
+    raw = [without_own(raw_sections(it), own) for it in documents]
     types = controller_types(section for found in raw for section in found)
     sections = [identify_sections(it, context, known) for it in raw]
     full = [it.full for found in sections for it in found if it.path != "**"]

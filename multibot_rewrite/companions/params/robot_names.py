@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
+
+import yaml
 
 from multibot_rewrite.companions.context import Context
 from multibot_rewrite.companions.names.by_kind import is_plain
@@ -66,6 +68,8 @@ def namespace_findings(
     key = section.keys[0]
     if section.path in context.nodes or tokens[0] == "**" or section.full == section.path:
         return
+    if section.path != "/".join(it.value.strip("/") for it in section.keys):
+        return  # what is below the robot's own namespace is meant to be there
     tails = ["/".join(tokens[at:]) for at in range(1, len(tokens))]
     stack = next((tail for tail in tails if tail in context.nodes), "")
     if stack or (tokens[-1] in ANY and tokens[0] not in ANY):
@@ -151,9 +155,10 @@ def robot_in_name(
     sections: Iterable[ParamSection],
     pages: Sequence[SectionNames],
     robots: frozenset[str],
+    own: Collection[str] = (),
 ) -> Iterator[Finding]:
-    """The first name that holds one of ``robots``."""
-    scalars = [(key, key.value) for section in sections for key in section.keys]
+    """The first name that holds one of ``robots``; a first key may hold one of ``own``."""
+    scalars = [it for section in sections for it in _keys(section, own)]
     scalars += [(it.scalar, it.value) for names in pages for it in names.sites if it.kind != "keep"]
     for scalar, value in scalars:
         found = robots.intersection(value.strip("/").split("/"))
@@ -162,3 +167,14 @@ def robot_in_name(
             hint = "remove the robot name from every name; the build adds it for each robot"
             yield found_at(document, scalar, ROBOT_IN_NAME, message, hint)
             return
+
+
+def _keys(section: ParamSection, own: Collection[str]) -> Iterator[tuple[yaml.ScalarNode, str]]:
+    """The keys above a section, without what its path has not: the robot that the file is for."""
+    first, *rest = section.keys
+    bare = first.value.strip("/")
+    below = (
+        bare.removeprefix(word).strip("/") for word in own if f"{bare}/".startswith(f"{word}/")
+    )
+    yield first, next(below, bare)
+    yield from ((key, key.value) for key in rest)

@@ -7,7 +7,7 @@ As rcl_yaml_param_parser reads them: nested keys before ``ros__parameters`` are 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import yaml
@@ -87,6 +87,16 @@ def raw_sections(document: YamlText) -> list[RawSection]:
     if not found:
         raise InputError(f"{document.file}:1: not a ROS 2 parameter file: {_looks_like(document)}")
     return found
+
+
+def without_own(found: Iterable[RawSection], own: Collection[str]) -> list[RawSection]:
+    """The sections of a file that is for one robot, without the words that stand for it."""
+    return [it._replace(path=_without(it.path, own)) for it in found]
+
+
+def _without(path: str, own: Collection[str]) -> str:
+    above = (f"{word}/" for word in own)
+    return next((path.removeprefix(it) for it in above if path.startswith(it)), path)
 
 
 def _check_file(document: YamlText) -> None:
@@ -288,7 +298,8 @@ def _texts(section: ParamSection) -> list[str]:
         count = key.value.strip("/").count("/") + 1
         texts.append("/".join(tokens[-count:]))
         tokens = tokens[:-count]
-    first = "/" + "/".join(tokens)
+    # Without namespaces nothing is left of a key that was the robot's own.
+    first = "/" + ("/".join(tokens) or "**")
     return [first, *reversed(texts)]
 
 

@@ -34,7 +34,8 @@ _UNSURE = ("frame", "sensor", "interface")
 class ParamsJob(NamedTuple):
     """One parameter file to rewrite, and all that its steps need.
 
-    ``robots`` are the namespaces and tags of the fleet's robots.
+    ``robots`` are the namespaces and tags of the fleet's robots, ``own`` the words for the one robot
+    that the file is for.
     """
 
     document: YamlText
@@ -42,6 +43,7 @@ class ParamsJob(NamedTuple):
     known: KnownNodes
     facts: Facts
     robots: frozenset[str] = frozenset()
+    own: tuple[str, ...] = ()
 
 
 def name_splices(

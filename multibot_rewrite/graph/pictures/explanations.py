@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.findings.finding import ERROR
 from multibot_rewrite.findings.rule import Rule
-from multibot_rewrite.graph.check import ALL_RULES
 from multibot_rewrite.graph.pictures.svg import safe
 
 
@@ -16,25 +15,25 @@ def rule_link(code: str) -> str:
     return f"#rule-{code}"
 
 
-def explanations(codes: Iterable[str]) -> Iterator[str]:
+def explanations(codes: Iterable[str], rules: Mapping[str, Rule]) -> Iterator[str]:
     """A section with what the rules find, why that is a problem and how to fix it."""
-    rules = [ALL_RULES[code] for code in sorted(set(codes))]
-    if rules:
+    found = [rules[code] for code in sorted(set(codes)) if code in rules]
+    if found:
         yield '<section id="rules">\n<h2>What the codes mean</h2>\n'
-        yield from map(_explained, rules)
+        yield from map(_explained, found)
         yield "</section>\n"
 
 
 def _explained(rule: Rule) -> str:
     css_class = "bad" if rule.level == ERROR else "odd"
     parts = ("", rule.what), ("Why: ", rule.why), ("Fix: ", rule.fix)
-    lines = "".join(f"<p><b>{head}</b>{_text(text)}</p>" for head, text in parts)
+    lines = "".join(f"<p><b>{head}</b>{with_code(text)}</p>" for head, text in parts)
     return (
         f'<details id="rule-{rule.code}"><summary class="{css_class}"><b>{rule.code}</b>'
         f" {rule.name} <span>{rule.level}</span></summary>\n<div>{lines}</div></details>\n"
     )
 
 
-def _text(markdown: str) -> str:
+def with_code(markdown: str) -> str:
     """A sentence with words in backticks."""
     return re.sub("`([^`]*)`", r"<code>\1</code>", safe(markdown))

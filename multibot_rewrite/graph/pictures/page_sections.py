@@ -23,7 +23,8 @@ _Key = TypeVar("_Key", bound=Hashable)
 class PageSection(NamedTuple):
     """The section of a group; ``shown`` is the group without what every node has.
 
-    ``levels`` counts its findings by level; a ``faulty`` section has findings or faulty names.
+    ``levels`` counts by level the findings that concern its robot; a ``faulty`` section has such
+    findings or faulty names.
     """
 
     group: DrawnGroup
@@ -59,18 +60,41 @@ def ids_of(about: Targets, ids: Ids) -> list[str]:
 
 
 def make_sections(scene: Scene) -> list[PageSection]:
-    """One for each robot, then one for what belongs to no robot."""
-    counts = Counter((finding.robot, finding.level) for finding in scene.findings)
+    """One for each robot, then one for what belongs to no robot.
+
+    Of robots with the same findings the first is unfolded.
+    """
+    concerns = concerns_of(scene)
+    met: set[tuple[int, ...]] = set()
     sections, left = [], MOST_OPEN
     for at, group in enumerate(scene.groups):
         id_ = f"g{at}" if group.robot else SHARED
-        levels = {level: counts[group.robot, level] for level in LEVELS}
+        own = concerns.get(group.robot, ())
+        counts = Counter(scene.rows[number].finding.level for number in own)
+        levels = {level: counts[level] for level in LEVELS}
         faulty = bool(sum(levels.values())) or has_faults(group)
-        opened = len(scene.robots) <= SMALL_FLEET or (faulty and left > 0)
+        opened = len(scene.robots) <= SMALL_FLEET or (
+            faulty and left > 0 and not (own and own in met)
+        )
+        met.add(own)
         left -= opened
         shown = without_common(group)
         sections.append(PageSection(group, shown, id_, levels, faulty, opened))
     return sections
+
+
+def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
+    """The numbers of the findings that concern each robot."""
+    found: dict[str, list[int]] = {}
+    for at, row in enumerate(scene.rows):
+        for robot in row.robots or ("",):
+            found.setdefault(robot, []).append(at)
+    return {robot: tuple(rows) for robot, rows in found.items()}
+
+
+def look_of(section: PageSection) -> str:
+    """The CSS class of a robot."""
+    return "bad" if section.levels[ERROR] else "odd" if section.faulty else "good"
 
 
 def ids_in(section: PageSection, ids: Ids) -> set[str]:

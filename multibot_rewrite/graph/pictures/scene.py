@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from multibot_rewrite.findings.finding import Finding
@@ -21,12 +21,15 @@ from multibot_rewrite.graph.pictures.states import (
     find_targets,
     make_states,
     merged,
+    robots_of,
     worst,
 )
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree, make_frame_trees
-from multibot_rewrite.graph.rules.comparison import View, make_view
+from multibot_rewrite.graph.rules.comparison import EndpointKey, View, make_view
 from multibot_rewrite.graph.snapshot import Environment, GraphEndpoint, Snapshot
-from multibot_rewrite.graph.watching import Verdict, judge
+from multibot_rewrite.graph.tool_nodes import is_tool
+from multibot_rewrite.graph.watching import WORDS, Outcome, judge
+from multibot_rewrite.remap.records import ACTION, SERVICE, TOPIC
 
 # Packages with the types of endpoints that every node has: logging, parameters, life cycle; and
 # tf, which has its own picture.
@@ -37,6 +40,8 @@ COMMON_PACKAGES = (
     "bond",
     "tf2_msgs",
 )
+# Stands for the bridge that should carry a topic; a space cannot be in the name of a real node.
+BRIDGE = "a ros_gz_bridge"
 # In the topics and services that an action is made of.
 ACTION_PART = "/_action/"
 
@@ -101,16 +106,25 @@ class Crossing(NamedTuple):
 
 
 class FindingRow(NamedTuple):
-    """A finding, with the robots of which the same is true, and what it is about at all of them."""
+    """A finding, with the robots of which the same is true, and what it is about at all of them.
+
+    ``robots`` are all that it concerns: that it is about, or of which it names a node, a name or a
+    frame. ``place`` is ``file:line`` in a source, or else says where the node comes from.
+    """
 
     finding: Finding
     targets: Targets
+    robots: tuple[str, ...]
+    place: str
 
 
 class Scene(NamedTuple):
-    """All that is drawn; ``rows`` are the ``findings``, those of several robots as one."""
+    """All that is drawn; ``rows`` are the ``findings``, those of several robots as one.
 
-    verdict: Verdict
+    Of each group of nodes in ``one_of`` one should run; those that do are ``running``.
+    """
+
+    outcome: Outcome
     layout: str
     robots: tuple[str, ...]
     groups: tuple[DrawnGroup, ...]
@@ -119,6 +133,8 @@ class Scene(NamedTuple):
     findings: tuple[Finding, ...]
     rows: tuple[FindingRow, ...]
     environment: Environment
+    one_of: tuple[tuple[str, ...], ...]
+    running: frozenset[str]
 
 
 class _RobotOf(NamedTuple):
@@ -128,8 +144,15 @@ class _RobotOf(NamedTuple):
     names: Mapping[str, str]
 
 
-def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[Finding]) -> Scene:
-    """What is drawn of ``graph`` with its plan and findings."""
+def make_scene(
+    plan: Expectation,
+    graph: Snapshot,
+    found: Sequence[Finding],
+    outcome: Outcome | None = None,
+) -> Scene:
+    """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
+    command does not say otherwise."""
+    verdict = judge(found, graph)
     view = make_view(plan, with_patterns(plan, graph))
     targets = find_targets(view, found)
     states = make_states(found, targets)
@@ -137,26 +160,34 @@ def make_scene(plan: Expectation, graph: Snapshot, found: Sequence[Finding]) -> 
     robot_of = _robot_of(view, states, edges)
     nodes = _nodes(view, states, edges, robot_of)
     return Scene(
-        judge(found, graph),
+        outcome or Outcome(verdict, WORDS[verdict]),
         plan.layout,
         tuple(robot.name for robot in plan.robots),
         tuple(_groups(plan, edges, nodes, robot_of)),
         tuple(_crossings(edges, robot_of)),
         make_frame_trees(view, states),
         tuple(found),
-        tuple(_rows(plan, dict(zip(found, targets, strict=True)))),
+        tuple(_rows(view, dict(zip(found, targets, strict=True)))),
         graph.environment,
+        plan.one_of,
+        frozenset(view.seen),
     )
 
 
-def _rows(plan: Expectation, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
-    for finding, members in with_members(targets, robot_words(plan)):
-        yield FindingRow(finding, merged(targets[it] for it in members))
+def _rows(view: View, targets: Mapping[Finding, Targets]) -> Iterator[FindingRow]:
+    origins = {**dict(view.plan.origins), **view.places}
+    for finding, members in with_members(targets, robot_words(view.plan)):
+        concerned = {robot for it in members for robot in robots_of(view, it)}
+        robots = tuple(robot for robot in view.robots if robot in concerned)
+        written = f"{finding.file}:{finding.line}" if finding.line else finding.file
+        place = written or origins.get(finding.node, "")
+        yield FindingRow(finding, merged(targets[it] for it in members), robots, place)
 
 
 def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
     """The endpoints in the graph, and those that a finding reports as missing."""
     common_names = _common_names((*view.graph.endpoints, *view.plan.endpoints))
+    bridged = {(role, it.name): it.type for it in view.plan.topics for role in it.bridge}
     for key, type_ in dict.fromkeys(
         ((e.node, e.kind, e.role, e.name), e.type) for e in view.graph.endpoints
     ):
@@ -164,14 +195,31 @@ def _edges(view: View, states: States) -> Iterator[DrawnEdge]:
         common = name in common_names
         state = states.endpoints.get((node, name), OK)
         if state in (OK, MISSING):
-            expected = common or key in view.planned or node in view.plan.shared_nodes
-            state = OK if expected else UNEXPECTED
+            state = OK if common or _is_expected(view, key, bridged) else UNEXPECTED
         yield DrawnEdge(*key, type_, state, common)
     for key, planned in view.planned.items():
         node, *_, name = key
         missing = MISSING in (states.nodes.get(node), states.endpoints.get((node, name)))
         if missing and key not in view.types:
             yield DrawnEdge(*key, planned.type, MISSING, name in common_names)
+
+    carried = {(role, name) for _, _, role, name in view.types}
+    for (role, name), type_ in bridged.items():
+        if name in states.names and (role, name) not in carried:
+            yield DrawnEdge(BRIDGE, TOPIC, role, name, type_, MISSING, False)
+
+
+def _is_expected(view: View, key: EndpointKey, bridged: Container[tuple[str, str]]) -> bool:
+    """Whether the plan has an endpoint of the graph, by itself or in another form.
+
+    An action may be planned as its parts. Helpers of a robot's nodes have what these have.
+    """
+    node, kind, role, name = key
+    if key in view.planned or node in view.plan.shared_nodes or (role, name) in bridged:
+        return True
+    if kind == ACTION and (node, SERVICE, role, f"{name}{ACTION_PART}send_goal") in view.planned:
+        return True
+    return is_tool(node) and bool(view.ownership.robot(node))
 
 
 def _common_names(ends: Iterable[GraphEndpoint | PlannedEndpoint]) -> set[str]:

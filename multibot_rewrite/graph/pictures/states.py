@@ -41,11 +41,15 @@ def merged(targets: Iterable[Targets]) -> Targets:
 
 
 class States(NamedTuple):
-    """States by (node, name) and by node, and the codes of the findings about a frame."""
+    """States by (node, name) and by node, and the codes of the findings about a frame.
+
+    ``names`` are all that findings are about.
+    """
 
     endpoints: Mapping[tuple[str, str], str]
     nodes: Mapping[str, str]
     frames: Mapping[FrameKey, tuple[str, ...]]
+    names: frozenset[str]
 
 
 def worst(states: Iterable[str]) -> str:
@@ -55,7 +59,8 @@ def worst(states: Iterable[str]) -> str:
 
 def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]:
     """What each finding is about, by its fields and by the names in its message."""
-    topics = [tree.topic for tree in view.trees]
+    homes = (tree_topic(robot.tf) for robot in view.plan.robots)
+    topics = [*dict.fromkeys((*(tree.topic for tree in view.trees), *homes))]
     return tuple(
         Targets((), (), tuple(_frame_targets(view, finding, topics)))
         if finding.code.startswith(TF_CODES)
@@ -64,7 +69,7 @@ def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]
     )
 
 
-def make_states(findings: Iterable[Finding], targets: Iterable[Targets]) -> States:
+def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> States:
     """The states of everything that findings are about; the worst where there are several."""
     endpoints: dict[tuple[str, str], str] = {}
     nodes: dict[str, str] = {}
@@ -78,28 +83,51 @@ def make_states(findings: Iterable[Finding], targets: Iterable[Targets]) -> Stat
                 nodes[node] = worst((state, nodes.get(node, OK)))
         for frame in about.frames:
             frames[frame] = tuple(dict.fromkeys((*frames.get(frame, ()), finding.code)))
-    return States(endpoints, nodes, frames)
+    return States(endpoints, nodes, frames, frozenset(chain(*(it.names for it in targets))))
 
 
 def _endpoint_targets(view: View, finding: Finding) -> Targets:
+    nodes = tuple(it for it in finding.names if _is_node(view, it))
+    names = tuple(it for it in finding.names if it not in nodes)
+    if nodes:
+        return Targets(nodes, names, ())
+    users = dict.fromkeys(end.node for name in names for end in view.by_name.get(name, ()))
     if not finding.node:
         robot = view.robots.get(finding.robot)
-        return Targets(robot.nodes if robot else (), finding.names, ())
-    users = dict.fromkeys(end.node for name in finding.names for end in view.by_name.get(name, ()))
-    words = _words(finding.message)
-    all_ends = ALL_RULES[finding.code].options["all_ends"]
-    others = [node for node in users if all_ends or node in words]
-    return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), finding.names, ())
+        return Targets(robot.nodes if robot else tuple(sorted(users)), names, ())
+    words = words_of(finding.message)
+    rule = ALL_RULES.get(finding.code)
+    others = [node for node in users if node in words or (rule and rule.options["all_ends"])]
+    return Targets(tuple(dict.fromkeys((finding.node, *sorted(others)))), names, ())
+
+
+def _is_node(view: View, name: str) -> bool:
+    """Whether a finding that has this name speaks of a node: nothing else is called so."""
+    if any(name in group for group in view.plan.one_of):
+        return True
+    return name in view.seen and name not in view.by_name
+
+
+def robots_of(view: View, finding: Finding) -> set[str]:
+    """The robots that a finding is about, or of which it names a node, a name or a frame."""
+    in_tf = finding.code.startswith(TF_CODES)
+    of_name = view.frame_ownership.robot if in_tf else view.ownership.robot
+    words = words_of(finding.message)
+    found = {finding.robot, *finding.others, *map(of_name, finding.names)}
+    found |= {view.ownership.robot(it) for it in (finding.node, *words) if it.startswith("/")}
+    found |= {it for it in words if it in view.robots} - view.ownership.ambiguous_words
+    return found & view.robots.keys()
 
 
 def _frame_targets(view: View, finding: Finding, topics: Sequence[str]) -> Iterator[FrameKey]:
     """The frames on the topics that the message names; else on the robot's own, or on any topic."""
-    words = {tree_topic(word) for word in _words(finding.message)}
+    words = {tree_topic(word) for word in words_of(finding.message)}
     robot = view.robots.get(finding.robot)
     own = [topic for topic in topics if robot and topic == tree_topic(robot.tf)]
     named = [topic for topic in topics if topic in words]
     return ((topic, frame) for topic in named or own or topics for frame in finding.names)
 
 
-def _words(message: str) -> set[str]:
-    return {word.rstrip(",:;?") for word in message.split()}
+def words_of(message: str) -> set[str]:
+    """The words of a message, without punctuation."""
+    return {word.strip(",:;?()") for word in message.split()}

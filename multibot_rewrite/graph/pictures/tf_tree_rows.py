@@ -44,7 +44,7 @@ class FrameTree(NamedTuple):
 
 def make_frame_trees(view: View, states: States) -> tuple[FrameTree, ...]:
     """The trees on each topic in the order of the robots, then the frames missing there."""
-    if not view.trees:
+    if not (view.trees or states.frames):
         return ()
     order = {robot: at for at, robot in enumerate(view.robots)}
     edges = {tree.topic: tree.edges for tree in view.trees}
@@ -55,7 +55,7 @@ def make_frame_trees(view: View, states: States) -> tuple[FrameTree, ...]:
         forest = _forest(view, topic, edges.get(topic, ()), home)
         trees = [FrameTree(topic, _robot(rows), True, rows) for rows in _trees(forest, states)]
         found += sorted(trees, key=lambda tree: order.get(tree.robot, len(order)))
-        found += _not_received(forest, home)
+        found += _not_received(forest, home, states)
     return tuple(found)
 
 
@@ -120,7 +120,7 @@ def _rows(
             depth,
             forest.robots[frame],
             CLASH if codes else OK,
-            tuple(ALL_RULES[code].name.replace("-", " ") for code in codes),
+            _in_words(codes),
             forest.static.get((parent, frame), False),
             repeated=frame in seen,
         )
@@ -131,9 +131,19 @@ def _rows(
         at += 1
 
 
-def _not_received(forest: _Forest, home: Iterable[PlannedRobot]) -> Iterator[FrameTree]:
+def _not_received(
+    forest: _Forest, home: Iterable[PlannedRobot], states: States
+) -> Iterator[FrameTree]:
     for robot in home:
         missing = [frame for frame in robot.frames if frame not in forest.robots]
-        rows = (FrameRow(frame, -1, 0, robot.name, MISSING, (), False, False) for frame in missing)
+        faults = [_in_words(states.frames.get((forest.topic, frame), ())) for frame in missing]
+        rows = (
+            FrameRow(frame, -1, 0, robot.name, MISSING, words, False, False)
+            for frame, words in zip(missing, faults, strict=True)
+        )
         if missing:
             yield FrameTree(forest.topic, robot.name, False, tuple(rows))
+
+
+def _in_words(codes: Iterable[str]) -> tuple[str, ...]:
+    return tuple(ALL_RULES[code].name.replace("-", " ") for code in codes)

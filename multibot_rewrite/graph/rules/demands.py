@@ -207,7 +207,7 @@ def several_alternatives_run(view: View) -> Iterator[Finding]:
     why="The simulated robot does not move, or its sensor is never seen: `/robot2/cmd_vel` is"
     " published, and nobody passes it on to the simulator.",
     fix="Start a bridge with the file that `multibot build` wrote for the robot, or add the row to"
-    " yours. For real robots remove the topics from the plan.",
+    " yours. For real robots write `simulator: none` in the fleet file.",
     bad="""\
 planned: topic /robot1/scan over a bridge that publishes sensor_msgs/msg/LaserScan
 planned: topic /robot1/cmd_vel over a bridge that subscribes geometry_msgs/msg/Twist
@@ -259,7 +259,7 @@ def _not_carried(
     verb = DOES[role]
     message = f"nothing {verb} {topic.name}{type_}, which a ros_gz_bridge has to carry{more}"
     names = tuple(dict.fromkeys(it.name for it, _ in rows))
-    hint = f"{_bridges_there(view, robot)}; for a real robot remove it from topics of the plan"
+    hint = f"{_bridges_there(view, robot)}; for real robots write simulator: none in the fleet file"
     return bridged_topic_missing.finding(message, hint, level=level, robot=robot, names=names)
 
 

@@ -24,6 +24,9 @@ from multibot_rewrite.launch.graph.made_files import source_of
 from multibot_rewrite.launch.graph.places import place_of
 
 _LIMIT = 1 << 24
+# The commands of Gazebo, and what ROS starts it with.
+_SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
+_GAZEBO = ("ros_gz_sim", "gzserver")
 # ament_index_python and Python say it so.
 _NOT_FOUND = re.compile(r"package '(\w+)' not found|No module named '(\w+)")
 
@@ -111,10 +114,10 @@ def component(it: Any, container: str, here: Visit) -> LaunchedNode:
 
 
 def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
-    """The node of a ``ros2 run`` line; another process is no node that is known."""
+    """The node of a ``ros2 run`` line, or a simulator; another process is no node that is known."""
     line = [text(it, here.context) for it in getattr(action, "cmd", ())]
     words = [word for it in line for word in it.split()]
-    run = ros2_run(words)
+    run = ros2_run(words) or _simulator(words)
     if run is None:
         return
     given = ros_arguments(run[2])
@@ -122,6 +125,11 @@ def process(action: Any, here: Visit) -> Iterator[LaunchedNode]:
     namespace = given.namespace or "/"
     names = (run[0], run[1], given.name, namespace)
     yield LaunchedNode(*names, given.rules, values, "", given.own, here.later, here.place)
+
+
+def _simulator(words: list[str]) -> tuple[str, str, list[str]] | None:
+    program = os.path.basename(words[0]) if words else ""
+    return (*_GAZEBO, []) if program in _SIMULATORS else None
 
 
 def _kept(action: Any, name: str) -> Any:
