@@ -27,7 +27,7 @@ WITHOUT_FRAME = frozenset({
     "geometry_msgs/msg/AccelStamped",
 })  # fmt: skip
 # A subscription costs a few milliseconds.
-MOST_TOPICS = 500
+MOST_TOPICS = 200
 # Of a topic with several publishers.
 MOST_FRAMES = 8
 # topic, type, latched, callback -> what ends the subscription; None for a type without a header first.
