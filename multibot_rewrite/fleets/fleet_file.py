@@ -49,6 +49,7 @@ class RobotSpec(NamedTuple):
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
+    ``use_sim_time`` is what all its nodes have, None if the file does not say.
     """
 
     name: str
@@ -67,6 +68,7 @@ class RobotSpec(NamedTuple):
     launch: tuple[LaunchOrder, ...] = ()
     filled: tuple[tuple[str, str], ...] = ()
     simulator: str = ""
+    use_sim_time: bool | None = None
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -239,6 +241,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         line,
         tuple(_launch(data, own, place)),
         simulator=own.get("simulator", data.get("simulator", "")),
+        use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
     )
 
 
