@@ -26,9 +26,9 @@ ROBOT_KEYS = ("tf", "frames", "nodes")
 TOPIC_KEYS = ("senders", "one_sender", "qos", "bridge", "type")
 # Policies whose value is a word.
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
+OPEN, SENDS, STATES = "open", "sends", "states"
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
-BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways", "sends": "sends"}
-OPEN, STATES = "open", "states"
+BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways", SENDS: "sends"}
 OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", STATES, *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
@@ -217,7 +217,9 @@ def _not_full(value: object) -> str:
 def _by_node(value: object, file: str, key: str) -> Iterator[tuple[str, str]]:
     for node, place in _mapping(value or {}, (), file, key).items():
         if not isinstance(place, str):
-            raise InputError(f"{file}: {key}.{node}: write file:line")
+            raise InputError(f"{file}: {key}.{node}: write a text")
+        if key == SENDS and not all(" -> " in it for it in place.split(", ")):
+            raise InputError(f"{file}: {key}.{node}: write parent -> child, not {place!r}")
         yield str(node), place
 
 
