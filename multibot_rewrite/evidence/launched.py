@@ -17,6 +17,7 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.evidence.bridge_rows import bridge_rows
 from multibot_rewrite.evidence.launch_findings import launch_findings
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
@@ -25,7 +26,7 @@ from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.rosnames import expand
 
 _TF = ("/tf", "/tf_static")
@@ -145,7 +146,7 @@ def _pair(
     unnamed = "" if it.name or own else NO_NAME
     found = facts._replace(
         name=_below(it.namespace, name, words),
-        endpoints=tuple(end._replace(remapped="") for end in facts.endpoints),
+        endpoints=bridge_rows(it, words) or _unmapped(facts),
         known=facts.known or facts.name if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
         shared=facts.shared and not _is_of_robot(it.namespace, words),
@@ -154,6 +155,11 @@ def _pair(
         origin=_origin(it.place),
     )
     return _Pair(it, found, base is not None)
+
+
+def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
+    """Its endpoints without the rules of a stack: those of the launch count."""
+    return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
 def _base(
@@ -203,7 +209,9 @@ def _hosted(
     origins = {it.facts.known: it.facts.origin for it in pairs}
     for node in known.values():
         if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
-            yield node._replace(origin=origins[node.host])
+            own = programs().names.get(f"{node.package}/{node.name}", node.name)
+            known_as = node.name if own != node.name else node.known
+            yield node._replace(name=own, known=known_as, origin=origins[node.host])
 
 
 def _controllers(

@@ -72,6 +72,14 @@ def test_the_name_of_a_node_is_that_of_its_launch_file_or_its_own(
     assert runs(found)[name].endpoints
 
 
+def test_a_node_inside_of_another_has_the_name_of_its_code() -> None:
+    found = runs(launched(started("turtlebot3_node", "turtlebot3_ros", "turtlebot3_node")))
+    assert set(found) == {PUBLISHER, "turtlebot3_node", "diff_drive_controller"}
+    inner = found["diff_drive_controller"]
+    assert (inner.host, inner.is_controller) == ("turtlebot3_node", False)
+    assert {"odom", "reset_odometry"} <= {it.name for it in inner.endpoints}
+
+
 @pytest.mark.parametrize(
     ("namespace", "target", "name"),
     [
