@@ -123,7 +123,9 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
             above = controller.manager.rpartition("/")[0]
             yield _remapped(it, controller.rules, above)
         elif it.host in launched.started:
-            yield it._replace(origin=origins.get(it.name, it.origin))
+            yield _in_process(it, launched.started[it.host])._replace(
+                origin=origins.get(it.name, it.origin)
+            )
         elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
             yield it
 
@@ -307,9 +309,20 @@ def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str)
     return node._replace(endpoints=tuple(ends))
 
 
+def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
+    """The rules of a launch file are for all nodes of a process; controllers have their own."""
+    if node.host == MANAGER:
+        return node
+    below = node.name.rpartition("/")[0]
+    above = f"{host.namespace.rstrip('/')}/{below}".rstrip("/")
+    return _remapped(node, host.remappings, above)
+
+
 def _target(new: str, above: str, home: str) -> str:
     """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
     ``home``."""
     inner = above != home and not new.startswith(("/", "~"))
     full = f"{above}/{new}" if inner else new
-    return full.removeprefix(f"{home}/") if home else full
+    mine = full.removeprefix(f"{home}/") if home else full
+    # From a namespace in that of the robot, only this leads to the robot's.
+    return f"/{mine}" if above != home and mine[0] not in "/~" else mine
