@@ -137,6 +137,7 @@ HOMES: tuple[Home, ...] = (
             "graph.rules.type_and_qos",
             "graph.rules.publishers",
             "graph.rules.demands",
+            "graph.rules.planned_states",
             "graph.rules.in_enclaves",
         ),
         GRAPH_INTRO,

@@ -42,10 +42,25 @@ def run(options: argparse.Namespace) -> int:
             return _watch(options, plan)
         if options.bag:
             return _recorded(options, plan)
-        return conclude(options, plan, live.with_states(options, live.graph(options)))
+        graph = live.graph(options)
+        if options.state or graph.states:
+            plan = _with_files(options, plan)
+        return conclude(options, plan, live.with_states(options, graph, _parameters(plan)))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
+
+
+def _with_files(options: argparse.Namespace, plan: Expectation) -> Expectation:
+    """The plan with the parameters in the files beside it."""
+    from multibot_rewrite.fleets.built_states import with_built
+
+    return with_built(plan, options.built or os.path.dirname(options.plan))
+
+
+def _parameters(plan: Expectation) -> dict[str, list[str]]:
+    """What the nodes of the plan are asked for."""
+    return {it.node: [own.name for own in it.parameters] for it in plan.states}
 
 
 def _recorded(options: argparse.Namespace, plan: Expectation) -> int:
@@ -58,10 +73,19 @@ def _check_use(options: argparse.Namespace) -> None:
     live.check_source(options)
     if options.watch and (options.select or options.ignore or options.format != TEXT):
         raise UsageError("--watch shows every finding: leave out --select, --ignore and --format")
+    if options.built:
+        _check_built(options)
     check_report(options, printed=False)
     pictures.check(options)
     if options.output:
         check_target(options.output, [options.plan, *options.snapshot])
+
+
+def _check_built(options: argparse.Namespace) -> None:
+    if not os.path.isdir(options.built):
+        raise UsageError(f"{options.built}: no folder; name the one that multibot build wrote")
+    if not (options.state or options.snapshot):
+        raise UsageError("--built is compared with what nodes answer: add --state")
 
 
 def plan_of(options: argparse.Namespace) -> Expectation:

@@ -51,7 +51,7 @@ def run(options: argparse.Namespace) -> int:
         if options.watch:
             return _watch(options)
         graph = live.with_states(options, live.graph(options))
-        return _once(options, diagnose(graph))
+        return report_on(options, diagnose(graph))
     except (RosUnusable, BagsUnusable) as error:
         say(str(error), PROGRAM)
         return live.NO_ROS
@@ -77,7 +77,8 @@ def _check_suggest(options: argparse.Namespace) -> None:
             raise UsageError(f"{path} is there already; name another folder with --suggest")
 
 
-def _once(options: argparse.Namespace, seen: Diagnosis) -> int:
+def report_on(options: argparse.Namespace, seen: Diagnosis) -> int:
+    """Say what is seen, report the findings, write what is asked for; the exit code."""
     for line in survey(seen):
         note(options, line)
     findings = chosen(options, seen.findings)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import os
+import stat
 import sys
 from collections.abc import Iterable, Iterator
-from typing import TypeVar
+from typing import TextIO, TypeVar
 
 from multibot_rewrite.cli.files import write_all
 from multibot_rewrite.cli.terminal import is_coloured
@@ -57,6 +58,27 @@ def write_files(options: argparse.Namespace, items: Iterable[tuple[str, bytes]])
 def goes_to_file(options: argparse.Namespace) -> bool:
     """Does the result leave standard output free?"""
     return options.output not in (None, STANDARD)
+
+
+def serves_a_program(options: argparse.Namespace) -> bool:
+    """Does a program read result and messages, each through a pipe, as ``Command`` of launch?
+
+    That takes any word on standard error for a failure. A terminal, a log file, ``-o`` and
+    ``--verbose`` get all messages.
+    """
+    if options.output or options.in_place or options.verbose:
+        return False
+    pipes = {_pipe(it) for it in (sys.stdout, sys.stderr)}
+    return None not in pipes and len(pipes) == 2
+
+
+def _pipe(stream: TextIO | None) -> int | None:
+    """The number of the pipe that a stream writes to; None if it is none."""
+    try:
+        found = os.fstat(stream.fileno()) if stream else None
+    except OSError:
+        return None
+    return found.st_ino if found and stat.S_ISFIFO(found.st_mode) else None
 
 
 def watched(items: Iterable[_T], total: int, doing: str) -> Iterable[_T]:

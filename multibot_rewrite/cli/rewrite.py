@@ -15,6 +15,7 @@ from multibot_rewrite.cli.output import (
     print_bytes,
     prints_colour,
     say,
+    serves_a_program,
     watched,
     write_files,
 )
@@ -29,6 +30,8 @@ from multibot_rewrite.cli.rewrite_use import check_unread, check_use, input_name
 from multibot_rewrite.cli.usage import policy, robots, xacro_args
 from multibot_rewrite.cli.walk import standard_input
 from multibot_rewrite.config import configured_vocabulary
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.selection import fails
 from multibot_rewrite.library import Rewrite, rewrite_all, strip
 from multibot_rewrite.naming import SEPARATORS
 from multibot_rewrite.plural import plural
@@ -51,6 +54,7 @@ def run(options: argparse.Namespace) -> int:
 
         return why.run(options)
     options.output = None if options.output == STANDARD else options.output
+    options.silent = serves_a_program(options)
     names = robots(options)
     check_use(options, names)
     options.vocabulary = [*configured_vocabulary(options.input), *options.vocabulary]
@@ -67,7 +71,7 @@ def _undo(options: argparse.Namespace, source: Source, names: list[str]) -> int:
     stripped = _strip(options, read.data, robot)
     check_unread(options, [robot], (*read.read, *beside))
     _deliver(options, [(robot, read.data, stripped)], [], 1)
-    note(options, f"{robot} taken out, proved by rewriting again")
+    _note(options, f"{robot} taken out, proved by rewriting again")
     return DONE
 
 
@@ -91,7 +95,7 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     check_unread(options, names, (path for it in jobs for path in it.job.read.files))
     about = About([input_name(options)], by_themselves(names), first.distro)
     found = dict.fromkeys(finding for it in (first, *others) for finding in it.findings)
-    if report_beside(options, chosen(options, found), about):
+    if report_beside(options, _told(options, chosen(options, found)), about):
         say(f"--fail-on {options.fail_on}: nothing was written", options.program)
         return STOPPED
     results = ((it.robot, it.prepared.job.data, it.data) for it in chain([first], others, rewrites))
@@ -99,8 +103,18 @@ def _rewrite(options: argparse.Namespace, source: Source, names: list[str]) -> i
     every = [own.get(robot, first._replace(robot=robot)) for robot in names]
     changes = [(options.changes, changes_json(every))] if options.changes else []
     _deliver(options, results, changes, len(names))
-    note(options, summary(first, names, _own_arguments(options, names)))
+    _note(options, summary(first, names, _own_arguments(options, names)))
     return DONE
+
+
+def _told(options: argparse.Namespace, findings: Sequence[Finding]) -> Sequence[Finding]:
+    """What is reported: to a program only what stops the rewrite."""
+    return () if options.silent and not fails(findings, options.fail_on) else findings
+
+
+def _note(options: argparse.Namespace, text: str) -> None:
+    if not options.silent:
+        note(options, text)
 
 
 def _strip(options: argparse.Namespace, source: bytes, robot: str) -> bytes:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shlex
 from collections.abc import Mapping, Sequence
 from itertools import takewhile
@@ -17,13 +18,21 @@ class LaunchOrder(NamedTuple):
     """A launch file or system_model.yaml to read, with launch arguments.
 
     ``roots`` are folders with the sources of packages that are not installed; ``trusted`` says that
-    whoever runs this named the file: a launch file is a program.
+    whoever runs this named the file: a launch file is a program. ``package`` is that of the file where
+    it was named by it.
     """
 
     file: str
     arguments: tuple[tuple[str, str], ...] = ()
     roots: tuple[str, ...] = ()
     trusted: bool = False
+    package: str = ""
+
+    @property
+    def command_line(self) -> list[str]:
+        """That of ``ros2 launch``: nav2_common's ParseMultiRobotPose reads it from sys.argv[4] on."""
+        file = [self.package, os.path.basename(self.file)] if self.package else [self.file]
+        return ["ros2", "launch", *file, *(f"{name}:={value}" for name, value in self.arguments)]
 
 
 class ParameterText(NamedTuple):
@@ -87,17 +96,23 @@ def launch_order(text: str, roots: Sequence[str] = ()) -> LaunchOrder:
         words = shlex.split(text)
     except ValueError:
         words = []
+    return order_in_words(words, text, roots)
+
+
+def order_in_words(words: Sequence[str], text: str, roots: Sequence[str] = ()) -> LaunchOrder:
+    """The same of words that a shell has split already; ``text`` stands for them in an error."""
     named = list(takewhile(lambda it: "=" not in it, words))
     if not 0 < len(named) < 3:
-        raise UsageError(f"--launch {text!r}: write FILE NAME:=VALUE ..., or PACKAGE FILE ...")
+        raise UsageError(f"launch {text!r}: write FILE NAME:=VALUE ..., or PACKAGE FILE ...")
     for it in words[len(named) :]:
         if not it.partition(":=")[0] or ":=" not in it:
             raise UsageError(f"launch {named[-1]}: {it!r} is no argument; write NAME:=VALUE")
     arguments = (it.partition(":=") for it in words[len(named) :])
-    file = named[0]
-    if len(named) > 1:
-        file = file_of_package(named[0], named[1], tuple(roots))
-    return LaunchOrder(file, tuple((name, value) for name, _, value in arguments), tuple(roots))
+    file, package = named[0], named[0] if len(named) > 1 else ""
+    if package:
+        file = file_of_package(package, named[1], tuple(roots))
+    values = tuple((name, value) for name, _, value in arguments)
+    return LaunchOrder(file, values, tuple(roots), package=package)
 
 
 def to_json(record: LaunchOrder | LaunchGraph) -> str:
@@ -107,9 +122,9 @@ def to_json(record: LaunchOrder | LaunchGraph) -> str:
 
 def order_of(text: str) -> LaunchOrder:
     """The order that ``to_json`` wrote."""
-    file, arguments, roots, trusted = json.loads(text)
+    file, arguments, roots, trusted, package = json.loads(text)
     pairs = tuple((name, value) for name, value in arguments)
-    return LaunchOrder(file, pairs, tuple(roots), trusted)
+    return LaunchOrder(file, pairs, tuple(roots), trusted, package)
 
 
 def graph_of(text: str) -> LaunchGraph:

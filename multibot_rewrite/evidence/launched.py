@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
 from typing import NamedTuple
 
@@ -86,7 +86,7 @@ def with_launched(
     """The nodes of a robot before its files are asked; ``words`` stand for it in namespaces."""
     spawned, notes = spawned_in(graph.nodes)
     graph = graph._replace(notes=(*graph.notes, *notes))
-    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not _passes(it)]
+    pairs = [_pair(it, stack, known, words) for it in graph.nodes if not passes(it)]
     nodes = {it.facts.name: it.facts for it in pairs}
     left = [it for it in stack if _is_left(it, nodes)] if graph.whole else []
     gone = {it.name for it in left}
@@ -130,7 +130,8 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
             yield it
 
 
-def _passes(it: LaunchedNode) -> bool:
+def passes(it: LaunchedNode) -> bool:
+    """Does the program do its work and end, or is it a simulator?"""
     program = f"{it.package}/{it.executable}"
     return not it.package or is_spawner(it) or program in programs().passing
 
@@ -141,7 +142,7 @@ def _pair(
     known: Mapping[str, NodeFacts],
     words: Collection[str],
 ) -> _Pair:
-    base = _base(it, stack, known)
+    base = known_node(it, stack, known)
     own = programs().names.get(f"{it.package}/{it.executable}") or (base.name if base else "")
     name = it.name or own or it.executable.rpartition(":")[2]
     facts = base or NodeFacts(name, it.package, ())
@@ -164,7 +165,7 @@ def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
     return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
-def _base(
+def known_node(
     it: LaunchedNode, stack: Sequence[NodeFacts], known: Mapping[str, NodeFacts]
 ) -> NodeFacts | None:
     """What is known of a node: by its name in a stack, else by its package and executable."""
@@ -227,7 +228,7 @@ def _controllers(
     places = {_stripped(it.full_name.strip("/"), words): it.place for it in spawned}
     for manager, texts in texts_of(spawned, own):
         above = _stripped(manager.strip("/"), words)
-        documents = [_document(it) for it in texts if _has_sections(it)]
+        documents = [document_of(it.file, it.text) for it in texts if has_sections(it)]
         found: dict[str, GivenNode] = {}
         for it in given_nodes(documents, parameters):
             name = _stripped(it.name, words)
@@ -253,8 +254,8 @@ def _given(
     # Sections for any node count, too, so each node gets one of its own.
     first = ParameterText("", f"{_full_name(pair.node, pair.facts)}:\n  ros__parameters: {{}}\n")
     # launch_ros gives a component the values of a file without such a key; it names no node.
-    files_ = (it for it in pair.node.parameters if _has_sections(it))
-    documents = [_document(it) for it in (first, *files_)]
+    files_ = (it for it in pair.node.parameters if has_sections(it))
+    documents = [document_of(it.file, it.text) for it in (first, *files_)]
     names = {pair.facts.name, *(it.name for it in inside if it.host == pair.facts.known)}
     for it in given_nodes(documents, parameters):
         mine = without_robot(it, words)
@@ -282,15 +283,18 @@ def _stripped(name: str, words: Collection[str]) -> str:
     return rest if slash and above in words else name
 
 
-def _has_sections(it: ParameterText) -> bool:
+def has_sections(it: ParameterText) -> bool:
+    """Is it a parameter file with sections of nodes?"""
     try:
-        return any(True for _ in raw_sections(_document(it)))
+        return any(True for _ in raw_sections(document_of(it.file, it.text)))
     except InputError:
         return False
 
 
-def _document(it: ParameterText) -> YamlText:
-    return read_yaml(it.text.encode(), it.file or _OWN)
+@lru_cache(maxsize=64)
+def document_of(file: str, text: str) -> YamlText:
+    """A parameter file, or with no ``file`` what a launch file sets itself; raises InputError."""
+    return read_yaml(text.encode(), file or _OWN)
 
 
 def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str) -> NodeFacts:

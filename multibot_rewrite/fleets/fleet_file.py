@@ -49,6 +49,7 @@ class RobotSpec(NamedTuple):
     ``pose`` is None if the file has none. ``companions`` maps a kind of ``KINDS`` to files. ``line``
     is its line in ``file``. ``filled`` are texts of parameter files in which a launch replaces
     something, by path. ``simulator`` is ``REAL``, or what the robot runs in; empty if nothing says so.
+    ``use_sim_time`` is what all its nodes have, None if the file does not say.
     """
 
     name: str
@@ -67,6 +68,7 @@ class RobotSpec(NamedTuple):
     launch: tuple[LaunchOrder, ...] = ()
     filled: tuple[tuple[str, str], ...] = ()
     simulator: str = ""
+    use_sim_time: bool | None = None
 
     @property
     def words(self) -> tuple[str, str, str]:
@@ -239,6 +241,7 @@ def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
         line,
         tuple(_launch(data, own, place)),
         simulator=own.get("simulator", data.get("simulator", "")),
+        use_sim_time=own.get("use_sim_time", data.get("use_sim_time")),
     )
 
 
@@ -248,8 +251,12 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
     try:
         for text in listed(own.get("launch", data.get("launch", []))):
             order = launch_order(text, roots)
-            filled(dict(order.arguments), own["name"])
-            yield order
+            full = filled(dict(order.arguments), own["name"])
+            # Robots with files of their own start other nodes; else one look is enough for all.
+            own_files = {
+                name: full[name] for name, text in order.arguments if os.path.splitext(text)[1]
+            }
+            yield order._replace(arguments=tuple({**dict(order.arguments), **own_files}.items()))
     except UsageError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
 

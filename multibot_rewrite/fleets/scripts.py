@@ -57,6 +57,7 @@ class LoadedRobot:
         self.model: str = spec.model
         self.tag: str = spec.tag
         self.pose: Pose | None = spec.pose
+        self.use_sim_time: bool | None = spec.use_sim_time
         namespaced = robot.topics.naming.topics == NAMESPACE
         self.namespace: str = f"/{spec.namespace}" if namespaced else "/"
 
@@ -87,16 +88,18 @@ class LoadedRobot:
     def node(self, node: str, *files: str) -> dict[str, Any]:
         """Name, namespace, remappings and parameters of a node of its stacks, for ``Node(**...)``.
 
-        ``files`` are parameter files of the fleet; amcl gets its start pose as well.
+        ``files`` are parameter files of the fleet; amcl gets its start pose as well, and
+        each node the clock that the fleet file says.
         Raises UsageError for a node that no stack has and for a controller (``spawner``), and as
         ``params`` for a file.
         """
         given = [self.params(file, node) for file in files]
+        clock = {} if self.use_sim_time is None else {"use_sim_time": self.use_sim_time}
         return {
             "name": self.table.name(node),
             "namespace": self.table.namespace(node),
             "remappings": self.table.for_node(node),
-            "parameters": [it for it in (*given, self.start_parameters(node)) if it],
+            "parameters": [it for it in (*given, self.start_parameters(node), clock) if it],
         }
 
     @checked

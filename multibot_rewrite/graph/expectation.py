@@ -73,6 +73,29 @@ class PlannedTopic(NamedTuple):
     type: str = ""
 
 
+class PlannedParameter(NamedTuple):
+    """A parameter with its value, as ``states.parameter_text`` writes it.
+
+    ``place`` is the ``file:line`` that it is from, empty for the plan itself.
+    """
+
+    name: str
+    value: str
+    place: str = ""
+
+
+class PlannedState(NamedTuple):
+    """What a running node answers: the label of its life cycle, its parameters; and its machine.
+
+    ``host`` is any word: nodes of one host run on one machine, those of two on two.
+    """
+
+    node: str
+    lifecycle: str = ""
+    host: str = ""
+    parameters: tuple[PlannedParameter, ...] = ()
+
+
 class Expectation(NamedTuple):
     """The plan of a fleet.
 
@@ -84,7 +107,8 @@ class Expectation(NamedTuple):
     ``topics`` say more of some topics; of each group in ``one_of`` one node runs, and not more.
     ``gaps`` are findings about what is open in the robots as they are planned: a name that is read
     and not sent, for example. ``sends`` has for a node the transforms that it sends, but for those of
-    the description, as ``odom -> base_link, map -> odom``.
+    the description, as ``odom -> base_link, map -> odom``. ``states`` are compared with what nodes
+    answer.
     """
 
     layout: str
@@ -102,6 +126,7 @@ class Expectation(NamedTuple):
     one_of: tuple[tuple[str, ...], ...] = ()
     gaps: tuple[Finding, ...] = ()
     sends: tuple[tuple[str, str], ...] = ()
+    states: tuple[PlannedState, ...] = ()
 
 
 def robot_words(plan: Expectation) -> dict[str, str]:

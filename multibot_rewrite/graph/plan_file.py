@@ -27,6 +27,8 @@ HEAD = """\
 # spelled: what stands for a robot in its frames, where that is not its name. More can be said of a
 # topic, `topics: {/robot1/cmd_vel: {senders: [/robot1/twist_mux], one_sender: true,
 # qos: {durability: transient_local}}}`, and of nodes of which one runs, `one_of: [[/a, /b]]`.
+# states: what nodes answer to `multibot check --state`, `{/robot1/amcl: {lifecycle: active,
+# host: robot1_pc, parameters: {use_sim_time: false}}}`.
 # open: what is read and not sent, claimed and not exported, by the robots' files; check reports it
 # with the graph.
 """
@@ -79,8 +81,8 @@ def _json(value: object) -> str:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _flow(values: Iterable[str], quote: Quote) -> str:
-    return f"[{', '.join(map(quote, values))}]"
+def _flow(values: Iterable[object], quote: Quote) -> str:
+    return f"[{', '.join(_plain(it, quote) for it in values)}]"
 
 
 def _quoted(value: str) -> str:

@@ -15,6 +15,7 @@ from multibot_rewrite.graph.expectation import (
     vacuous,
 )
 from multibot_rewrite.graph.plan_gaps import gap_value, read_gaps
+from multibot_rewrite.graph.plan_states import read_states, state_value
 from multibot_rewrite.model import InputError
 from multibot_rewrite.releases import RELEASES
 from multibot_rewrite.remap.records import KINDS, PUBLISHES, ROLES, SUBSCRIBES
@@ -25,10 +26,10 @@ ROBOT_KEYS = ("tf", "frames", "nodes")
 TOPIC_KEYS = ("senders", "one_sender", "qos", "bridge", "type")
 # Policies whose value is a word.
 QOS_KEYS = ("history", "reliability", "durability", "liveliness")
+OPEN, SENDS, STATES = "open", "sends", "states"
 # Node -> text; key -> field of Expectation. "ways" is how a node gets rules, if not by --ros-args.
-BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways", "sends": "sends"}
-OPEN = "open"
-OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", *BY_NODE, OPEN)
+BY_NODE = {"sources": "sources", "from": "origins", "ways": "ways", SENDS: "sends"}
+OPTIONAL_KEYS = ("distro", "ignored_nodes", "topics", "one_of", STATES, *BY_NODE, OPEN)
 # Key -> field of PlannedRobot.
 OPTIONAL_ROBOT_KEYS = {
     "other_frames": "other_frames",
@@ -52,6 +53,7 @@ def value_of(plan: Expectation) -> dict[str, object]:
     more = {
         "topics": {it.name: _topic_value(it) for it in plan.topics},
         "one_of": plan.one_of,
+        STATES: {it.node: own for it in plan.states if (own := state_value(it))},
         **{key: dict(getattr(plan, field)) for key, field in BY_NODE.items()},
         OPEN: [gap_value(it) for it in plan.gaps],
     }
@@ -108,6 +110,7 @@ def from_value(value: object, file: str) -> Expectation:
         tuple(_read_groups(top.get("one_of", []), file)),
         tuple(read_gaps(top.get(OPEN), f"{file}: {OPEN}")),
         sends,
+        tuple(read_states(top.get(STATES), file)),
     )
     nothing = vacuous(plan)
     if nothing:
@@ -214,7 +217,9 @@ def _not_full(value: object) -> str:
 def _by_node(value: object, file: str, key: str) -> Iterator[tuple[str, str]]:
     for node, place in _mapping(value or {}, (), file, key).items():
         if not isinstance(place, str):
-            raise InputError(f"{file}: {key}.{node}: write file:line")
+            raise InputError(f"{file}: {key}.{node}: write a text")
+        if key == SENDS and not all(" -> " in it for it in place.split(", ")):
+            raise InputError(f"{file}: {key}.{node}: write parent -> child, not {place!r}")
         yield str(node), place
 
 

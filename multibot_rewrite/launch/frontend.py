@@ -6,27 +6,34 @@ does nothing.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
 from typing import Any
 
-from multibot_rewrite import launch
+from multibot_rewrite.launch import actions
+from multibot_rewrite.launch.context import SIM_TIME, Text, reference
+from multibot_rewrite.launch.door import missing, of_launch, of_launch_ros
+from multibot_rewrite.launch.node_options import FROM_THE_FLEET
 from multibot_rewrite.launch.robot_words import WORDS
+from multibot_rewrite.launch.substitutions import FILE, as_value, substitution_class
 
-# The fleet decides these; a launch file that sets them would contradict it.
-_FROM_THE_FLEET = ("name", "namespace")
+COMPONENT = "multibot_composable_node"
+# launch knows typing.List[...], and not list[...].
+_SEVERAL: Any = vars(import_module("typing"))["List"]
+Parsed = tuple[Any, dict[str, Any]]
 
 
-def words(data: Sequence[launch.Text]) -> tuple[Any, dict[str, Any]]:
+def words(data: Sequence[Text]) -> Parsed:
     """``$(multibot WORD [NAME] [robot:=ROBOT] [fleet:=FILE])``, see ``launch.value``."""
     if not data:
-        raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, launch.FILE))}")
-    return launch.substitution(), {"words": data, "of": launch.HERE}
+        raise ValueError(f"$(multibot) needs one of: {', '.join((*WORDS, FILE))}")
+    return substitution_class(), {"words": data, "of": reference()}
 
 
-def robots(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
+def robots(entity: Any, parser: Any) -> Parsed:
     """``multibot_robots fleet= [robots=]``: its children for every robot, see ``launch.each_robot``."""
     given = {
-        **launch.action_options(entity, parser),
+        **action_options(entity, parser),
         **_texts(entity, parser, "fleet", "robots"),
     }
     if "fleet" not in given:
@@ -34,37 +41,121 @@ def robots(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
     children = entity.children
     # An action runs once, so each robot needs its own.
     given["make"] = lambda robot: [parser.parse_action(child) for child in children]
-    return launch.each_robot, given
+    return actions.each_robot, given
 
 
-def node(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
-    """``multibot_node node= [files=] [describe=] [robot=] [fleet=]`` and what ``node`` takes, see
+def node(entity: Any, parser: Any) -> Parsed:
+    """``multibot_node node= [files=] [describe=] [use_sim_time=] [robot=] [fleet=]`` and what ``node``
+    takes, see ``launch.node``."""
+    return actions.node, _node("multibot_node", actions.node_class(), entity, parser)
+
+
+def lifecycle_node(entity: Any, parser: Any) -> Parsed:
+    """``multibot_lifecycle_node``: as ``multibot_node``, see ``launch.lifecycle_node``."""
+    made = _node("multibot_lifecycle_node", actions.node_class(), entity, parser)
+    return actions.lifecycle_node, made
+
+
+def container(entity: Any, parser: Any) -> Parsed:
+    """``multibot_container``: as ``multibot_node``, with components in it, see ``launch.container``."""
+    base = of_launch_ros("actions").ComposableNodeContainer
+    given = _node("multibot_container", base, entity, parser)
+    inside = _nested(entity, COMPONENT)
+    own = [_component(it, parser) for it in inside]
+    for it in inside:
+        it.assert_entity_completely_parsed()
+    known = given.pop("composable_node_descriptions", [])
+    both = [*known, *(actions.composable_node(**it) for it in own)]
+    return actions.container, {**given, "composable_node_descriptions": both}
+
+
+def composable_node(entity: Any, parser: Any) -> Parsed:
+    """``multibot_composable_node node= pkg= plugin=``: loaded into its container, see
     ``launch.node``."""
-    _, given = launch.node_class().parse(entity, parser)
-    for word in _FROM_THE_FLEET:
-        if word in given:
-            raise ValueError(f"multibot_node: {word} comes from the fleet file; remove {word}=")
-    name = parser.parse_substitution(entity.get_attr("node"))
-    describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
-    texts = _texts(entity, parser, "files", "robot", "fleet")
-    return launch.node, {**given, **texts, "name": name, "describe": bool(describe)}
+    return actions.node, {**action_options(entity, parser), **_component(entity, parser)}
 
 
-def spawn(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
+def spawn(entity: Any, parser: Any) -> Parsed:
     """``multibot_spawn simulator= [robot=] [fleet=]``, see ``launch.spawn``."""
     simulator = parser.parse_substitution(entity.get_attr("simulator"))
-    texts = _texts(entity, parser, "robot", "fleet")
-    return launch.spawn, {
-        "simulator": simulator,
-        **texts,
-        **launch.action_options(entity, parser),
-    }
+    return actions.spawn, {"simulator": simulator, **_program(entity, parser)}
 
 
-def place(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
+def place(entity: Any, parser: Any) -> Parsed:
     """``multibot_place [robot=] [fleet=]``, see ``launch.place``."""
-    texts = _texts(entity, parser, "robot", "fleet")
-    return launch.place, {**texts, **launch.action_options(entity, parser)}
+    return actions.place, _program(entity, parser)
+
+
+def action_options(entity: Any, parser: Any) -> dict[str, Any]:
+    """The options of every action in an XML or YAML launch file, such as its condition."""
+    options: dict[str, Any] = of_launch().Action.parse(entity, parser)[1]
+    return options
+
+
+def expose(
+    substitutions: Mapping[str, Callable[..., Any]], made: Mapping[str, Callable[..., Any]]
+) -> None:
+    """Register parsing functions for XML and YAML launch files."""
+    frontend = of_launch("frontend")
+    for name, parse in substitutions.items():
+        frontend.expose_substitution(name)(parse)
+    for name, parse in made.items():
+        frontend.expose_action(name)(parse)
+
+
+def _node(word: str, base: Any, entity: Any, parser: Any) -> dict[str, Any]:
+    """The options of a node that its class ``base`` reads, and ours."""
+    _, given = base.parse(entity, parser)
+    for it in FROM_THE_FLEET:
+        if it in given:
+            raise ValueError(f"{word}: {it} comes from the fleet file; remove {it}=")
+    return {**given, **_parameters(given), **_ours(entity, parser)}
+
+
+def _ours(entity: Any, parser: Any) -> dict[str, Any]:
+    name = parser.parse_substitution(entity.get_attr("node"))
+    describe = entity.get_attr("describe", data_type=bool, optional=True, can_be_str=False)
+    texts = _texts(entity, parser, "files", "robot", "fleet", SIM_TIME)
+    return {**texts, "name": name, "describe": bool(describe)}
+
+
+def _component(entity: Any, parser: Any) -> dict[str, Any]:
+    """The options of a component: launch_ros reads them only where its name is given."""
+    given: dict[str, Any] = {
+        "package": parser.parse_substitution(entity.get_attr("pkg")),
+        "plugin": parser.parse_substitution(entity.get_attr("plugin")),
+    }
+    if params := _nested(entity, "param"):
+        given["parameters"] = actions.node_class().parse_nested_parameters(params, parser)
+    if remaps := _nested(entity, "remap"):
+        given["remappings"] = [_rule(it, parser) for it in remaps]
+    return {**given, **_parameters(given), **_ours(entity, parser)}
+
+
+def _nested(entity: Any, word: str) -> list[Any]:
+    """The elements of this name in an element."""
+    several = _SEVERAL[of_launch("frontend").Entity]
+    return entity.get_attr(word, data_type=several, optional=True) or []
+
+
+def _rule(entity: Any, parser: Any) -> tuple[Any, Any]:
+    source, target = (parser.parse_substitution(entity.get_attr(it)) for it in ("from", "to"))
+    entity.assert_entity_completely_parsed()
+    return source, target
+
+
+def _parameters(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Parameters whose value is one of ours, with its type."""
+    found = [
+        {key: as_value(value) for key, value in it.items()} if isinstance(it, dict) else it
+        for it in given.get("parameters", ())
+    ]
+    return {"parameters": found} if found else {}
+
+
+def _program(entity: Any, parser: Any) -> dict[str, Any]:
+    texts = _texts(entity, parser, "robot", "fleet", SIM_TIME, "output")
+    return {**texts, **action_options(entity, parser)}
 
 
 def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
@@ -73,12 +164,15 @@ def _texts(entity: Any, parser: Any, *names: str) -> dict[str, Any]:
     return {name: parser.parse_substitution(it) for name, it in found.items() if it is not None}
 
 
-if not launch.missing():
-    launch.expose(
+if not missing():
+    expose(
         substitutions={"multibot": words},
-        actions={
+        made={
             "multibot_robots": robots,
             "multibot_node": node,
+            "multibot_lifecycle_node": lifecycle_node,
+            "multibot_container": container,
+            COMPONENT: composable_node,
             "multibot_spawn": spawn,
             "multibot_place": place,
         },

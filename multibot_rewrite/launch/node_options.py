@@ -6,6 +6,17 @@ from collections.abc import Mapping
 from typing import Any
 
 from multibot_rewrite.fleets.scripts import LoadedRobot
+from multibot_rewrite.model import UsageError
+
+# The fleet decides these; a launch file that sets them would contradict it.
+FROM_THE_FLEET = ("name", "namespace")
+
+
+def check_options(word: str, options: Mapping[str, Any]) -> None:
+    """Raises UsageError for options that the fleet decides."""
+    for it in FROM_THE_FLEET:
+        if it in options:
+            raise UsageError(f"{word}: {it} comes from the fleet file; remove {it}=")
 
 
 def node_options(
@@ -18,11 +29,16 @@ def node_options(
     """
     if robot.table.is_controller(name):
         made = robot.spawner(name, *files)
-        return {**options, **made, "arguments": [*made["arguments"], *options.get("arguments", ())]}
+        return {**options, **made, "arguments": [*made["arguments"], *listed(options, "arguments")]}
     return {
         **options,
         "name": robot.table.name(name),
         "namespace": robot.table.namespace(name),
-        "remappings": [*(options.get("remappings") or ()), *robot.table.for_node(name)],
-        "parameters": [*files, *(options.get("parameters") or ())],
+        "remappings": [*listed(options, "remappings"), *robot.table.for_node(name)],
+        "parameters": [*files, *listed(options, "parameters")],
     }
+
+
+def listed(options: Mapping[str, Any], word: str) -> list[Any]:
+    """An option that is a list; empty where it is not given."""
+    return [*(options.get(word) or ())]

@@ -10,6 +10,9 @@ from multibot_rewrite.fleets.scripts import LoadedRobot
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.remap.yaml_with_lines import unknown
 
+# Words whose values are numbers.
+NUMBERS = frozenset({"pose"})
+
 
 def _pose(robot: LoadedRobot, axis: str) -> str:
     values = (robot.pose or Pose())._asdict()

@@ -165,18 +165,20 @@ def _endpoints(
     rules: tuple[ReadRule, ...],
 ) -> Iterator[ReadEndpoint]:
     off = switched_off(plugin, section)
-    for it, path in wired_of(plugin, section):
+    wired = list(wired_of(plugin, section))
+    named = {it.name for it, _ in wired}
+    for it, path in wired:
         kind = SERVICE if it.role == SERVES else TOPIC
         own = (kind, it.role, it.name, _full(it.name, kind, bound))
         yield ReadEndpoint(*own, path, off.get(it.name, ""), type=it.type)
     for site in filter(_holds_topic, section.sites):
         kind = SERVICE if site.kinds[0] == SERVICE else TOPIC
-        for name in values_of(plugin, site):
+        for name in (it for it in values_of(plugin, site) if site.does or it not in named):
             own = (kind, site.does, name, _full(name, kind, bound))
             yield ReadEndpoint(*own, site.path, type=site.type)
     # Other topics below the plugin's own name are not in the vocabulary, but in its remap rules.
     for source in (it.rule.source for it in rules):
-        if source.startswith("~") and source not in section.topics:
+        if source.startswith("~") and source not in named:
             yield ReadEndpoint(TOPIC, "", source, _full(source, TOPIC, bound))
 
 

@@ -30,7 +30,7 @@ def test_the_files_are_what_the_options_make() -> None:
 @pytest.mark.parametrize(
     ("words", "offered"),
     [
-        (["multibot", "ch"], "check"),
+        (["multibot", "doc"], "doctor"),
         (["multibot", "remap", "--layo"], "--layout"),
         (["multibot", "remap", "--layout", "frames"], "frames-per-robot"),
         (["multibot", "check", "--format", "sa"], "sarif"),

@@ -40,6 +40,16 @@ HEALTHY = (
     "namespaces of two levels",
     "one robot",
 )
+PLANNED = """\
+layout: frames-per-robot
+shared_nodes: {}
+shared_topics: []
+shared_frames: []
+robots:
+  robot1: {tf: /tf, frames: [robot1/base_link], nodes: {/robot1/amcl: []}}
+  robot2: {tf: /tf, frames: [robot2/base_link], nodes: {/robot2/amcl: [], /robot2/silent: []}}
+states: {/robot1/amcl: {lifecycle: active}}
+"""
 PATIENTLY = ("--timeout", "40", "-v")
 
 
@@ -154,6 +164,34 @@ def test_frames_of_messages_that_are_sent(needed: Mapping[str, str], tmp_path: P
     assert "MG412 frame_id of /robot1/scan is laser" in said, said
     assert "sent by /robot1/lidar" in said and "to robot1/laser" in said
     assert "MG411 frame_id of /robot2/image is robot1/laser, a frame of robot1" in said
+
+
+@pytest.mark.deep
+def test_parameters_that_nodes_were_started_with(needed: Mapping[str, str], tmp_path: Path) -> None:
+    """One with another value than its file, one as its file says, one that declares none of them."""
+    given = {"base_frame": "base_link", "rate": 2.5, "list": ["a", "b"], "grid": [1, 2]}
+    right = {**given, "base_frame": "robot2/base_link"}
+    nodes = [
+        {"name": "amcl", "namespace": "/robot1", "parameters": given, "state": "inactive"},
+        {"name": "amcl", "namespace": "/robot2", "parameters": right, "state": "active"},
+        {"name": "silent", "namespace": "/robot2", "state": "active"},
+    ]
+    for robot in ("robot1", "robot2"):
+        (tmp_path / robot).mkdir()
+        own = f"{{base_frame: {robot}/base_link, rate: 2.5, list: [a, b], grid: [1, 2], more: 1}}"
+        text = "".join(f"/{robot}/{it}: {{ros__parameters: {own}}}\n" for it in ("amcl", "silent"))
+        (tmp_path / robot / "nav2.yaml").write_text(text)
+    planned = tmp_path / "plan.yaml"
+    planned.write_text(PLANNED)
+    domain = live_commands.domain(16)
+    env = {**live_fleet.environ(domain), **needed}
+    with live_fleet.running(domain, nodes, **needed):
+        done = live_commands.multibot("check", str(planned), "--state", *PATIENTLY, env=env)
+    (differs,) = [it for it in done.stdout.splitlines() if "MG132" in it]
+    assert 'base_frame is "base_link", planned is "robot1/base_link"' in differs, done.stdout
+    assert "robot1/nav2.yaml:1" in differs and "rate" not in differs
+    assert "/robot1/amcl: error: MG131 is inactive, planned is active" in done.stdout
+    assert "MG511" not in done.stdout and "3 of 3 nodes answered --state" in done.stderr
 
 
 @pytest.mark.deep

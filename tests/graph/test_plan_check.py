@@ -151,6 +151,9 @@ def test_an_edited_plan_is_what_counts(plan: Path, capsys: pytest.CaptureFixture
             id="r",
         ),
         pytest.param(
+            "odom/robot1 -> base", "odom/robot1 base", "sends./robot1/diff_drive: wr", id="s"
+        ),
+        pytest.param(
             "    nodes:", "    optional: x\n    nodes:", "optional is not a list", id="optional"
         ),
     ],

@@ -116,6 +116,16 @@ def test_a_lidar_with_another_type(layout: str) -> None:
     assert CLOUD in found[0].message
 
 
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_another_type_where_nobody_reads_it_is_the_plugins(layout: str) -> None:
+    driver = named(layout, "imu_driver")
+    graph = with_type(healthy(layout), named(layout, "imu"), driver, CLOUD)
+    (finding,) = hints(layout, graph, "MG106")
+    place = dict(read_plan(layout).sources)[driver]
+    assert f"plugin imu_driver, see {place}" in finding.hint
+    assert finding.line == int(place.rpartition(":")[2])
+
+
 def bridged(plan: Expectation, names: Iterable[str]) -> Expectation:
     """The plan with topics that a bridge has to carry."""
     roles = {"cmd_vel": (SUBSCRIBES, TWIST), "scan": (PUBLISHES, SCAN)}

@@ -9,29 +9,28 @@ import gc
 import importlib
 import inspect
 import io
-import json
-import os
 import re
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
-from types import MappingProxyType, ModuleType
+from types import ModuleType
 from typing import Any
 
 import launch_stand_in
 import pytest
 import yaml
-from paths import FIXTURES, ROOT, SUPPORT
+from launched_programs import EXAMPLE, launched
+from paths import FIXTURES, ROOT
 
 from multibot_rewrite import InputError, UsageError, launch, load_fleet
+from multibot_rewrite.launch import context as launch_context
+from multibot_rewrite.launch import later, substitutions
 
 REAL = not launch.missing()
 NO_LAUNCH = f"not tried in the real launch, which is not here: {launch.missing()}"
 in_launch = pytest.mark.skipif(not REAL, reason=NO_LAUNCH)
-CHILD = SUPPORT / "launch_child.py"
-EXAMPLE = ROOT / "examples" / "multibot_example"
 FLEET = """\
 layout: frames-per-robot
 affix: prefix
@@ -48,14 +47,14 @@ RVIZ = EXAMPLE / "config" / "rover.rviz"
 
 
 class Started:
-    """Stands for launch_ros's Node: keeps what it is given."""
+    """Stands for classes of launch_ros: keeps what it is given, and whether it ran."""
 
-    def __init__(self, **options: Any) -> None:
-        self.options = options
+    def __init__(self, *, condition: Any = None, **options: Any) -> None:
+        self.condition, self.options, self.ran = condition, options, False
 
     @staticmethod
     def parse(entity: Any, parser: Any) -> tuple[Any, dict[str, Any]]:
-        options = launch.action_options(entity, parser)
+        options = importlib.import_module("launch").Action.parse(entity, parser)[1]
         words = {"pkg": "package", "exec": "executable", "name": "name", "namespace": "namespace"}
         for attribute, option in words.items():
             text = entity.get_attr(attribute, optional=True)
@@ -63,17 +62,58 @@ class Started:
                 options[option] = parser.parse_substitution(text)
         return Started, options
 
+    def visit(self, context: Any) -> Any:
+        wanted = self.condition is None or self.condition.evaluate(context)
+        return self.execute(context) if wanted else None
+
+    def execute(self, context: Any) -> Any:
+        self.ran = True
+
+
+class StartedLifecycle(Started):
+    """Stands for LifecycleNode."""
+
+
+class StartedContainer(Started):
+    """Stands for ComposableNodeContainer."""
+
+
+class Set(Started):
+    """Stands for SetParameter."""
+
+    def __init__(self, name: str, value: object) -> None:
+        super().__init__()
+        self.name, self.value = name, value
+
+
+def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Classes that start nothing in place of those of launch_ros."""
+    actions, descriptions = ModuleType("launch_ros.actions"), ModuleType("launch_ros.descriptions")
+    vars(actions).update(
+        Node=Started,
+        LifecycleNode=StartedLifecycle,
+        ComposableNodeContainer=StartedContainer,
+        LoadComposableNodes=Started,
+        SetParameter=Set,
+    )
+    vars(descriptions).update(ComposableNode=Started)
+    for module in (actions, descriptions):
+        monkeypatch.setitem(sys.modules, module.__name__, module)
+    if not REAL:
+        launch_stand_in.install(monkeypatch)
+        monkeypatch.delitem(sys.modules, "multibot_rewrite.launch.frontend", raising=False)
+
 
 @pytest.fixture
 def frontend(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """What XML can say, in launch or in the stand-in."""
-    monkeypatch.setattr(launch, "node_class", lambda: Started)
-    if not REAL:
-        launch_stand_in.install(monkeypatch)
-        monkeypatch.delitem(sys.modules, "multibot_rewrite.launch.frontend", raising=False)
-    launch.substitution.cache_clear()
+    stand_ins(monkeypatch)
+    made_once = (substitutions.substitution_class, later._action, later._component)
+    for it in made_once:
+        it.cache_clear()
     yield importlib.import_module("multibot_rewrite.launch.frontend")
-    launch.substitution.cache_clear()
+    for it in made_once:
+        it.cache_clear()
 
 
 @pytest.fixture
@@ -93,9 +133,9 @@ def fleet(tmp_path: Path) -> str:
 
 def run(context: Any, action: Any) -> list[Started]:
     """What an action starts, and what those start that it makes."""
-    if isinstance(action, Started):
-        return [action]
-    return [it for made in action.visit(context) or () for it in run(context, made)]
+    made = [it for one in action.visit(context) or () for it in run(context, one)]
+    own = isinstance(action, Started) and not isinstance(action, Set) and action.ran
+    return [action, *made] if own else made
 
 
 def read(text: str) -> list[Any]:
@@ -266,13 +306,7 @@ def test_a_controller_is_started_by_its_spawner(fleet: str, context: Any) -> Non
     }  # fmt: skip
 
 
-def test_a_component_is_loaded_into_its_container(
-    fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    actions, descriptions = ModuleType("launch_ros.actions"), ModuleType("launch_ros.descriptions")
-    vars(actions)["LoadComposableNodes"] = vars(descriptions)["ComposableNode"] = Started
-    for module in (ModuleType("launch_ros"), actions, descriptions):
-        monkeypatch.setitem(sys.modules, module.__name__, module)
+def test_a_component_is_loaded_into_its_container(fleet: str, context: Any) -> None:
     Path(fleet).write_text(FLEET.replace("[nav2, robot_state]", "nav2_composed"))
     options = {"package": "nav2_amcl", "plugin": "nav2_amcl::AmclNode"}
     (made,) = run(context, launch.node("amcl", robot="robot1", fleet=fleet, **options))
@@ -353,7 +387,7 @@ def test_a_launch_loads_a_fleet_once(
         loads.append(path)
         return load_fleet(path, trust=trust)
 
-    monkeypatch.setattr(launch, "load_fleet", counted)
+    monkeypatch.setattr(launch_context, "load_fleet", counted)
     first = launch.fleet_of(context, fleet)
     assert launch.fleet_of(context, fleet) is first
     run(context, launch.each_robot(fleet, lambda it: [launch.node("amcl", files="params.yaml")]))
@@ -379,7 +413,7 @@ def test_a_launch_trusts_xacro_files_where_it_is_told(
         asked.append(trust)
         return load_fleet(path)
 
-    monkeypatch.setattr(launch, "load_fleet", counted)
+    monkeypatch.setattr(launch_context, "load_fleet", counted)
     context.launch_configurations.update(configured)
     launch.fleet_of(context, fleet)
     assert asked == [trusted]
@@ -497,17 +531,13 @@ def test_a_substitution_needs_a_word(frontend: Any) -> None:
 
 
 PAGE = (ROOT / "docs" / "launch.md").read_text()
-PYTHON = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+PYTHON = [it for it in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if it.startswith("from")]
 
 
 @pytest.mark.parametrize("code", PYTHON, ids=["plain", "running"])
 def test_the_python_of_the_page(
     code: str, fleet: str, context: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    actions = ModuleType("launch_ros.actions")
-    vars(actions)["Node"] = Started
-    monkeypatch.setitem(sys.modules, "launch_ros", ModuleType("launch_ros"))
-    monkeypatch.setitem(sys.modules, "launch_ros.actions", actions)
     monkeypatch.chdir(Path(fleet).parent)
     context.launch_configurations["fleet"] = fleet
     names: dict[str, Any] = {}
@@ -557,73 +587,6 @@ def test_the_stand_in_is_like_launch(module: str, name: str) -> None:
     for method, function in vars(ours).items():
         if inspect.isfunction(function) and not method.startswith("_"):
             assert signature(getattr(real, method)) == signature(function), method
-
-
-def fake_packages(folder: Path, files: dict[str, str], programs: dict[str, str]) -> None:
-    """An install folder of packages whose programs write down what they are told."""
-    index = folder / "share" / "ament_index" / "resource_index" / "packages"
-    index.mkdir(parents=True)
-    for path, text in files.items():
-        (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        (folder / path).write_text(text)
-    for package in {*programs.values(), *(path.split("/")[1] for path in files)}:
-        (index / package).touch()
-    for program, package in programs.items():
-        path = folder / "lib" / package / program
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(f"#!{sys.executable}\n{PROGRAM}")
-        path.chmod(0o755)
-
-
-PROGRAM = """\
-import json, os, sys
-files = {word: open(word).read() for word in sys.argv if os.path.isfile(word)}
-with open(os.path.join(os.environ["TOLD"], str(os.getpid())), "w") as out:
-    json.dump({"words": sys.argv, "files": files}, out)
-"""
-EMPTY = "from launch import LaunchDescription\n\n\ndef generate_launch_description():\n"
-EMPTY += "    return LaunchDescription([])\n"
-PROGRAMS = {
-    "robot_state_publisher": "robot_state_publisher",
-    "create": "ros_gz_sim",
-    "parameter_bridge": "ros_gz_bridge",
-    "spawn_entity.py": "gazebo_ros",
-    "static_transform_publisher": "tf2_ros",
-    "rviz2": "rviz2",
-}
-
-
-def launched(
-    file: Path, folder: Path, *arguments: str, programs: Mapping[str, str] = MappingProxyType({})
-) -> tuple[list[dict[str, Any]], str]:
-    """What the programs of a launch file were told, and what launch said."""
-    share = {
-        f"share/multibot_example/{path.relative_to(EXAMPLE)}": path.read_text()
-        for path in EXAMPLE.glob("*/*.*")
-    }
-    included = ("ros_gz_sim/launch/gz_sim.launch.py", "gazebo_ros/launch/gazebo.launch.py")
-    files = {**share, **{f"share/{it}": EMPTY for it in included}}
-    fake_packages(folder / "install", files, {**PROGRAMS, **programs})
-    (folder / "told").mkdir()
-    (folder / "tmp").mkdir()
-    env = {
-        **os.environ,
-        "AMENT_PREFIX_PATH": os.pathsep.join(
-            [str(folder / "install"), os.environ.get("AMENT_PREFIX_PATH", "")]
-        ),
-        "TOLD": str(folder / "told"),
-        "TMPDIR": str(folder / "tmp"),
-        "ROS_LOG_DIR": str(folder / "log"),
-    }
-    command = [sys.executable, str(CHILD), str(file), *arguments]
-    done = subprocess.run(
-        command, env=env, capture_output=True, text=True, timeout=120, check=False
-    )
-    assert done.returncode == 0, done.stderr + done.stdout
-    told = [json.loads(it.read_text()) for it in (folder / "told").iterdir()]
-    left = [it.name for it in (folder / "tmp").iterdir()]
-    assert [it for it in left if not it.startswith("launch_params_")] == []
-    return told, done.stderr + done.stdout
 
 
 LAUNCH_FILES = ("gz.launch.py", "gz.launch.xml", "classic.launch.py", "classic.launch.yaml")

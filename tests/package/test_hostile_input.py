@@ -197,9 +197,20 @@ def test_it_ends_with_one_clear_line(name: str, tmp_path: Path) -> None:
         data = text if isinstance(text, bytes) else text.encode()
         (tmp_path / f"in{ending}").write_bytes(data)
     command = [sys.executable, "-m", f"multibot_rewrite.cli.{program}", *words]
-    run = subprocess.run(command, cwd=tmp_path, capture_output=True, timeout=PATIENCE, check=False)
-    lines = run.stderr.decode().splitlines()
-    assert (run.returncode, "Traceback" in run.stderr.decode()) == (code, False), lines[-1:]
+    # With two pipes urdf-postfix would tell of failures alone.
+    with open(tmp_path / "messages", "w+b") as messages:
+        run = subprocess.run(
+            command,
+            cwd=tmp_path,
+            stdout=subprocess.PIPE,
+            stderr=messages,
+            timeout=PATIENCE,
+            check=False,
+        )
+        messages.seek(0)
+        said_all = messages.read().decode()
+    lines = said_all.splitlines()
+    assert (run.returncode, "Traceback" in said_all) == (code, False), lines[-1:]
     assert said in lines[-1]
     # A value that a message repeats may be a whole file.
     assert max(map(len, lines)) < 1_200

@@ -15,6 +15,7 @@ from multibot_rewrite.rewriters.vocabulary import check_vocabulary, load_vocabul
 ODOM, TWIST, TF = "nav_msgs/msg/Odometry", "geometry_msgs/msg/Twist", "tf2_msgs/msg/TFMessage"
 IMAGE, INFO, CLOUD = (f"sensor_msgs/msg/{it}" for it in ("Image", "CameraInfo", "PointCloud2"))
 JOINTS, SCAN = "sensor_msgs/msg/JointState", "sensor_msgs/msg/LaserScan"
+VECTOR = "geometry_msgs/msg/Vector3Stamped"
 HAZARD = "irobot_create_msgs/msg/HazardDetection"
 PUB, SUB, SRV = "publishes", "subscribes", "serves"
 SET_INFO = (SRV, "/set_camera_info", "sensor_msgs/srv/SetCameraInfo")
@@ -90,6 +91,19 @@ def ends(library: str, inside: str = "", sensor: str = "", more: str = "") -> En
         ("gazebo_ros_video", "", {(SUB, "/p/image_raw", IMAGE)}),
         # iRobotEducation/create3_sim humble gazebo_ros_wheel_drop.cpp.
         ("gazebo_ros_create_wheel_drop", "", {(PUB, "/p/out", HAZARD)}),
+        # tu-darmstadt-ros-pkg/hector_gazebo humble-devel gazebo_ros_magnetic.cpp, gazebo_ros_gps.cpp.
+        ("hector_gazebo_ros_magnetic", "<ros/>", {(PUB, "/magnetic", VECTOR)}),
+        (
+            "hector_gazebo_ros_magnetic",
+            "<ros/><topicName>mag</topicName><useMagneticFieldMsgs>true</useMagneticFieldMsgs>",
+            {(PUB, "/mag", "sensor_msgs/msg/MagneticField")},
+        ),
+        (
+            "hector_gazebo_ros_gps",
+            "<ros/>",
+            {(PUB, "/fix", "sensor_msgs/msg/NavSatFix"), (PUB, "/fix_velocity", VECTOR)},
+        ),
+        ("gazebo_ros_velodyne_laser", "", {(PUB, "/p/out", CLOUD)}),
         # Liquid-ai/Plankton master DVLROSPlugin.cpp: sensorOutputTopic and "_twist" behind it.
         (
             "uuv_gazebo_ros_dvl_plugin",
@@ -184,8 +198,7 @@ def test_topics_of_a_camera(inside: str, sensor: str, more: str, found: Ends) ->
 
 # Sources that could not be read: these topics have no type yet.
 PID = {f"pid/{a}_{b}_motor" for a in ("front", "rear") for b in ("left", "right")}
-UNTYPED = {*PID, "pid/articulation_joint", "/syscommand", "CONVEYORPOWER", "CONVEYORSTATE"}
-UNTYPED |= {"collisions", "cmd_drive"}
+UNTYPED = {*PID, "pid/articulation_joint", "collisions", "cmd_drive"}
 
 
 def test_every_topic_of_a_plugin_that_is_a_node_has_a_type() -> None:
@@ -193,3 +206,12 @@ def test_every_topic_of_a_plugin_that_is_a_node_has_a_type() -> None:
     nodes = [it for it in sections if any(site.path == "ros/namespace" for site in it.sites)]
     missing = {it.name for section in nodes for it in section.wired if not it.type}
     assert missing == UNTYPED
+
+
+def test_what_is_below_a_stem_is_one_name_where_robots_may_meet() -> None:
+    plugin = '<plugin name="p" filename="libgazebo_ros_camera.so"/>'
+    text = (
+        f"<robot name='r'><gazebo><sensor name='s' type='camera'>{plugin}</sensor></gazebo></robot>"
+    )
+    found = read(text.encode(), "r.urdf", load_vocabulary((), NEWEST_LTS)).names
+    assert [it.name for it in found if it.kind == "topic"] == ["/s"]

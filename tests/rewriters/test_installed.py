@@ -94,7 +94,12 @@ def run(site: Path, *words: str, stdin: bytes = b"") -> subprocess.CompletedProc
     """Run the command where ``site`` is on Python's path; standard input is the robot."""
     env = {**os.environ, "PYTHONPATH": os.pathsep.join([str(site), *_path()])}
     return subprocess.run(
-        [*COMMAND, "-", *words], input=stdin, env=env, cwd=site, capture_output=True, check=False
+        [*COMMAND, "-", *words, "--verbose"],
+        input=stdin,
+        env=env,
+        cwd=site,
+        capture_output=True,
+        check=False,
     )
 
 

@@ -15,7 +15,9 @@ Each line begins with ``planned:`` (it is in the plan), ``running:`` (it is in t
     transform PARENT -> CHILD on TOPIC [by NODES] [twice]    a transform, who publishes on its topic,
                                                      and whether several of them send it
     frame_id FRAME on TOPIC             the frame that a message on the topic names
-    NODE is STATE, NODE has use_sim_time VALUE       what it answers when it is asked for its state
+    NODE is STATE, NODE has PARAMETER VALUE          what it answers when it is asked for its state
+    state of NODE: STATE, parameter NAME of NODE: VALUE     what it is planned to answer
+    host of NODE: WORD, NODE on machine NUMBER       where it is planned to run, and where it runs
     NODE controls INTERFACE by CONTROLLER, NODE keeps CONTROLLER STATE    a controller manager's answer
 
 QOS are words of DDS in small letters: reliable, best_effort, volatile, transient_local. A robot is
@@ -37,7 +39,9 @@ from multibot_rewrite.graph.expectation import (
     ALWAYS,
     Expectation,
     PlannedEndpoint,
+    PlannedParameter,
     PlannedRobot,
+    PlannedState,
     PlannedTopic,
 )
 from multibot_rewrite.graph.snapshot import (
@@ -48,7 +52,7 @@ from multibot_rewrite.graph.snapshot import (
     Qos,
     Snapshot,
 )
-from multibot_rewrite.graph.states import Controller, NodeState
+from multibot_rewrite.graph.states import Controller, NodeState, Parameter
 from multibot_rewrite.remap.records import ACTION, PUBLISHES, SERVICE, SUBSCRIBES, TOPIC
 
 LINE = re.compile(r"(planned|running|as planned): (.+)")
@@ -64,10 +68,15 @@ BRIDGED = re.compile(r"topic (\S+) over a bridge that (publishes|subscribes) (\S
 ONE_OF = re.compile(r"one of (.+)")
 STATE = re.compile(r"(/\S+) is (\w+)")
 SIM_TIME = re.compile(r"(/\S+) has use_sim_time (true|false)")
+HAS = re.compile(r"(/\S+) has (?!use_sim_time)(\w+) ([\w/]+)")
+PLANNED_STATE = re.compile(r"state of (/\S+): (\w+)")
+PLANNED_PARAMETER = re.compile(r"parameter (\w+) of (/\S+): ([\w/]+)")
+HOST = re.compile(r"host of (/\S+): (\w+)")
+MACHINE = re.compile(r"(/\S+) on machine (\d)")
 CONTROLS = re.compile(r"(/\S+) controls (\S+) by (\w+)")
 FRAME_ID = re.compile(r"frame_id (\S+) on (/\S+)")
 KEEPS = re.compile(r"(/\S+) keeps (\w+) (\w+)")
-ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS)
+ANSWERS = (STATE, SIM_TIME, CONTROLS, KEEPS, HAS, MACHINE)
 ROBOT = re.compile(r"robot\d+")
 PLANNED, RUNNING, BOTH = "planned", "running", "as planned"
 # Words of QOS -> the policy that they are of.
@@ -113,11 +122,33 @@ def read_states(lines: list[str]) -> tuple[NodeState, ...]:
         NodeState(node, controllers=(Controller(name, state, ()),))
         for node, name, state in _words(KEEPS, lines)
     ]
-    return (*managed, *timed, *active, *kept)
+    having = (
+        NodeState(node, parameters=(Parameter(name, _text(value)),))
+        for node, name, value in _words(HAS, lines)
+    )
+    return (*managed, *timed, *active, *kept, *having)
+
+
+def _text(value: str) -> str:
+    """A word is a text, unless it is a number or a truth value."""
+    plain = value in ("true", "false") or value.isdigit()
+    return value if plain else f'"{value}"'
+
+
+def planned_states(lines: list[str]) -> tuple[PlannedState, ...]:
+    """What the nodes of an example are planned to answer."""
+    states = (PlannedState(node, lifecycle=it) for node, it in _words(PLANNED_STATE, lines))
+    hosts = (PlannedState(node, host=it) for node, it in _words(HOST, lines))
+    having = (
+        PlannedState(node, parameters=(PlannedParameter(name, _text(value)),))
+        for name, node, value in _words(PLANNED_PARAMETER, lines)
+    )
+    return (*states, *hosts, *having)
 
 
 def _is_known(line: str) -> bool:
-    planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE)
+    states = (PLANNED_STATE, PLANNED_PARAMETER, HOST)
+    planned = (FRAMES, SHARED, TOPIC_OF, BRIDGED, ONE_OF, ENCLAVE, *states)
     return any(it.fullmatch(line) for it in (NODE, TRANSFORM, FRAME_ID, *planned, *ANSWERS))
 
 
@@ -153,6 +184,7 @@ def read_plan(lines: list[str]) -> Expectation:
             ),
         ),
         one_of=tuple(tuple(words[0].split(", ")) for words in _words(ONE_OF, lines)),
+        states=planned_states(lines),
     )
 
 
@@ -183,8 +215,10 @@ def read_graph(lines: list[str]) -> Snapshot:
     alone += [it for it in dict.fromkeys(asked) if it not in {node for node, *_ in ends}]
     nodes = [*alone, *dict.fromkeys(node for node, *_ in ends if node not in alone)]
     enclaves = {node: path for path, node in _words(ENCLAVE, lines)}
+    # Fast DDS: vendor, then the machine.
+    processes = {node: f"010f{it:0>4}{it:0>16}" for node, it in _words(MACHINE, lines)}
     return Snapshot(
-        tuple(GraphNode(node, "", enclaves.get(node, "")) for node in nodes),
+        tuple(GraphNode(node, processes.get(node, ""), enclaves.get(node, "")) for node in nodes),
         tuple(_endpoint(*words) for words in ends),
         tuple(_transform(*words) for words in _words(TRANSFORM, lines)),
         environment(),

@@ -179,6 +179,11 @@ def perform_substitutions(context: LaunchContext, subs: list[Substitution]) -> s
     return "".join(context.perform_substitution(it) for it in subs)
 
 
+class ParameterValue:
+    def __init__(self, value: Any, *, value_type: Any = None) -> None:
+        self.value, self.value_type = value, value_type
+
+
 ACTIONS: dict[str, Any] = {}
 SUBSTITUTIONS: dict[str, Any] = {
     "var": lambda data: (LaunchConfiguration, {"variable_name": data[0]})
@@ -281,10 +286,16 @@ MODULES: Mapping[str, Mapping[str, Any]] = {
     },
 }
 
+# launch_ros's, whose other modules the tests have.
+MODULES_OF_ROS: Mapping[str, Mapping[str, Any]] = {
+    "launch_ros": {},
+    "launch_ros.parameter_descriptions": {"ParameterValue": ParameterValue},
+}
+
 
 def install(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let ``import launch`` find this."""
-    for name, content in MODULES.items():
+    for name, content in {**MODULES, **MODULES_OF_ROS}.items():
         module = ModuleType(name)
         vars(module).update(content)
         monkeypatch.setitem(sys.modules, name, module)

@@ -5,8 +5,8 @@ Run as ``python live_fleet.py SPEC``; SPEC is JSON, a list of nodes: {"name", "n
 "frames" of [topic, static or not, [parent, child], ...], "headers" of [topic, type, frame, QoS words]:
 messages that it sends, ten a second or, latched, one; an image has a megabyte}. "bare": a node without
 what every node brings, as far as rclpy lets it. "alone": a DDS participant of its own, as if in a
-process of its own. "arguments": what a command line tells the node. "state": what it answers to
-GetState. "wait": seconds until the next node is made.
+process of its own. "arguments": what a command line tells the node. "parameters": those that it
+declares. "state": what it answers to GetState. "wait": seconds until the next node is made.
 """
 
 from __future__ import annotations
@@ -86,7 +86,8 @@ def main(spec: str) -> None:
         nodes.append(_node(one, executor))
         time.sleep(one.get("wait", 0))
     # Nobody is answered; a large fleet that spins would keep the machine busy.
-    sends = any(one.get("frames") or one.get("state") or one.get("headers") for one in specs)
+    busy = ("frames", "headers", "parameters", "state")
+    sends = any(one.get(key) for one in specs for key in busy)
     print(READY, flush=True)
     stop = _input_closed()
     while not stop.done():
@@ -118,6 +119,8 @@ def _node(spec: Mapping[str, Any], executor: Any) -> Any:
         node.destroy_publisher(node._parameter_event_publisher)
     if not spec.get("alone"):
         executor.add_node(node)
+    for name, value in spec.get("parameters", {}).items():
+        node.declare_parameter(name, value)
     for name, type_, *words in spec.get("publishers", ()):
         node.create_publisher(_type(type_), name, _qos(words))
     for name, type_, *words in spec.get("subscriptions", ()):

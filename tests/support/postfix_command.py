@@ -7,6 +7,7 @@ import os
 import pty
 import subprocess
 import sys
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -28,16 +29,20 @@ def run(
     folder: Path, *words: str, stdin: bytes = b"", env: Mapping[str, str] | None = None
 ) -> Result:
     """Run the command in ``folder``; ``env`` is added to the environment."""
-    done = subprocess.run(
-        [*COMMAND, *words],
-        cwd=folder,
-        input=stdin,
-        capture_output=True,
-        check=False,
-        timeout=PATIENCE,
-        env={**os.environ, **(env or {})},
-    )
-    return Result(done.returncode, done.stdout, done.stderr.decode())
+    # A program that reads both through pipes would hear of failures alone.
+    with tempfile.TemporaryFile() as messages:
+        done = subprocess.run(
+            [*COMMAND, *words],
+            cwd=folder,
+            input=stdin,
+            stdout=subprocess.PIPE,
+            stderr=messages,
+            check=False,
+            timeout=PATIENCE,
+            env={**os.environ, **(env or {})},
+        )
+        messages.seek(0)
+        return Result(done.returncode, done.stdout, messages.read().decode())
 
 
 def run_on_terminal(folder: Path, *words: str, env: Mapping[str, str] | None = None) -> Result:

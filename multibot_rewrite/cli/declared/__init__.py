@@ -7,7 +7,14 @@ from types import MappingProxyType
 
 from multibot_rewrite.cli.declared.description import LINT, POSTFIX
 from multibot_rewrite.cli.declared.fleet import BUILD, PLAN, REHEARSE, REMAP
-from multibot_rewrite.cli.declared.graph import CHECK, DOCTOR, LEARN, SNAPSHOT, ZENOH_FILES
+from multibot_rewrite.cli.declared.graph import (
+    CHECK,
+    CHECK_LAUNCH,
+    DOCTOR,
+    LEARN,
+    SNAPSHOT,
+    ZENOH_FILES,
+)
 from multibot_rewrite.cli.declared.knowledge import (
     ARGUMENTS,
     COVERAGE,
@@ -25,6 +32,7 @@ COMMANDS: Mapping[str, Command] = MappingProxyType(
             ARGUMENTS,
             BUILD,
             CHECK,
+            CHECK_LAUNCH,
             COVERAGE,
             DOCTOR,
             EXPLAIN,

@@ -8,6 +8,8 @@ from multibot_rewrite.cli.declared.shared import (
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
+    KNOWN_NODES,
+    LAUNCH_ROOTS,
     LIVE,
     LIVE_CODES,
     NAMING,
@@ -49,25 +51,14 @@ _DESCRIPTION = OptionGroup(
             "nodes that every robot runs besides robot_state_publisher (docs/stacks.md)",
             [],
         ),
-        value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
-        several(
-            "--nodl",
-            "PATH",
-            "NoDL files or folders of them, besides those of installed packages; none: use no NoDL",
-            [],
-        ),
+        *KNOWN_NODES,
         repeated(
             "--launch",
             "'[PACKAGE] FILE NAME:=VALUE...'",
             "a launch file that starts each robot's nodes, with its arguments, as ros2 launch takes it,"
             " or a system_model.yaml; it is read, nothing is started (docs/launch.md)",
         ),
-        several(
-            "--launch-roots",
-            "A,B",
-            "folders with packages that a launch file needs, if not installed",
-            [],
-        ),
+        LAUNCH_ROOTS,
         VOCABULARY,
         DISTRO,
         TRUST,
@@ -111,9 +102,23 @@ PLAN = Command(
         Example("multibot plan fleet.yaml -o plan.yaml"),
         Example("multibot plan rover.urdf robot1 robot2 --stack nav2 -o plan.yaml"),
         Example("multibot plan fleet.yaml -o plan.yaml --sros2 policy.xml", "docs/security.md"),
+        Example(
+            "multibot plan --from-launch my_bringup two.launch.py -o plan.yaml",
+            "of the robots that a launch file starts, as they are",
+        ),
     ),
     (
         _DESCRIPTION,
+        OptionGroup(
+            "instead of a description",
+            (
+                switch(
+                    "--from-launch",
+                    about="INPUT and what follows are a launch file of several robots with its"
+                    " arguments, as ros2 launch takes it: the plan has what it starts (docs/launch.md)",
+                ),
+            ),
+        ),
         output_group(
             output(
                 "write the plan there, not to standard output: YAML to read and edit, or, if FILE ends"

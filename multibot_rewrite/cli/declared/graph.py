@@ -8,6 +8,8 @@ from multibot_rewrite.cli.declared.shared import (
     FINDINGS,
     FINDINGS_OUTPUT,
     GENERAL,
+    KNOWN_NODES,
+    LAUNCH_ROOTS,
     LIVE,
     LIVE_CODES,
     PICTURES,
@@ -82,6 +84,13 @@ CHECK = Command(
             FINDINGS_OUTPUT,
             WATCH,
             STATE,
+            value(
+                "--built",
+                metavar="FOLDER",
+                about="what multibot build wrote: with --state, or a snapshot that has states,"
+                " parameters of nodes are compared with its files; default: the folder of PLAN",
+                type=values.path,
+            ),
         ),
         PICTURES,
         LISTENING,
@@ -125,6 +134,50 @@ DOCTOR = Command(
     ),
     f"{LIVE_CODES.replace('as planned', 'nothing wrong seen')}. With --watch it is the worst that was"
     " seen",
+    fail_on=ERROR,
+    findings_first=True,
+)
+CHECK_LAUNCH = Command(
+    "check-launch",
+    "check_launch",
+    "%(prog)s [PACKAGE] FILE [NAME:=VALUE...] [options]",
+    "Say what would be wrong with the robots that a launch file starts; starts nothing.",
+    (
+        Example("multibot check-launch fleet.launch.py", "as ros2 launch takes it"),
+        Example("multibot check-launch my_bringup two.launch.py sim:=false"),
+        Example("multibot check-launch two.launch.py --plan fleet.yaml", "is it what is planned?"),
+    ),
+    (
+        OptionGroup(
+            "input",
+            (
+                argument(
+                    "words",
+                    "WORD",
+                    "a launch file, or a package and a file in it, and launch arguments; or a"
+                    " system_model.yaml. The file is a program, which runs; nothing is started",
+                    "+",
+                ),
+                value(
+                    "--plan",
+                    metavar="PLAN",
+                    about="compare with it, too: what multibot plan wrote, or a fleet file",
+                    type=values.path,
+                ),
+                *KNOWN_NODES,
+                LAUNCH_ROOTS,
+                DISTRO,
+                TRUST,
+            ),
+        ),
+        output_group(FINDINGS_OUTPUT),
+        PICTURES,
+        FINDINGS,
+        GENERAL,
+    ),
+    "0 nothing wrong seen, and all nodes are known; 1 findings at the level of --fail-on; 2 wrong use"
+    " or unreadable input, or launch is missing; 3 inconclusive: something is decided only at run time,"
+    " or not known",
     fail_on=ERROR,
     findings_first=True,
 )

@@ -87,6 +87,21 @@ TRUST = switch(
     "--trust",
     about="let xacro files do anything: else they only compute, and read what is near (SECURITY.md)",
 )
+KNOWN_NODES = (
+    value("--nodes", metavar="FILE", about="your own nodes and stacks, YAML", type=values.path),
+    several(
+        "--nodl",
+        "PATH",
+        "NoDL files or folders of them, besides those of installed packages; none: use no NoDL",
+        [],
+    ),
+)
+LAUNCH_ROOTS = several(
+    "--launch-roots",
+    "A,B",
+    "folders with packages that a launch file needs, if not installed",
+    [],
+)
 FINDINGS = OptionGroup(
     "findings",
     (

@@ -8,8 +8,11 @@ from fnmatch import fnmatchcase
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.dangers.find import DANGERS, find_dangers
 from multibot_rewrite.graph.dangers.seen import Owners, unique
+from multibot_rewrite.graph.expectation import PlannedState
+from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.rules.comparison import View
-from multibot_rewrite.graph.snapshot import GraphEndpoint
+from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.remap.records import CALLS, PUBLISHES
 
 # Who sends, and who calls: what a danger is about.
@@ -20,13 +23,30 @@ def dangers_beside(view: View, found: Sequence[Finding]) -> Iterator[Finding]:
     """The dangers of a graph that are neither meant by the plan nor among the findings of its rules."""
     said = {(it.code, name) for it in found for name in (*it.names, it.node)}
     names = {*_names_of_missing(view), *(name for it in found for name in it.names)}
-    for danger in find_dangers(view.graph, _owners(view)):
+    for danger in find_dangers(_without_planned(view), _owners(view)):
         planned = DANGERS[danger.code].options["planned"]
         about = (*danger.names, danger.node)
         if any((planned, it) in said for it in about if it) or not names.isdisjoint(danger.names):
             continue
         if not _is_meant(view, danger):
             yield danger
+
+
+def _without_planned(view: View) -> Snapshot:
+    """The graph without the states that the plan has: they are compared with it."""
+    planned = {it.node: it for it in view.plan.states}
+    states = (_not_planned(it, planned.get(it.node)) for it in view.graph.states)
+    return view.graph._replace(states=tuple(states))
+
+
+def _not_planned(seen: NodeState, planned: PlannedState | None) -> NodeState:
+    if planned is None:
+        return seen
+    timed = any(it.name == SIM_TIME for it in planned.parameters)
+    return seen._replace(
+        lifecycle="" if planned.lifecycle else seen.lifecycle,
+        sim_time=None if timed else seen.sim_time,
+    )
 
 
 def _names_of_missing(view: View) -> Iterator[str]:

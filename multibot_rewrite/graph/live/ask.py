@@ -60,11 +60,11 @@ def _ask(
             before = found.get(it.node, NodeState(it.node))
             answer = sent.pop(it).result()
             found[it.node] = _with_answer(before, it, answer)
-            waiting += _halves(it, answer)
+            waiting += halves(it, answer)
     return found
 
 
-def _halves(asked: Question, answer: Any) -> list[Question]:
+def halves(asked: Question, answer: Any) -> list[Question]:
     """What is asked again: for a parameter that it does not have, a node of rclcpp gives none."""
     names = asked.parameters
     if len(names) < 2 or len(answer.values) == len(names):

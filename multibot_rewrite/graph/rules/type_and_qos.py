@@ -9,7 +9,7 @@ from math import inf
 
 from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.expectation import PlannedEndpoint
-from multibot_rewrite.graph.rules.causes import DOES
+from multibot_rewrite.graph.rules.causes import DOES, caused, plugin_of
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.snapshot import ZENOH, GraphEndpoint, Qos
@@ -131,10 +131,13 @@ def _finding(view: View, end: GraphEndpoint, message: str, cause: str) -> Findin
 def _not_as_planned(view: View, planned: PlannedEndpoint, seen: str) -> Finding:
     what = f"{DOES[planned.role]} {planned.kind} {planned.name}"
     message = f"{what} with type {seen}, but the plan has {planned.type}"
-    cause = "another version or setting of the node? If this type is right, correct the plan"
+    plugin, place = plugin_of(view, planned.node)
+    which = f"another version or setting of {plugin or 'the node'}"
+    see = f", see {place}" if place else ""
+    cause = caused(f"{which}{see}? If this type is right, correct the plan", place)
     return type_mismatch.finding(
         message,
-        cause,
+        **cause._asdict(),
         robot=view.robot_of.get(planned.node, ""),
         node=planned.node,
         names=(planned.name,),

@@ -186,11 +186,19 @@ def _evaluated(given: Any, here: Visit) -> Iterator[ParameterText]:
         return
     if isinstance(found, dict):
         yield _values(found)
+        yield from _made(found.values(), here)
     elif isinstance(found, pathlib.PurePath):
         yield from _file(str(found), here)
     else:
         name, value = found.evaluate(here.context)
         yield _values({name: value})
+
+
+def _made(values: Iterable[Any], here: Visit) -> Iterator[ParameterText]:
+    """The texts of files that the launch makes and names in values, such as that of a bridge."""
+    for path in (it for it in values if isinstance(it, str) and "\n" not in it):
+        if os.path.isfile(path) and not _kept_file(path):
+            yield from _file(path, here)
 
 
 def _values(values: Any) -> ParameterText:
@@ -201,7 +209,10 @@ def _values(values: Any) -> ParameterText:
 def _plain(value: Any) -> Any:
     if isinstance(value, dict):
         return {str(name): _plain(it) for name, it in value.items()}
-    if isinstance(value, str | bytes) or not hasattr(value, "__iter__"):
+    if isinstance(value, str):
+        # The folder with links to sources is gone when this is read.
+        return _kept_file(value) or value
+    if isinstance(value, bytes) or not hasattr(value, "__iter__"):
         return value
     return [_plain(it) for it in value]
 
@@ -233,4 +244,6 @@ def _is_made(path: str) -> bool:
 
 def _kept_file(path: str) -> str:
     """The real path of a file that is there when the launch is over, else nothing."""
+    if "\n" in path:
+        return ""
     return "" if _is_made(path) or not os.path.isfile(path) else os.path.realpath(path)

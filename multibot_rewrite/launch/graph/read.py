@@ -31,6 +31,8 @@ def read_graph(order: LaunchOrder, folder: str) -> LaunchGraph:
     keep_places()
     keep_sources()
     _without_programs()
+    # A launch file may look at the command line itself.
+    sys.argv = order.command_line
     try:
         description = _included(order)
     except (Exception, SystemExit) as error:

@@ -1,0 +1,54 @@
+"""``multibot check-launch``: what would be wrong with the robots that a launch file starts?"""
+
+from __future__ import annotations
+
+import argparse
+import shlex
+from collections.abc import Sequence
+
+from multibot_rewrite.cli import check, doctor, pictures
+from multibot_rewrite.cli.report import check_report
+from multibot_rewrite.cli.walk import check_target
+from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.launch_child import launch_graph
+from multibot_rewrite.evidence.launch_records import LaunchOrder, order_in_words
+from multibot_rewrite.evidence.launch_snapshot import would_run
+from multibot_rewrite.evidence.running import Knowledge
+from multibot_rewrite.fleets.fleet import known_nodes
+from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.releases import release_here
+
+
+def run(options: argparse.Namespace) -> int:
+    """Read the launch file, make the graph that it would start, report; returns the exit code."""
+    order = order_of(options, options.words)
+    _check_use(options, order)
+    plan = check.plan_of(options) if options.plan else None
+    made = graph_of(options, order)
+    if plan is not None:
+        return check.conclude(options, plan, made)
+    # What doctor is told besides: there is no snapshot, and nothing to begin.
+    whole = argparse.Namespace(**vars(options), snapshot=[], suggest=None)
+    return doctor.report_on(whole, diagnose(made))
+
+
+def order_of(options: argparse.Namespace, words: Sequence[str]) -> LaunchOrder:
+    """The launch file that words name, with its arguments; raises UsageError for other words."""
+    order = order_in_words(words, shlex.join(words), options.launch_roots)
+    return order._replace(trusted=True)
+
+
+def graph_of(options: argparse.Namespace, order: LaunchOrder) -> Snapshot:
+    """What the launch file would start; raises InputError for one that cannot be read."""
+    release = release_here(options.distro)
+    library = known_nodes(options.nodes, release, options.nodl).library
+    known = Knowledge(library.nodes, load_known_nodes("", release), release)
+    return would_run(launch_graph(order), known)
+
+
+def _check_use(options: argparse.Namespace, order: LaunchOrder) -> None:
+    check_report(options, printed=False)
+    pictures.check(options)
+    if options.output:
+        check_target(options.output, [*filter(None, [options.plan]), order.file])

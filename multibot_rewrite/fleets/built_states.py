@@ -1,0 +1,70 @@
+"""The parameter files that a build wrote -> the parameters that each node of the plan has by them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+from multibot_rewrite.companions.params.sections import PARAMETERS
+from multibot_rewrite.companions.yaml_text import read_yaml
+from multibot_rewrite.evidence.parameter_files import named_values
+from multibot_rewrite.evidence.records import Given
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedParameter,
+    PlannedRobot,
+    PlannedState,
+)
+from multibot_rewrite.graph.states import parameter_text
+from multibot_rewrite.sources.read import read_file
+
+# A launch file replaces these.
+_PLACEHOLDERS = ("$(", "${", "<")
+
+
+def with_built(plan: Expectation, folder: str) -> Expectation:
+    """The plan with the parameters in the files of ``folder``, which has a folder for each robot.
+
+    What the plan itself says of a node comes first. Raises InputError for a file that rcl rejects.
+    """
+    found = (
+        it for robot in plan.robots for it in _of_robot(robot, os.path.join(folder, robot.name))
+    )
+    built: dict[str, dict[str, PlannedParameter]] = {}
+    for node, parameters in found:
+        known = built.setdefault(node, {})
+        for name, it in parameters.items():
+            # Two files may be for two ways to start a node: what they agree on is planned.
+            other = known.setdefault(name, it)
+            if other.value != it.value:
+                known[name] = it._replace(value="")
+    return plan._replace(states=tuple(_joined(plan, built)))
+
+
+def _joined(
+    plan: Expectation, built: dict[str, dict[str, PlannedParameter]]
+) -> Iterator[PlannedState]:
+    said = {it.node: it for it in plan.states}
+    for node in dict.fromkeys((*said, *built)):
+        own = said.get(node, PlannedState(node))
+        names = {it.name for it in own.parameters}
+        more = (it for it in built.get(node, {}).values() if it.value and it.name not in names)
+        yield own._replace(parameters=(*own.parameters, *more))
+
+
+def _of_robot(
+    robot: PlannedRobot, folder: str
+) -> Iterator[tuple[str, dict[str, PlannedParameter]]]:
+    for name in sorted(os.listdir(folder)) if os.path.isdir(folder) else ():
+        path = os.path.join(folder, name)
+        data = read_file(path) if name.endswith((".yaml", ".yml")) else b""
+        if PARAMETERS.encode() in data:
+            for node, values in named_values(read_yaml(data, path), robot.nodes):
+                yield node, dict(_parameters(values))
+
+
+def _parameters(values: dict[str, Given]) -> Iterator[tuple[str, PlannedParameter]]:
+    for name, (value, place) in values.items():
+        if not (isinstance(value, str) and any(it in value for it in _PLACEHOLDERS)):
+            text = parameter_text(value)
+            yield name, PlannedParameter(name, text, f"{place.file}:{place.line}")

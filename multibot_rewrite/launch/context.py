@@ -1,0 +1,174 @@
+"""What actions and substitutions ask while a launch runs: its fleets, robots and files.
+
+A launch keeps each fleet and a folder for files that goes at its end. A robot or fleet that is not
+given is that of the enclosing group.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from tempfile import TemporaryDirectory
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.fleets.scripts import LoadedFleet, LoadedRobot, load_fleet
+from multibot_rewrite.launch.door import of_launch
+from multibot_rewrite.model import UsageError
+
+# launch's SomeSubstitutionsType: a string, a substitution, or several of both.
+Text = Any
+Action = Any
+Context = Any
+Substitution = Any
+# Launch configurations: fleet and robot of a group; may xacro files do anything ("true")? the release.
+FLEET, ROBOT, TRUST, DISTRO = (f"multibot_{it}" for it in ("fleet", "robot", "trust", "distro"))
+# What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
+_FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
+
+# The launch argument that most launch files have.
+SIM_TIME = "use_sim_time"
+_TRUTH = MappingProxyType({"true": True, "1": True, "false": False, "0": False})
+
+
+class RobotRef(NamedTuple):
+    """A robot of a fleet; None means that of the enclosing group."""
+
+    robot: Text = None
+    fleet: Text = None
+
+
+HERE = RobotRef()
+# The robot whose actions are being made: an event or a timer starts them after its group has ended.
+_MADE_FOR: ContextVar[RobotRef] = ContextVar("multibot_made_for", default=HERE)
+
+
+def reference(robot: Text = None, fleet: Text = None) -> RobotRef:
+    """The robot that is given, or the one whose actions are being made."""
+    here = _MADE_FOR.get()
+    return RobotRef(here.robot if robot is None else robot, here.fleet if fleet is None else fleet)
+
+
+@contextmanager
+def made_for(of: RobotRef) -> Iterator[None]:
+    """What is made inside belongs to this robot."""
+    token = _MADE_FOR.set(of)
+    try:
+        yield
+    finally:
+        _MADE_FOR.reset(token)
+
+
+def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
+    """The fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
+
+    ``fleet`` may hold substitutions. The launch configurations ``multibot_trust:=true`` and
+    ``multibot_distro`` are options of ``load_fleet``. Warnings go to launch's log. Raises as that.
+    """
+    path = _scoped(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
+    known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
+    if path not in known:
+        trust, distro = (str(context.launch_configurations.get(it, "")) for it in (TRUST, DISTRO))
+        known[path] = load_fleet(path, trust=trust.lower() in ("true", "1"), distro=distro)
+        _warn(context, known[path].findings)
+    return known[path]
+
+
+def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:
+    """A robot; raises as ``fleet_of``, and UsageError for an unknown robot."""
+    name = _scoped(context, ROBOT, "robot") if of.robot is None else perform(context, of.robot)
+    return fleet_of(context, of.fleet).robot(name)
+
+
+def file_of(context: Context, file: str, of: RobotRef = HERE) -> str:
+    """Write a file of the fleet into the folder of this launch; returns its path.
+
+    It is the robot's own file, or the one for all robots if no robot is given.
+    """
+    fleet = fleet_of(context, of.fleet)
+    robot = None if _is_for_all(context, of) else robot_of(context, of)
+    text = robot.text(file) if robot else fleet.text(file)
+    _warn(context, fleet.made.findings)
+    return written(context, robot, file, text)
+
+
+def perform(context: Context, text: Text) -> str:
+    """The value of a text with substitutions in this context."""
+    utilities = of_launch("utilities")
+    parts = utilities.normalize_to_list_of_substitutions(text)
+    return str(utilities.perform_substitutions(context, parts))
+
+
+def sim_time(context: Context, robot: LoadedRobot, told: Text) -> bool | None:
+    """Does a robot's node use the time of the simulator? None if nothing says.
+
+    What is told counts, else the launch argument ``use_sim_time``, else the fleet file.
+    """
+    if isinstance(told, bool):
+        return told
+    text = (
+        perform(context, told) if told is not None else context.launch_configurations.get(SIM_TIME)
+    )
+    if text is None or not str(text).strip():
+        return robot.use_sim_time
+    word = str(text).strip().lower()
+    if word not in _TRUTH:
+        raise UsageError(f"use_sim_time is {text!r}; write true or false")
+    return _TRUTH[word]
+
+
+def listed(context: Context, names: Text) -> list[str]:
+    """Names separated by commas, or a list; launch joins a list with substitutions into one text."""
+    several = not isinstance(names, str) and isinstance(names, Sequence)
+    if several and all(isinstance(it, str) for it in names):
+        return list(names)
+    return [it for it in map(str.strip, perform(context, names).split(",")) if it]
+
+
+def _is_for_all(context: Context, of: RobotRef) -> bool:
+    return of.robot is None and ROBOT not in context.launch_configurations
+
+
+def _scoped(context: Context, key: str, what: str) -> str:
+    if key not in context.launch_configurations:
+        hint = f"set {what}, or put it into multibot_robots or each_robot"
+        raise UsageError(f"no {what} is given; {hint}")
+    return str(context.launch_configurations[key])
+
+
+def _of_launch(context: Context, key: str, make: Callable[[], Any]) -> Any:
+    """The value that a launch keeps under ``key`` while it runs."""
+    known = context.get_locals_as_dict()
+    if key not in known:
+        context.extend_globals({key: make()})
+    return context.get_locals_as_dict()[key]
+
+
+def written(context: Context, robot: LoadedRobot | None, file: str, text: str) -> str:
+    folder = _of_launch(context, _FOLDER, lambda: _folder(context))
+    path = os.path.join(folder.name, robot.name if robot else "all", os.path.basename(file))
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "wb") as out:
+        out.write(text.encode())
+    return path
+
+
+def _folder(context: Context) -> TemporaryDirectory[str]:
+    """A folder that is removed when the launch shuts down, or at the latest with its context."""
+    folder = TemporaryDirectory(prefix="multibot_launch_")
+    gone = of_launch("event_handlers").OnShutdown(
+        on_shutdown=lambda event, context: folder.cleanup()
+    )
+    context.register_event_handler(gone)
+    return folder
+
+
+def _warn(context: Context, findings: Iterable[Finding]) -> None:
+    logged: set[Finding] = _of_launch(context, _LOGGED, set)
+    for finding in findings:
+        if finding not in logged:
+            logged.add(finding)
+            of_launch("logging").get_logger("multibot").warning(str(finding))

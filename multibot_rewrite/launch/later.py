@@ -1,0 +1,88 @@
+"""Actions and descriptions of launch_ros whose options are made when they run.
+
+The robot, its fleet and its names are known only then; event handlers want an action of launch_ros
+before. So an object is made twice: at once with what is given, and again when it runs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+from multibot_rewrite.launch.context import Action, Context
+from multibot_rewrite.launch.door import of_launch
+
+Options = dict[str, Any]
+# The options of an action, or the actions that run in its place.
+Made = Options | list[Action]
+
+
+def action(base: Any, make: Callable[[Context], Made], first: Mapping[str, Any]) -> Action:
+    """An action of the class ``base``: with the options ``first``, then with those of ``make``."""
+    return _action(base)(make, first)
+
+
+def component(base: Any, make: Callable[[Context], Options], first: Mapping[str, Any]) -> Any:
+    """The same for launch_ros's ComposableNode."""
+    return _component(base)(make, first)
+
+
+@cache
+def _action(base: Any) -> Any:
+    class OfRobot(base):  # type: ignore[misc]
+        """An action of launch_ros for a robot."""
+
+        def __init__(self, make: Callable[[Context], Made], first: Mapping[str, Any]) -> None:
+            super().__init__(**first)
+            self.__make: Callable[[Context], Made] | None = make
+
+        def execute(self, context: Context) -> Any:
+            make, self.__make = self.__make, None
+            made = make(context) if make else {}
+            if isinstance(made, list):
+                return made
+            if made:
+                super().__init__(**made)
+            return super().execute(context)
+
+    return OfRobot
+
+
+@cache
+def _component(base: Any) -> Any:
+    class ComponentOfRobot(base):  # type: ignore[misc]
+        """A component for a robot."""
+
+        def __init__(self, make: Callable[[Context], Options], first: Mapping[str, Any]) -> None:
+            super().__init__(**first)
+            self.__make: Callable[[Context], Options] | None = make
+
+        @property
+        def package(self) -> Any:
+            """Its package. In all releases launch_ros asks for it before all else that is a
+            robot's."""
+            return [_first_word()(self._made)]
+
+        def _made(self, context: Context) -> str:
+            make, self.__make = self.__make, None
+            if make:
+                super().__init__(**make(context))
+            return "".join(context.perform_substitution(it) for it in super().package)
+
+    return ComponentOfRobot
+
+
+@cache
+def _first_word() -> Any:
+    class Made(of_launch().Substitution):  # type: ignore[misc]
+        """A text that a function makes."""
+
+        def __init__(self, make: Callable[[Context], str]) -> None:
+            super().__init__()
+            self.make = make
+
+        def perform(self, context: Context) -> str:
+            return self.make(context)
+
+    return Made

@@ -1,0 +1,312 @@
+"""States of the plan and parameters of built files, compared with what nodes answer."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+from graph_cases import environment
+from graph_examples import read_example
+
+from multibot_rewrite.cli import multibot
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
+from multibot_rewrite.fleets.built_states import with_built
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.expectation import Expectation, PlannedParameter, PlannedState
+from multibot_rewrite.graph.live import ask
+from multibot_rewrite.graph.plan_file import read_plan, to_json, to_yaml
+from multibot_rewrite.graph.questions import Question, questions
+from multibot_rewrite.graph.snapshot import (
+    GraphEndpoint,
+    GraphNode,
+    Snapshot,
+)
+from multibot_rewrite.graph.snapshot import (
+    to_json as graph_json,
+)
+from multibot_rewrite.graph.states import NodeState, Parameter
+from multibot_rewrite.model import InputError
+from multibot_rewrite.remap.records import SERVES, SERVICE
+
+PLAN = """\
+layout: frames-per-robot
+shared_nodes: {}
+shared_topics: [/tf]
+shared_frames: [map]
+robots:
+  robot1:
+    tf: /tf
+    frames: [robot1/base_link]
+    nodes: {/robot1/amcl: [], /robot1/costmap/costmap: [], /robot1/driver: []}
+  robot2:
+    tf: /tf
+    frames: [robot2/base_link]
+    nodes: {/robot2/amcl: []}
+"""
+STATES = """\
+states:
+  /robot1/amcl:
+    lifecycle: active
+    host: robot1_pc
+    parameters: {use_sim_time: false, base_frame_id: robot1/base_link, "a.rate": 2.5, word: "true",
+      list: [1, 2], names: [a, "1"]}
+  /robot1/driver: {host: robot1_pc}
+"""
+FILE = """\
+# Comes with its comment.
+/robot1/amcl:
+  ros__parameters:
+    base_frame_id: robot1/base_link
+    alpha1: 0.2
+    yaml: $(find-pkg-share maps)/a.yaml
+/**:
+  ros__parameters:
+    use_sim_time: false
+robot1:
+  costmap:
+    costmap:
+      ros__parameters: {width: 3, plugins: [a, b], layer: {enabled: true}}
+"""
+
+
+def plan(more: str = "") -> Expectation:
+    return read_plan((PLAN + more).encode(), "plan.yaml")
+
+
+def graph(*states: NodeState) -> Snapshot:
+    """All planned nodes, and what they answer."""
+    names = ("/robot1/amcl", "/robot1/costmap/costmap", "/robot1/driver", "/robot2/amcl")
+    nodes = tuple(GraphNode(it, "") for it in names)
+    return Snapshot(nodes, (), (), environment(), states=states)
+
+
+def having(node: str, **values: str) -> NodeState:
+    return NodeState(node, parameters=tuple(Parameter(*it) for it in values.items()))
+
+
+def found(planned: Expectation, *states: NodeState) -> list[Finding]:
+    return [
+        it
+        for it in check(planned, graph(*states))
+        if it.code in ("MG131", "MG132", "MG511", "MG514")
+    ]
+
+
+@pytest.fixture
+def built(tmp_path: Path) -> Path:
+    (tmp_path / "robot1").mkdir()
+    (tmp_path / "robot1" / "nav2.yaml").write_text(FILE)
+    (tmp_path / "robot1" / "bridge.yaml").write_text("- {ros_topic_name: x}\n")
+    (tmp_path / "robot2").mkdir()
+    (tmp_path / "robot2" / "nav2.yaml").write_text(FILE.replace("robot1", "robot2"))
+    return tmp_path
+
+
+# ---------------------------------------------------------------- the plan's own
+
+
+def test_states_are_written_and_read() -> None:
+    planned = plan(STATES)
+    amcl, driver = planned.states
+    assert driver == PlannedState("/robot1/driver", host="robot1_pc")
+    assert (amcl.lifecycle, amcl.host) == ("active", "robot1_pc")
+    assert {it.name: it.value for it in amcl.parameters} == {
+        "use_sim_time": "false",
+        "base_frame_id": '"robot1/base_link"',
+        "a.rate": "2.5",
+        "word": '"true"',
+        "list": "[1, 2]",
+        "names": '["a", "1"]',
+    }
+    assert read_plan(to_yaml(planned).encode(), "y").states == planned.states
+    assert read_plan(to_json(planned).encode(), "j").states == planned.states
+    assert "\nstates:" not in to_yaml(plan())
+
+
+@pytest.mark.parametrize(
+    ("states", "said"),
+    [
+        ("states: 3", "states is not a mapping"),
+        ("states: {amcl: {}}", "states.amcl: 'amcl' is not a full name"),
+        ("states: {/a: active}", "states./a is not a mapping"),
+        ("states: {/a: {lifecycle: activ}}", "lifecycle: state 'activ' is not known"),
+        ("states: {/a: {lifecycle: [1]}}", "lifecycle: state '[1]' is not known"),
+        ("states: {/a: {state: active}}", "states./a: key 'state' is not known"),
+        ("states: {/a: {host: 3}}", "host: write a word"),
+        ("states: {/a: {parameters: [x]}}", "states./a.parameters is not a mapping"),
+        ("states: {/a: {parameters: {x: {y: 1}}}}", "parameters.x: write a text"),
+        ("states: {/a: {parameters: {1: 2}}}", "is not a mapping with names"),
+        ("states: {/a: {parameters: {x: null}}}", "parameters.x: write a text"),
+    ],
+)
+def test_wrong_states_are_refused(states: str, said: str) -> None:
+    with pytest.raises(InputError, match=r"plan\.yaml: states") as raised:
+        plan(states)
+    assert said in str(raised.value)
+
+
+def test_what_the_plan_says_of_states_is_meant() -> None:
+    """A node that is planned to wait is no danger, and one that answers nothing is not known."""
+    waiting = plan("states: {/robot1/amcl: {lifecycle: inactive}}")
+    assert found(waiting, NodeState("/robot1/amcl", "inactive")) == []
+    assert (
+        found(plan(STATES), NodeState("/robot1/amcl"), NodeState("/robot1/driver", "active")) == []
+    )
+    (it,) = found(plan(), NodeState("/robot1/amcl", "inactive"))
+    assert it.code == "MG511"
+    (it,) = found(waiting, NodeState("/robot1/amcl", "active"))
+    assert (it.code, it.robot, it.node) == ("MG131", "robot1", "/robot1/amcl")
+    assert "is active, planned is inactive" in it.message
+
+
+def test_planned_simulated_time_is_compared_alone() -> None:
+    mixed = (NodeState("/robot1/amcl", sim_time=True), NodeState("/robot1/driver", sim_time=False))
+    assert [it.code for it in found(plan(), *mixed)] == ["MG514"]
+    (it,) = found(plan(STATES), *mixed)
+    assert (it.code, it.level) == ("MG132", ERROR)
+    assert "use_sim_time is true, planned is false" in it.message
+    assert found(plan(STATES), mixed[1]) == []
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "differs"),
+    [
+        ("a.rate", "2.5", False),
+        ("a.rate", "2.500001", True),
+        ("list", "[1.0, 2.0]", False),
+        ("list", "[2, 1]", True),
+        ("word", '"true"', False),
+        ("word", "true", True),
+        ("names", '["a", "1"]', False),
+        ("use_sim_time", "0", True),
+    ],
+)
+def test_values_are_compared_as_values(name: str, value: str, differs: bool) -> None:
+    state = NodeState("/robot1/amcl", parameters=(Parameter(name, value),))
+    assert [it.code for it in found(plan(STATES), state)] == ["MG132"] * differs
+
+
+def test_two_planned_hosts_on_one_machine() -> None:
+    lines = ("planned: host of {0}: pc{1}", "as planned: {0}", "running: {0} on machine 1")
+    text = "".join(f"{it}\n".format(f"/robot{at}/a", at) for at in (1, 2) for it in lines)
+    (it,) = [it for it in check(*read_example(text)) if it.code == "MG133"]
+    assert "hosts pc1, pc2 are one machine" in it.message
+    unknown = re.sub("running.*machine 1\n", "", text)
+    assert [it for it in check(*read_example(unknown)) if it.code == "MG133"] == []
+
+
+# ---------------------------------------------------------------- built files
+
+
+def test_the_files_of_a_build_say_what_each_node_has(built: Path) -> None:
+    planned = with_built(plan("states: {/robot1/amcl: {parameters: {alpha1: 0.3}}}"), str(built))
+    states = {it.node: it for it in planned.states}
+    assert states.keys() == {"/robot1/amcl", "/robot1/costmap/costmap", "/robot2/amcl"}
+    file = built / "robot1" / "nav2.yaml"
+    assert set(states["/robot1/amcl"].parameters) == {
+        PlannedParameter("alpha1", "0.3"),
+        PlannedParameter("base_frame_id", '"robot1/base_link"', f"{file}:4"),
+        PlannedParameter("use_sim_time", "false", f"{file}:9"),
+    }
+    costmap = {it.name: it.value for it in states["/robot1/costmap/costmap"].parameters}
+    assert costmap == {
+        "use_sim_time": "false",
+        "width": "3",
+        "plugins": '["a", "b"]',
+        "layer.enabled": "true",
+    }
+    # What is from a file is not written into the plan.
+    assert (
+        read_plan(to_yaml(planned).encode(), "y").states
+        == plan("states: {/robot1/amcl: {parameters: {alpha1: 0.3}}}").states
+    )
+
+
+def test_two_files_that_disagree_plan_nothing(built: Path) -> None:
+    (built / "robot1" / "other.yaml").write_text(FILE.replace("0.2", "0.7"))
+    states = {it.node: it for it in with_built(plan(), str(built)).states}
+    assert {it.name for it in states["/robot1/amcl"].parameters} == {
+        "base_frame_id",
+        "use_sim_time",
+    }
+
+
+def test_a_node_without_its_file_is_named_with_both_values(built: Path) -> None:
+    planned = with_built(plan(), str(built))
+    right = having("/robot1/amcl", base_frame_id='"robot1/base_link"', alpha1="0.2", other="1")
+    assert found(planned, right) == []
+    (it,) = found(planned, having("/robot1/amcl", base_frame_id='"base_link"', alpha1="0.9"))
+    assert (it.code, it.level, it.node) == ("MG132", ERROR, "/robot1/amcl")
+    place = f"({built}/robot1/nav2.yaml:4)"
+    assert f'base_frame_id is "base_link", planned is "robot1/base_link" {place}' in it.message
+    assert it.message.index("base_frame_id") < it.message.index("alpha1 is 0.9")
+    assert f"start it with {built}/robot1/nav2.yaml" in it.hint
+
+
+def test_a_tuned_value_is_a_warning(built: Path) -> None:
+    (it,) = found(with_built(plan(), str(built)), having("/robot1/amcl", alpha1="0.9"))
+    assert it.level == WARNING
+
+
+def test_the_file_of_another_robot_is_recognized(built: Path) -> None:
+    planned = with_built(plan(), str(built))
+    (it,) = found(planned, having("/robot1/amcl", base_frame_id='"robot2/base_link"'))
+    assert "has it the parameters of robot2?" in it.hint
+
+
+def test_check_finds_the_files_beside_the_plan(
+    built: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (built / "plan.yaml").write_text(PLAN)
+    state = having("/robot1/amcl", base_frame_id='"base_link"')
+    (built / "g.json").write_bytes(graph_json(graph(state)))
+    (built / "silent.json").write_bytes(graph_json(graph()))
+    monkeypatch.chdir(built)
+    assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json"]) == 1
+    assert "MG132" in capsys.readouterr().out
+    (built / "elsewhere").mkdir()
+    given = ["--built", "elsewhere"]
+    assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json", *given]) == 0
+    (built / "robot1" / "nav2.yaml").write_text("ros__parameters: [")
+    assert multibot.main(["check", "plan.yaml", "--snapshot", "silent.json"]) == 0
+    capsys.readouterr()
+    assert multibot.main(["check", "plan.yaml", "--snapshot", "g.json"]) == 2
+    assert "robot1/nav2.yaml:2:1: not YAML" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        (["--built", "nowhere", "--state"], "nowhere: no folder"),
+        (["--built", "."], "add --state"),
+        (["--state", "--watch"], "once"),
+        (["--state", "--snapshot", "g.json"], "--state asks nodes of the live graph"),
+    ],
+)
+def test_wrong_use(given: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert multibot.main(["check", "plan.yaml", *given]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_node_is_asked_for_what_is_planned() -> None:
+    type_ = "rcl_interfaces/srv/GetParameters"
+    end = GraphEndpoint(SERVICE, SERVES, "/a/get_parameters", type_, "", "/a", None, "")
+    seen = Snapshot((GraphNode("/a", ""),), (end,), (), environment())
+    (it,) = questions(seen, {"/a": ["rate", "use_sim_time"], "/b": ["x"]})
+    assert it.parameters == ("rate", "use_sim_time")
+
+
+def test_a_node_that_lacks_one_parameter_is_asked_for_the_others() -> None:
+    """rclcpp answers such a question with no value at all."""
+
+    class Answer(NamedTuple):
+        values: list[object]
+
+    asked = Question("/a", "/a/get_parameters", "t", ("x", "y", "z"))
+    halves = ask.halves(asked, Answer([]))
+    assert [it.parameters for it in halves] == [("x",), ("y", "z")]
+    assert ask.halves(asked, Answer([1, 2, 3])) == []
+    assert ask.halves(halves[0], Answer([])) == []
+    assert ask.halves(Question("/a", "/a/get_state", "t"), object()) == []

@@ -1,0 +1,203 @@
+"""What launch authors write, in the real launch: events, timers, groups, parameters, components."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from launched_programs import launched
+from paths import FIXTURES
+
+from multibot_rewrite import launch, load_fleet
+
+pytestmark = pytest.mark.skipif(
+    bool(launch.missing()),
+    reason=f"not tried in the real launch, which is not here: {launch.missing()}",
+)
+FLEET = """\
+distro: lyrical
+layout: tf-per-robot
+stack: [ros2_control, robot_state]
+use_sim_time: true
+robots:
+  - {name: robot1, description: rover.urdf, pose: {x: 1.0}}
+  - {name: robot2, description: rover.urdf, pose: {x: 3.0}}
+"""
+PROGRAMS = {
+    **{"spawner": "controller_manager", "driver": "my_driver", "plain": "my_driver"},
+    **{"late": "my_driver", "off": "my_driver"},
+}
+EVENTS = """\
+from launch import LaunchDescription
+from launch.actions import (
+    DeclareLaunchArgument, GroupAction, LogInfo, RegisterEventHandler, TimerAction
+)
+from launch.conditions import IfCondition
+from launch.event_handlers import OnProcessExit, OnProcessStart
+from launch.substitutions import Command, LaunchConfiguration
+from launch_ros.actions import Node, PushRosNamespace
+from launch_ros.parameter_descriptions import ParameterValue
+
+from multibot_rewrite.launch import description, each_robot, lifecycle_node, node, place, spawn
+
+
+def actions(robot):
+    state = node(
+        "robot_state_publisher",
+        package="robot_state_publisher",
+        executable="robot_state_publisher",
+        parameters=[{"robot_description": description()}],
+        output="screen",
+    )
+    model = spawn("gz", parameters=[{"mine": 7}])
+    broadcaster = node("joint_state_broadcaster")
+    wheels = node("diff_drive_controller", arguments=["--inactive"])
+    late = Node(package="my_driver", executable="late", name="late", namespace=robot.namespace)
+    off = node("diff_drive_controller", condition=IfCondition("false"), package="my_driver",
+               executable="off")
+    command = Command(["COMMAND", " rover.urdf ", robot.name])
+    return [
+        state,
+        RegisterEventHandler(OnProcessStart(target_action=state, on_start=[model])),
+        RegisterEventHandler(OnProcessExit(target_action=model, on_exit=[broadcaster])),
+        RegisterEventHandler(OnProcessExit(target_action=broadcaster, on_exit=[wheels])),
+        RegisterEventHandler(OnProcessExit(target_action=wheels, on_exit=[late])),
+        TimerAction(period=0.2, actions=[place(on_exit=[LogInfo(msg="placed")])]),
+        GroupAction([PushRosNamespace("below"), off]),
+        lifecycle_node("controller_manager", package="my_driver", executable="driver",
+                       use_sim_time=False),
+        Node(package="my_driver", executable="plain", name="plain", namespace=robot.namespace,
+             parameters=[{"text": ParameterValue(command, value_type=str)}]),
+    ]
+
+
+def generate_launch_description():
+    return LaunchDescription(
+        [
+            DeclareLaunchArgument("fleet"),
+            each_robot(LaunchConfiguration("fleet"), actions),
+        ]
+    )
+"""
+
+
+@pytest.fixture
+def fleet(tmp_path: Path) -> Path:
+    text = (FIXTURES / "robots" / "rover.urdf").read_text()
+    # launch_ros would read a text with ": " and " #" as YAML.
+    text = text.replace('<robot name="rover">', '<robot name="rover"><!-- wheel: left # 1 -->')
+    (tmp_path / "rover.urdf").write_text(text)
+    (tmp_path / "fleet.yaml").write_text(FLEET)
+    return tmp_path / "fleet.yaml"
+
+
+def programs(told: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    return sorted(
+        (it for it in told if Path(it["words"][0]).name == name), key=lambda it: str(it["words"])
+    )
+
+
+def parameters(it: dict[str, Any], node: str) -> dict[str, Any]:
+    """What rcl would make of the parameter files and words of a program; the last one wins."""
+    found: dict[str, Any] = {}
+    for flag, word in zip(it["words"], it["words"][1:], strict=False):
+        if flag == "--params-file":
+            for section, data in yaml.safe_load(it["files"][word]).items():
+                found |= data["ros__parameters"] if section in ("/**", node) else {}
+        if flag == "-p" and ":=" in word:
+            key, _, value = word.partition(":=")
+            found[key] = yaml.safe_load(value)
+    return found
+
+
+def started(fleet: Path, file: str, text: str, more: dict[str, str]) -> list[dict[str, Any]]:
+    path = fleet.with_name(file)
+    path.write_text(text)
+    told, said = launched(path, fleet.parent, f"fleet:={fleet}", programs=more)
+    assert "ERROR" not in said and "Caught exception" not in said, said
+    return told
+
+
+def test_a_spawner_then_controllers_and_all_options(fleet: Path, monkeypatch: Any) -> None:
+    monkeypatch.chdir(fleet.parent)
+    text = EVENTS.replace("COMMAND", f"{sys.executable} -m multibot_rewrite.cli.urdf_postfix")
+    told = started(fleet, "events.launch.py", text, PROGRAMS)
+    robots = load_fleet(fleet).robots
+    states = programs(told, "robot_state_publisher")
+    plains = programs(told, "plain")
+    for robot, state, plain in zip(robots, states, plains, strict=True):
+        held = parameters(state, f"{robot.namespace}/robot_state_publisher")
+        assert held == {"robot_description": robot.description, "use_sim_time": True}
+        # A node that is not of this package has the clock of its group, and the text of Command.
+        its = parameters(plain, f"{robot.namespace}/plain")
+        assert its["use_sim_time"] is True
+        assert f'name="{robot.name}"' in its["text"] or f"_{robot.name}" in its["text"]
+        (model,) = (
+            it for it in programs(told, "create") if set(robot.spawn_arguments) <= {*it["words"]}
+        )
+        assert parameters(model, "")["mine"] == 7
+        mine = [it for it in programs(told, "spawner") if f"__ns:={robot.namespace}" in it["words"]]
+        loaded = [next(w for w in it["words"][1:] if not w.startswith("-")) for it in mine]
+        assert sorted(loaded) == ["diff_drive_controller", "joint_state_broadcaster"]
+        (place,) = (
+            it
+            for it in programs(told, "static_transform_publisher")
+            if f"__ns:={robot.namespace}" in it["words"]
+        )
+        assert set(robot.transform_arguments) <= {*place["words"]}
+        (manager,) = (
+            it for it in programs(told, "driver") if f"__ns:={robot.namespace}" in it["words"]
+        )
+        assert parameters(manager, f"{robot.namespace}/controller_manager")["use_sim_time"] is False
+    # The last of the chain started for both, and what has a false condition for none.
+    assert (len(programs(told, "late")), programs(told, "off")) == (2, [])
+
+
+XML = """\
+<launch>
+  <arg name="fleet"/>
+  <multibot_robots fleet="$(var fleet)">
+    <multibot_node node="robot_state_publisher" pkg="robot_state_publisher"
+                   exec="robot_state_publisher">
+      <param name="robot_description" value="$(multibot description)"/>
+      <param name="rate" value="$(multibot pose x)"/>
+    </multibot_node>
+    <multibot_lifecycle_node node="controller_manager" pkg="my_driver" exec="driver"
+                             use_sim_time="false"/>
+  </multibot_robots>
+</launch>
+"""
+YAML = """\
+launch:
+- arg: {name: fleet}
+- multibot_robots:
+    fleet: $(var fleet)
+    children:
+    - multibot_node:
+        node: robot_state_publisher
+        pkg: robot_state_publisher
+        exec: robot_state_publisher
+        param:
+        - {name: robot_description, value: $(multibot description)}
+        - {name: rate, value: $(multibot pose x)}
+    - multibot_lifecycle_node:
+        {node: controller_manager, pkg: my_driver, exec: driver, use_sim_time: 'false'}
+"""
+
+
+@pytest.mark.parametrize(("name", "text"), [("a.launch.xml", XML), ("a.launch.yaml", YAML)])
+def test_xml_and_yaml_need_no_type(name: str, text: str, fleet: Path) -> None:
+    told = started(fleet, name, text, PROGRAMS)
+    states, managers = programs(told, "robot_state_publisher"), programs(told, "driver")
+    robots = load_fleet(fleet).robots
+    for robot, x, state, manager in zip(robots, (1.0, 3.0), states, managers, strict=True):
+        wanted = {
+            "robot_description": robot.description,
+            "rate": x,
+            "use_sim_time": True,
+        }
+        assert parameters(state, f"{robot.namespace}/robot_state_publisher") == wanted
+        assert parameters(manager, f"{robot.namespace}/controller_manager")["use_sim_time"] is False
