@@ -9,6 +9,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from multibot_rewrite.evidence.records import Given, GivenNode
+from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.conditions import Values, holds
 from multibot_rewrite.remap.records import Endpoint, FrameParameter, NodeFacts, SentTransform
 from multibot_rewrite.rosnames import check_topic_name
@@ -23,7 +24,7 @@ def filled(node: NodeFacts, given: GivenNode, known: NodeFacts | None = None) ->
     """``node`` with the names that its parameters set, under the name that it has there.
 
     ``known`` is the node without what a stack makes of it: where the parameters do not say more, what
-    the stack says stays.
+    the stack says stays. Raises InputError for a word of a list that makes no valid name.
     """
     values = given.values
     whole = known or node
@@ -80,7 +81,27 @@ def _endpoint(node: NodeFacts, raw: Endpoint, values: Mapping[str, Given]) -> It
         if holds(bound.condition, lookup(node, values)):
             decided = bool(binding or bound.condition)
             named = bound._replace(when="" if decided else bound.when)
-            yield from _named(named, values, _ending(node, raw))
+            typed = _typed(named, lookup(node, values))
+            words = [ids[it] for it in _ID.findall(raw.name) if it in ids]
+            listed = values.get(_put(words[-1], binding)) if words else None
+            for it in _named(typed, values, _ending(node, raw)):
+                yield _checked(it, listed)
+
+
+def _checked(endpoint: Endpoint, listed: Given | None) -> Endpoint:
+    """The endpoint, unless a word of a list makes a name that rcl rejects: the node does not start."""
+    fault = check_topic_name(endpoint.name) if listed else None
+    if listed and fault:
+        other = f", or set {endpoint.parameter}" if endpoint.parameter else ""
+        made = f"topic {endpoint.name!r} is made of a word of this list: {fault.reason}"
+        raise InputError(f"{listed.place}: {made}; write another word{other}")
+    return endpoint
+
+
+def _typed(endpoint: Endpoint, value_of: Values) -> Endpoint:
+    """The endpoint with the one type that its parameters choose."""
+    chosen = next((type_ for it, type_ in endpoint.types if holds(it, value_of)), "")
+    return endpoint._replace(type=chosen, also=(), types=()) if chosen else endpoint
 
 
 def _is_from(endpoint: Endpoint, raw: Endpoint) -> bool:
@@ -145,6 +166,7 @@ def _bound(endpoint: Endpoint, binding: Ids) -> Endpoint:
         fixed=endpoint.fixed if name == endpoint.name else "",
         parameter=_put(endpoint.parameter, binding),
         condition=_put(endpoint.condition, binding),
+        types=tuple((_put(it, binding), type_) for it, type_ in endpoint.types),
     )
 
 

@@ -19,6 +19,7 @@ from multibot_rewrite.companions.params.rcl_parameters import value_of
 from multibot_rewrite.companions.params.sections import (
     ANY,
     MANAGER,
+    PLACEHOLDER,
     RawSection,
     identify_node,
     pattern_of,
@@ -28,6 +29,7 @@ from multibot_rewrite.companions.yaml_text import YamlText, line_of, pairs
 from multibot_rewrite.evidence.records import Given, GivenNode, Place
 from multibot_rewrite.model import InputError
 from multibot_rewrite.nearest import nearest
+from multibot_rewrite.rosnames import check_node_name
 
 OWN_TYPE = "type"
 TYPE = f".{OWN_TYPE}"
@@ -54,12 +56,23 @@ class _Section(NamedTuple):
 def given_nodes(documents: Iterable[YamlText], known: KnownNodes) -> list[GivenNode]:
     """The nodes that these files have sections for, and the controllers that they declare.
 
-    Raises InputError for a file that is not a parameter file.
+    Raises InputError for a file that is not a parameter file, and for a controller whose name no node
+    can have.
     """
     sections = [_section(document, it) for document in documents for it in raw_sections(document)]
     controllers = {**dict(_typed(sections, known)), **dict(_controllers(sections))}
+    for name, it in controllers.items():
+        _check_name(name.rpartition("/")[2], it.type.place)
     names = dict.fromkeys((*(it.name for it in sections if it.name), *controllers))
     return [_node(name, sections, controllers.get(name), known) for name in names]
+
+
+def _check_name(name: str, place: Place) -> None:
+    fault = check_node_name(name)
+    # Launch files fill in placeholders.
+    if fault and not PLACEHOLDER.search(name):
+        hint = "write letters, digits and underscores, a letter first"
+        raise InputError(f"{place}: controller {name!r}: {fault.reason}; {hint}")
 
 
 def named_values(

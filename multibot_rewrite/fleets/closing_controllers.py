@@ -13,7 +13,7 @@ from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.gap_findings import at_gap, in_source, meant
 from multibot_rewrite.fleets.output_values import OutputText
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot
 from multibot_rewrite.fleets.systems import System
 from multibot_rewrite.remap.records import NodeFacts
 
@@ -263,7 +263,9 @@ def _interfaces(
             names = f"{first.name} and {len(more)} more" if more else first.name
             claims = f"{first.node} of {robot.spec.name} claims {names}"
             message = f"{claims}, which no ros2_control exports"
-            yield at_gap(NO_INTERFACE, robot, first, message, meant(first), level)
+            stuck = level == ERROR and robot.needs_prefix
+            hint = SET_PREFIX if stuck else meant(first)
+            yield at_gap(NO_INTERFACE, robot, first, message, hint, level)
 
 
 def _moveit(

@@ -105,10 +105,22 @@ def topic_findings(robot: RewrittenRobot, before: System, after: System) -> Iter
         verb = "reads" if nodes == it.node else "read"
         message = f"{nodes} of {robot.spec.name} {verb} {it.name}, which nothing sends"
         yield at_gap(NOT_SENT, robot, it, message, meant(it), WARNING)
-    yield from _types(robot, type_gaps(before.ends, before.shared))
+    yield from _types(robot, _of_types(before, after))
     rest = [it for it in gaps if not it.near]
     if rest:
         yield _all_open(robot, rest)
+
+
+def _of_types(before: System, after: System) -> Iterator[Gap]:
+    """Ends that never meet, by the sources, or with what the build adds, such as rows of a bridge."""
+    old = {it.key: it for it in type_gaps(before.ends, before.shared)}
+    own = {it.key: it for it in before.ends}
+    yield from old.values()
+    for it in type_gaps(after.ends, after.shared):
+        if it.key not in old and it.key in own:
+            end = own[it.key]
+            what = f"{end.name} as {end.type}"
+            yield it._replace(name=what, node=end.node, place=end.place, at=end.at)
 
 
 def _types(robot: RewrittenRobot, gaps: Iterable[Gap]) -> Iterator[Finding]:

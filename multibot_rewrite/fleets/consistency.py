@@ -22,7 +22,7 @@ from multibot_rewrite.fleets.output_values import (
     values_in,
 )
 from multibot_rewrite.fleets.prefix_parameters import prefix_lines
-from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot, at_robot
 from multibot_rewrite.fleets.value_checks import (
     PREFIXES,
     TOKEN,
@@ -144,6 +144,7 @@ def _of_two_robots(plan: FleetPlan, fleet: Fleet) -> Iterator[Finding]:
             both = f"{other.spec.name!r} and {robot.spec.name!r}"
             message = f"two robots have the same {kind} {name!r}: {both}"
             hint = "give one of them another name, prefix or postfix"
+            hint = SET_PREFIX if kind == "sensor" and robot.needs_prefix else hint
             yield at_robot(SAME_NAME, robot, message, hint)
 
 

@@ -210,8 +210,12 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
     try:
         for text in listed(own.get("launch", data.get("launch", []))):
             order = launch_order(text, roots)
-            filled(dict(order.arguments), own["name"])
-            yield order
+            full = filled(dict(order.arguments), own["name"])
+            # Robots with files of their own start other nodes; else one look is enough for all.
+            own_files = {
+                name: full[name] for name, text in order.arguments if os.path.splitext(text)[1]
+            }
+            yield order._replace(arguments=tuple({**dict(order.arguments), **own_files}.items()))
     except UsageError as error:
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
 

@@ -70,7 +70,7 @@ def with_launched_files(file: FleetFile) -> LaunchedFiles:
     """The fleet with parameter files that only its launch files name.
 
     Raises InputError for a launch file that cannot be read. Robots with the same launch files have
-    those of the first.
+    those of the first; an argument that names a file by ``{robot}`` makes them differ.
     """
     first = {it.launch: it for it in reversed(file.robots) if it.launch}
     named = {launch: tuple(_named(spec)) for launch, spec in first.items()}

@@ -35,6 +35,11 @@ class Jobs(NamedTuple):
     srdf: Job | None
 
 
+# The rule about such names, and what to do.
+PREFIX_ONLY = "MB422"
+SET_PREFIX = "its plugin can only put the robot's name in front of names: set affix: prefix"
+
+
 class RewrittenRobot(NamedTuple):
     """A robot with its rewritten description and SRDF (empty if it has none).
 
@@ -50,6 +55,11 @@ class RewrittenRobot(NamedTuple):
     semantics: Declared
     member: Member
     findings: tuple[Finding, ...]
+
+    @property
+    def needs_prefix(self) -> bool:
+        """Has its description names that a plugin puts a prefix before, and the layout a postfix?"""
+        return any(it.code == PREFIX_ONLY for it in self.findings)
 
 
 def at_robot(

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.remap.fact_words import (
     FACT_KEYS,
     check_apart,
+    checked_condition,
     condition_of,
     releases_of,
     source_of,
@@ -34,7 +35,8 @@ from multibot_rewrite.remap.yaml_with_lines import (
 from multibot_rewrite.rosnames import check_full_name, check_topic_name, expand
 
 ENDPOINT_WORDS = ("type", "parameter", "remapped", "when", "fixed", "note", "by")
-ENDPOINT_KEYS = (*ENDPOINT_WORDS, "also", "transport", "helper", "if", "above", *FACT_KEYS)
+ENDPOINT_OTHERS = ("also", "types", "transport", "helper", "if", "above")
+ENDPOINT_KEYS = (*ENDPOINT_WORDS, *ENDPOINT_OTHERS, *FACT_KEYS)
 _TYPE = lazy_compile(r"[a-z][a-z0-9_]*/(msg|srv|action)/[A-Za-z][A-Za-z0-9_]*")
 # Part of a name that is only known at run time.
 _MADE = lazy_compile(r"<[^<>/]+>")
@@ -54,9 +56,11 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
     if isinstance(item.value, str):
         return checked_endpoint(item, Endpoint(_kind(role, item.value), role, name, item.value))
     keys = table(item, f"{role} {name!r}", ENDPOINT_KEYS)
+    also = words_of(keys, "also")
     endpoint = Endpoint(_kind(role, word_of(keys, "type")), role, name)._replace(
         **{key: word_of(keys, key) for key in ENDPOINT_WORDS},
-        also=words_of(keys, "also"),
+        also=also,
+        types=tuple(_types(keys, (word_of(keys, "type"), *also))),
         transport=flag_of(keys, "transport"),
         helper=flag_of(keys, "helper", "by" in keys),
         condition=condition_of(keys),
@@ -65,6 +69,15 @@ def _endpoint(role: str, name: str, item: YamlItem) -> Endpoint:
         source=source_of(keys),
     )
     return checked_endpoint(item, endpoint)
+
+
+def _types(keys: Mapping[str, YamlItem], every: Sequence[str]) -> Iterator[tuple[str, str]]:
+    """Conditions with the type of each, which is one of ``every``."""
+    for condition, item in table_of(keys, "types").items():
+        checked_condition(item, condition)
+        if item.value not in every:
+            wrong(item, f"{item.value!r} is neither the type nor in also ({', '.join(every)})")
+        yield condition, str(item.value)
 
 
 def _kind(role: str, type_: str) -> str:

@@ -73,9 +73,13 @@ def text_and_words(item: YamlItem, what: str, key: str) -> Mapping[str, YamlItem
 
 def condition_of(keys: Mapping[str, YamlItem]) -> str:
     """What ``if`` says; a text that is no condition is an error at its line."""
-    text = word_of(keys, "if")
+    return checked_condition(keys["if"], word_of(keys, "if")) if "if" in keys else ""
+
+
+def checked_condition(item: YamlItem, text: str) -> str:
+    """The text, if it is a condition; else an error at the line of the item."""
     try:
         parse_condition(text)
     except UsageError as error:
-        wrong(keys["if"], str(error))
+        wrong(item, str(error))
     return text

@@ -30,6 +30,7 @@ class Endpoint(NamedTuple):
     ``releases`` are release words (see ``multibot_rewrite.releases``), ``source`` the places where it
     can be read. ``by`` names the helper node, as what follows the name of its node, with a ``*`` for
     what is made at run time (``_private_*``); the usual helper, tf2's, has no name of its own.
+    ``types`` are conditions as ``condition``, each with the type that it has where that holds.
     """
 
     kind: str
@@ -50,6 +51,7 @@ class Endpoint(NamedTuple):
     releases: str = ""
     source: tuple[str, ...] = ()
     by: str = ""
+    types: tuple[tuple[str, str], ...] = ()
 
 
 class FrameParameter(NamedTuple):

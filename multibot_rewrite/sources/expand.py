@@ -32,7 +32,10 @@ _HINTS = (
     ("AMENT_PREFIX_PATH", "$(find PACKAGE) needs a sourced ROS 2"),
     ("No such file", "check the path"),
     ("Is a directory", "check the path"),
-    ("is not found", "source the workspace it is in, or name a folder above it: --roots"),
+    (
+        "is not found",
+        "source the workspace it is in; urdf-lint takes a folder above it, too: --roots",
+    ),
     ("package", "source the workspace that holds it"),
     ("Undefined block", "give it to the macro, or call it what the macro's params call it: *NAME"),
     ("Invalid parameter", "the macro has no such parameter: see its params"),

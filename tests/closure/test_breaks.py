@@ -75,6 +75,9 @@ BREAKS = [
         20,
         "",
     ),
+    # Nav2 reads a scan as points: the sender of the topic is the bridge of the lidar.
+    ("nav2.yaml", "data_type: LaserScan", "data_type: PointCloud2", "MF818", 12, ""),
+    ("nav2.yaml", "type: scan, topic: scan", "type: pointcloud, topic: scan", "MF818", 22, ""),
     # Nav2 reads what nobody sends.
     ("nav2.yaml", "scan_topic: scan", "scan_topic: scan_front", "MF812", 2, "/scan"),
     ("nav2.yaml", "topic: /scan", "topic: /front", "MF812", 12, "/scan"),

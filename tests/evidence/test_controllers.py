@@ -21,6 +21,7 @@ from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import plan_fleet
 from multibot_rewrite.graph.transforms import sent_by
+from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import Table
 from multibot_rewrite.remap.stacks import load_nodes, load_stack
 from multibot_rewrite.remap.started import started
@@ -295,3 +296,14 @@ def test_hardware_asks_its_own_controller_manager(layout: str, target: str, tmp_
     assert dict(at.rules)[lead] == f"{target}/list_controllers"
     spawned = [it for it in started(table) if it.node.node.startswith("ufactory")]
     assert spawned == []
+
+
+@pytest.mark.parametrize("name", ["3drive", "base drive"])
+def test_a_controller_whose_name_no_node_can_have(name: str) -> None:
+    """rcl validate_node_name: letters, digits and underscores, no digit first."""
+    text = f"controller_manager:\n  ros__parameters:\n    {name}: {{type: some/Drive}}\n"
+    with pytest.raises(InputError, match=rf"^c\.yaml:3: controller '{name}': "):
+        given_nodes([read_yaml(text.encode(), "c.yaml")], built_in_nodes("jazzy"))
+    # A launch file fills in the placeholder.
+    made = text.replace(name, '"<robot>_drive"')
+    assert given_nodes([read_yaml(made.encode(), "c.yaml")], built_in_nodes("jazzy"))

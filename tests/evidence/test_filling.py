@@ -3,12 +3,15 @@ robot_localization ros_filter.cpp, nav2_costmap_2d obstacle_layer.cpp, twist_mux
 
 from __future__ import annotations
 
+import pytest
+
 from multibot_rewrite.companions.params.known_nodes import built_in_nodes
 from multibot_rewrite.companions.yaml_text import read_yaml
 from multibot_rewrite.evidence.filling import filled
 from multibot_rewrite.evidence.nodes import nodes_of
 from multibot_rewrite.evidence.parameter_files import given_nodes
 from multibot_rewrite.evidence.records import GivenNode
+from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.remap.stacks import load_nodes, load_stack
 
@@ -190,3 +193,34 @@ def test_a_topic_that_is_made_of_a_parameter_keeps_its_ending() -> None:
     text = "smoother_server:\n  ros__parameters: {costmap_topic: /global_costmap/raw}\n"
     heard = names(run("smoother_server", text), "subscribes")
     assert {"/global_costmap/raw", "/global_costmap/raw_updates"} <= heard
+
+
+ONE_LAYER = """\
+local_costmap/local_costmap:
+  ros__parameters:
+    plugins: [front]
+    front:
+      plugin: nav2_costmap_2d::ObstacleLayer
+      observation_sources: SOURCE
+      SOURCE: {data_type: TYPE}
+"""
+
+
+@pytest.mark.parametrize(
+    ("data_type", "type_"),
+    # obstacle_layer.cpp: a LaserScan unless the parameter says PointCloud2.
+    [("PointCloud2", "PointCloud2"), ("LaserScan", "LaserScan"), ("''", "LaserScan")],
+)
+def test_the_type_that_a_parameter_chooses(data_type: str, type_: str) -> None:
+    text = ONE_LAYER.replace("SOURCE", "lidar").replace("TYPE", data_type)
+    node = run("local_costmap/local_costmap", text)
+    (it,) = (it for it in node.endpoints if it.name == "lidar")
+    assert (it.type, it.also) == (f"sensor_msgs/msg/{type_}", ())
+
+
+def test_a_source_whose_topic_no_node_can_have() -> None:
+    text = ONE_LAYER.replace("SOURCE", "3").replace("TYPE", "LaserScan")
+    with pytest.raises(InputError, match=r"params\.yaml:6: topic '3' .* set front\.3\.topic"):
+        run("local_costmap/local_costmap", text)
+    named = text.replace("{data_type", "{topic: scan, data_type")
+    assert "scan" in names(run("local_costmap/local_costmap", named), "subscribes")

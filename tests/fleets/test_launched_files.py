@@ -130,3 +130,29 @@ def test_a_file_without_parameters_is_passed_over(
     file.write_text("a: 1\n")
     found, notes = built(tmp_path, monkeypatch, ParameterText(str(file), "a: 1\n", str(file)))
     assert notes == [] and "robot1/flat.yaml" not in found
+
+
+def test_robots_that_launch_files_of_their_own_have_them(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def graph(order: LaunchOrder) -> LaunchGraph:
+        path = tmp_path / dict(order.arguments)["params"]
+        given = ParameterText(str(path), path.read_text(), str(path))
+        own = ("controller_manager", "ros2_control_node", "", "/", (), (given,))
+        return LaunchGraph((LaunchedNode(*own, "", (), "", AT),))
+
+    monkeypatch.setattr(launched_robot, "launch_graph", graph)
+    (tmp_path / "robot.urdf").write_text(DESCRIPTION)
+    (tmp_path / "bringup.launch.py").write_text("")
+    (tmp_path / "robot1.yaml").write_text(FILLED)
+    (tmp_path / "robot2.yaml").write_text(FILLED.replace("drive", "steer"))
+    fleet = FLEET.format(params="").replace("launch.py", "launch.py params:={robot}.yaml")
+    (tmp_path / "fleet.yaml").write_text(fleet)
+    plan = plan_fleet(read_fleet(str(tmp_path / "fleet.yaml"), "", {}))
+    paths = {it.path for it in make_outputs(plan).files}
+    assert {"robot1/robot1.yaml", "robot2/robot2.yaml"} <= paths
+    assert not {"robot2/robot1.yaml", "robot1/robot2.yaml"} & paths
+    controllers = {
+        (it.robot, it.name) for it in plan.fleet.table.nodes if it.node in ("drive", "steer")
+    }
+    assert controllers == {("robot1", "drive"), ("robot2", "steer")}

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import shutil
+import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import nav2_graphs
 import pytest
+import report_pages
 
 from multibot_rewrite.graph.pictures.page import to_html
+from multibot_rewrite.graph.pictures.scene import Scene
 
 pytest.importorskip("selenium", reason="no selenium: pip install '.[test]'")
 from selenium import webdriver
@@ -21,11 +24,12 @@ from selenium.webdriver.support.select import Select
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 DRIVER = shutil.which("chromedriver")
+NO_BROWSER = "no browser: apt install chromium chromium-driver"
+if not (BROWSER and DRIVER):
+    warnings.warn(f"the report is not seen in a browser: {NO_BROWSER}", stacklevel=1)
 pytestmark = [
     pytest.mark.live,
-    pytest.mark.skipif(
-        not (BROWSER and DRIVER), reason="no browser: apt install chromium chromium-driver"
-    ),
+    pytest.mark.skipif(not (BROWSER and DRIVER), reason=NO_BROWSER),
 ]
 FLAGS = (
     "--headless",
@@ -328,6 +332,131 @@ def test_a_hundred_robots_open_soon(show: Open) -> None:
     assert 0 < driver.execute_script(timing) < 8000
     row(driver, "MG103").click()
     assert "/topic2" in labels(driver, "g.hit")
+
+
+# ---------------------------------------------------------------- what a reader sees at once
+
+# Visible text that is cut by its box, runs out of the page, or has something else upon it.
+UNREADABLE = """return [...document.querySelectorAll(
+    'h1, header li, .card a, .card p, .finding b, .finding .what, #filters label, h2, .legend li')]
+  .filter((part) => part.checkVisibility()).filter((part) => {
+    const box = part.getBoundingClientRect();
+    const wraps = getComputedStyle(part).display === 'block';
+    if (wraps && part.scrollWidth > part.clientWidth + 1) return true;
+    if (box.left < 0 || box.right > document.documentElement.clientWidth) return true;
+    if (box.top < 0 || box.bottom > innerHeight) return false;
+    const line = part.getClientRects()[0];
+    const top = document.elementFromPoint(line.left + 2, line.top + line.height / 2);
+    return !(part.contains(top) || top.contains(part));
+  }).map((part) => part.outerHTML)"""
+
+
+def painted(driver: webdriver.Chrome, css: str) -> tuple[int, int, int]:
+    """The colour of a background."""
+    colour = every(driver, css)[0].value_of_css_property("background-color")
+    red, green, blue = (int(part) for part in colour[colour.index("(") + 1 : -1].split(",")[:3])
+    return red, green, blue
+
+
+@pytest.mark.parametrize(
+    ("state", "scene", "wide", "dark"),
+    [
+        ("healthy", report_pages.healthy, 1280, False),
+        ("tf-collision", report_pages.tf_collision, 1280, False),
+        ("twenty-robots", report_pages.twenty, 1280, False),
+        ("narrow", report_pages.spoiled, 600, False),
+        ("dark", report_pages.spoiled, 1280, True),
+        ("inconclusive", report_pages.inconclusive, 1280, False),
+    ],
+)
+def test_a_screenshot_shows_verdict_robots_and_findings(
+    state: str, scene: Callable[[], Scene], wide: int, dark: bool, show: Open, tmp_path: Path
+) -> None:
+    made = scene()
+    driver = show(to_html(made))
+    size = {"width": wide, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    try:
+        light, letters = colours(driver, dark)
+        assert driver.save_screenshot(str(tmp_path / f"{state}.png"))
+        assert driver.execute_script(UNREADABLE) == []
+        assert in_view(driver, every(driver, "h1")[0])
+        assert in_view(driver, every(driver, ".card")[0])
+        assert driver.execute_script("return document.documentElement.scrollWidth") <= wide
+        assert len(seen(driver, "#findings .finding")) == len(made.rows)
+        assert (light < letters) is dark
+        red, green, _ = painted(driver, "header")
+        kind = every(driver, "header")[0].get_attribute("class")
+        assert {"good": green > red, "bad": red > green, "unsure": red > green}[kind]
+        drawn = tmp_path / f"{state}.png"
+        assert drawn.stat().st_size > 20_000
+    finally:
+        colours(driver, dark=False)
+        driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_an_opened_finding_says_why_and_what_to_do(show: Open) -> None:
+    driver = show(spoiled())
+    first = row(driver, "MG104")
+    assert "Why it matters" not in first.text
+    first.find_element(By.CSS_SELECTOR, "summary .level").click()
+    words = ("Where", "/robot2/amcl, /robot1/scan", "Why it matters", "What to do")
+    assert all(word in first.text for word in words)
+    driver.find_element(By.TAG_NAME, "body").send_keys(Keys.ESCAPE)
+
+
+def test_a_line_of_a_card_leads_to_its_finding(show: Open) -> None:
+    driver = show(to_html(report_pages.twenty()))
+    (brief,) = (it for it in every(driver, ".brief") if "leaked name" in it.text)
+    brief.click()
+    (picked,) = every(driver, ".finding.picked")
+    assert "MG103" in picked.text and picked.get_attribute("open")
+    assert in_view(driver, picked.find_element(By.TAG_NAME, "summary"))
+
+
+def test_a_name_filters_findings_and_drawings(show: Open) -> None:
+    driver = show(spoiled())
+    typed = every(driver, "#filters input")[0]
+    typed.send_keys("robot2/AMCL")
+    codes = {it.text for it in seen(driver, ".finding a.rule")}
+    assert codes == {"MG102", "MG104"}
+    # What it is connected to stays.
+    assert "/robot2/amcl" in labels(driver, "#g1 > .frame:not(.more) .n:not(.off)")
+    assert "/robot2/velocity_smoother" in labels(driver, "#g1 > .frame:not(.more) .n.off")
+    assert "/robot1/scan" in labels(driver, "#g1 > .frame:not(.more) .t:not(.off)")
+    assert "/robot2/plan" not in labels(driver, "#g1 > .frame:not(.more) .t:not(.off)")
+    assert not every(driver, "#tf .group")[0].is_displayed()
+    typed.clear()
+    typed.send_keys(Keys.SPACE)
+    assert every(driver, ".off") == [] and every(driver, "#tf .group")[0].is_displayed()
+
+
+def test_a_robot_filters_cards_and_drawings_as_well(show: Open) -> None:
+    driver = show(spoiled())
+    robot = Select(every(driver, "#filters select")[1])
+    robot.select_by_visible_text("robot2")
+    assert [it.text for it in seen(driver, ".card h3")] == ["robot2"]
+    assert [it.get_attribute("id") for it in seen(driver, "#graph .group")] == ["g1"]
+    robot.select_by_visible_text("all robots")
+    assert len(seen(driver, "#graph .group")) == 3
+
+
+def test_a_drawing_is_larger_and_as_it_was(show: Open) -> None:
+    driver = show(spoiled())
+    width = "return document.querySelector('#g0 svg').getBoundingClientRect().width"
+    larger, smaller, fit = every(driver, "#g0 > .frame:not(.more) .zoom button")
+    before = driver.execute_script(width)
+    larger.click()
+    assert driver.execute_script(width) == pytest.approx(before * 1.3, abs=2)
+    # It is moved by dragging.
+    pane = every(driver, "#g0 .pane")[0]
+    left = driver.execute_script("return arguments[0].scrollLeft", pane)
+    webdriver.ActionChains(driver).drag_and_drop_by_offset(pane, -60, 0).perform()
+    assert driver.execute_script("return arguments[0].scrollLeft", pane) > left
+    fit.click()
+    assert driver.execute_script(width) == pytest.approx(before, abs=2)
+    smaller.click()
+    assert driver.execute_script(width) < before
 
 
 def test_it_reads_and_links_without_scripts(

@@ -35,6 +35,7 @@ MANAGER = "controller_manager"
 ANY = ("*", "**")
 # Placeholders that a launch file replaces.
 PLACEHOLDER = re.compile(r"[<${]")
+_TO_DO = f"put each node's parameters below {PARAMETERS}:"
 _PATTERN = re.compile(r"/[A-Za-z0-9_/*]+")
 _MARK = re.compile(r"[&*][^\s*\[\]{},/:]")
 # Helper nodes of old releases: they have sections, but no names of their own.
@@ -107,7 +108,7 @@ def _check_file(document: YamlText) -> None:
         raise InputError(f"{place}: rcl takes no anchors or aliases ({text}); write the value out")
     if isinstance(document.root, yaml.MappingNode):
         return
-    what = "it is empty" if document.root is None else _looks_like(document)
+    what = f"it is empty; {_TO_DO}" if document.root is None else _looks_like(document)
     raise InputError(f"{document.file}:1: not a ROS 2 parameter file: {what}")
 
 
@@ -117,16 +118,20 @@ def _looks_like(document: YamlText) -> str:
     if isinstance(root, yaml.SequenceNode):
         keys = {key.value for item in root.value for key, _ in pairs(item)}
         bridge = keys & {"topic_name", "ros_topic_name", "gz_topic_name"}
-        return "it is a ros_gz_bridge file; list it under bridge" if bridge else "it is a list"
+        return (
+            "it is a ros_gz_bridge file; list it under bridge"
+            if bridge
+            else f"it is a list; {_TO_DO}"
+        )
     if not isinstance(root, yaml.MappingNode):
-        return "it holds a single value"
+        return f"it holds a single value; {_TO_DO}"
     keys = {key.value for key, _ in pairs(root)}
     found = next((what for key, what in _OTHER_FILES.items() if key in keys), "")
     inner = {key.value for _, value in pairs(root) for key, _ in pairs(value)}
     if not found and "kinematics_solver" in inner:
         found = "it holds MoveIt kinematics; list it under moveit"
     other = f"it has no {PARAMETERS} key, so it is for ROS 1 or a node reads it directly; for ROS 2"
-    return found or f"{other} put each node's parameters below {PARAMETERS}:"
+    return found or f"{other} {_TO_DO}"
 
 
 def _below(

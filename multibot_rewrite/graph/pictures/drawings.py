@@ -14,11 +14,18 @@ from multibot_rewrite.graph.pictures.page_sections import (
 )
 from multibot_rewrite.graph.pictures.scene import Scene
 from multibot_rewrite.graph.pictures.simplify import only_common
-from multibot_rewrite.graph.pictures.states import OK, STATES
+from multibot_rewrite.graph.pictures.states import MISSING, OK, STATES, UNEXPECTED
 from multibot_rewrite.graph.pictures.svg import MEANINGS, Ids, group_svg, safe, tree_svg
 from multibot_rewrite.graph.pictures.text import counted
 from multibot_rewrite.graph.pictures.tf_tree_rows import FrameTree
 
+# What the states mean where there is no plan.
+UNPLANNED = {
+    **MEANINGS,
+    OK: "nothing wrong seen",
+    MISSING: "missing: something waits for it",
+    UNEXPECTED: "a tool, or with a warning",
+}
 # So many robots without faults are folded together.
 MANY_HEALTHY = 12
 
@@ -58,8 +65,9 @@ def _legend(scene: Scene) -> Iterator[str]:
     drawn = {node.state for group in scene.groups for node in group.nodes}
     drawn |= {edge.state for group in scene.groups for edge in group.edges}
     for state in STATES:
-        if state in drawn and (state != OK or scene.outcome.planned):
-            yield f'<li class="{state}">{safe(MEANINGS[state])}</li>'
+        if state in drawn:
+            meaning = MEANINGS if scene.outcome.planned else UNPLANNED
+            yield f'<li class="{state}">{safe(meaning[state])}</li>'
 
 
 def _tile(section: PageSection) -> Tile:
@@ -102,7 +110,8 @@ def _alternatives(section: PageSection, scene: Scene) -> Iterator[str]:
         running = [node for node in group if node in scene.running]
         css_class = "good" if len(running) == 1 else "bad"
         nodes = ", ".join(f"<code>{safe(node)}</code>" for node in group)
-        state = f"{safe(', '.join(running))} runs" if len(running) == 1 else f"{len(running)} run"
+        verb = "runs" if len(running) < 2 else "run"
+        state = f"{safe(', '.join(running) or 'none')} {verb}"
         yield f'<p class="one-of">one of {nodes}: <em class="{css_class}">{state}</em></p>\n'
 
 

@@ -99,8 +99,8 @@ def _body(row: FindingRow, sources: Sources) -> str:
     parts = [
         ("Where", safe(shorten(dict.fromkeys(names.split(", ")), SEVERAL * 4))) if names else None,
         ("Robots", safe(", ".join(robots))) if finding.others else None,
-        ("Cause", safe(finding.hint)) if finding.hint else None,
         ("Why it matters", with_code(rule.why)) if rule else None,
+        ("What to do", with_code(rule.fix)) if rule else None,
         ("Written in", f"<code>{safe(row.place)}</code>") if row.place else None,
     ]
     shown = "".join(f"<div><dt>{part[0]}</dt><dd>{part[1]}</dd></div>" for part in parts if part)

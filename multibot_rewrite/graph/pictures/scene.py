@@ -247,20 +247,23 @@ def _nodes(
 ) -> dict[str, DrawnNode]:
     planned = {*view.robot_of, *view.plan.shared_nodes}
     edge_states: dict[str, set[str]] = defaultdict(set)
+    own_states: dict[str, set[str]] = defaultdict(set)
     for edge in edges:
         edge_states[edge.node].add(edge.state)
+        if not edge.common:
+            own_states[edge.node].add(edge.state)
     # Planned nodes under another name, which the same node of each robot would have.
     misnamed = set(view.probable_matches.values())
     result = {}
     for node, robot in robot_of.nodes.items():
         own = {states.nodes.get(node, OK), *(edge_states[node] & FAULTY - {MISSING})}
         state = LEAK if node in misnamed and not robot else worst(own)
-        if node not in view.seen:
+        if node not in view.seen and node not in view.by_node:
             state = MISSING
-        elif state == OK and node not in planned:
-            state = UNEXPECTED
-        is_tool = node not in planned and node not in states.nodes
-        result[node] = DrawnNode(node, robot, state, is_tool=is_tool)
+        elif state == OK and node not in planned and own_states[node] != {OK}:
+            state = OK if robot and is_tool(node) else UNEXPECTED
+        unknown = node not in planned and node not in states.nodes
+        result[node] = DrawnNode(node, robot, state, is_tool=unknown)
     return result
 
 

@@ -63,10 +63,15 @@ def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]
     topics = [*dict.fromkeys((*(tree.topic for tree in view.trees), *homes))]
     return tuple(
         Targets((), (), tuple(_frame_targets(view, finding, topics)))
-        if finding.code.startswith(TF_CODES)
+        if finding.code.startswith(TF_CODES) and not _names_topics(view, finding)
         else _endpoint_targets(view, finding)
         for finding in findings
     )
+
+
+def _names_topics(view: View, finding: Finding) -> bool:
+    """Whether a finding about tf is about its topics, not about frames."""
+    return bool(finding.names) and all(name in view.by_name for name in finding.names)
 
 
 def make_states(findings: Iterable[Finding], targets: Sequence[Targets]) -> States:

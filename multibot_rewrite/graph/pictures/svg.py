@@ -131,7 +131,7 @@ def _node(
         f'<g class="n {node.state}{foreign}"{id_attributes}>'
         f'<rect x="{x}" y="{y - NODE_HIGH / 2:g}" width="{wide}" height="{NODE_HIGH}" rx="5"/>'
         f'<text x="{x + 9}" y="{y + 4:g}">{_label(node.name, robot, wide - MARGIN)}</text>'
-        f"{tooltip(node.name, MEANINGS[node.state])}</g>"
+        f"{tooltip(node.name, _meaning(node.state))}</g>"
     )
 
 
@@ -156,7 +156,11 @@ def _name(name: DrawnName, robot: str, y: float, id_attributes: str) -> str:
 
 def _about(name: DrawnName) -> tuple[str, ...]:
     types = " and ".join(name.types)
-    return name.merged or (f"{name.kind} {name.name}", types, MEANINGS[name.state])
+    return name.merged or (f"{name.kind} {name.name}", types, _meaning(name.state))
+
+
+def _meaning(state: str) -> str:
+    return "" if state == OK else MEANINGS[state]
 
 
 def _label(name: str, robot: str, room: float) -> str:

@@ -1,0 +1,127 @@
+"""Scenes for the tests of the report: one for each state that a reader may meet."""
+
+from __future__ import annotations
+
+import nav2_graphs
+from nav2_graphs import TEXT
+
+from multibot_rewrite.findings.finding import WARNING, Finding
+from multibot_rewrite.graph.check import check
+from multibot_rewrite.graph.doctor.diagnose import diagnose
+from multibot_rewrite.graph.doctor.seen_plan import seen_plan
+from multibot_rewrite.graph.expectation import (
+    Expectation,
+    PlannedEndpoint,
+    PlannedRobot,
+    PlannedTopic,
+)
+from multibot_rewrite.graph.pictures.scene import Scene, make_scene
+from multibot_rewrite.graph.snapshot import Caveat, Snapshot
+from multibot_rewrite.graph.watching import Outcome, Verdict
+from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
+
+FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"
+OPEN_END = Finding("MF801", WARNING, "reads scan2, which nothing sends", robot="robot2")
+
+
+def healthy() -> Scene:
+    plan = nav2_graphs.nav2()
+    return nav2_graphs.scene(plan, nav2_graphs.healthy(plan))
+
+
+def tf_collision() -> Scene:
+    """Both robots were started with the description as it was."""
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.healthy(plan)
+    bare = (
+        it._replace(child=it.child.partition("/")[0], parent=it.parent.partition("/")[0])
+        for it in graph.frames
+    )
+    return nav2_graphs.scene(plan, graph._replace(frames=tuple(bare)))
+
+
+def twenty() -> Scene:
+    """The driver of every robot lacks the same rule."""
+    plan = nav2_graphs.fleet(20, 4)
+    graph = nav2_graphs.healthy(plan)
+    for robot in plan.robots:
+        graph = nav2_graphs.moved(graph, f"/{robot.name}/topic1", "/topic1", "driver")
+    return nav2_graphs.scene(plan, graph)
+
+
+def spoiled() -> Scene:
+    plan = nav2_graphs.nav2()
+    return nav2_graphs.scene(plan, nav2_graphs.spoiled(plan))
+
+
+def inconclusive() -> Scene:
+    plan = nav2_graphs.nav2()
+    graph = nav2_graphs.without_node(nav2_graphs.healthy(plan), "/robot2/amcl")
+    doubt = Caveat("not-settled", True, "the graph was still changing")
+    return nav2_graphs.scene(plan, graph._replace(environment=nav2_graphs.environment(doubt)))
+
+
+def not_closed() -> Scene:
+    """The graph is as planned, the plan has an open end."""
+    plan = nav2_graphs.nav2()
+    words = "as planned, but the plan does not close"
+    outcome = Outcome(Verdict.PLANNED, words)
+    return make_scene(plan, nav2_graphs.healthy(plan), [OPEN_END], outcome)
+
+
+def doctors(graph: Snapshot) -> Scene:
+    """What the doctor draws of a graph."""
+    seen = diagnose(graph)
+    outcome = Outcome(Verdict.WRONG, "something is wrong", "multibot doctor", planned=False)
+    return make_scene(seen_plan(seen), graph, seen.findings, outcome)
+
+
+def rich_plan() -> Expectation:
+    """Namespaces of two levels, alternatives, topics over a bridge, shared nodes with endpoints."""
+    small = nav2_graphs.fleet(2, 4)
+    robots = tuple(
+        PlannedRobot(
+            space[1:],
+            (*(f"{space}/{it}" for it in ("driver", "planner", *_OF_ONE)),),
+            small.robots[at].frames,
+            f"{space}/tf",
+            optional=tuple(f"{space}/{it}" for it in _OF_ONE),
+            frame_tag=f"robot{at + 1}",
+        )
+        for at, space in enumerate((FIRST, SECOND))
+    )
+    moved = (
+        it._replace(node=f"/fleet_a{it.node}", name=f"/fleet_a{it.name}") for it in small.endpoints
+    )
+    shared = (
+        PlannedEndpoint("/map_server", TOPIC, PUBLISHES, "/map", TEXT, "map"),
+        PlannedEndpoint("/manager", TOPIC, SUBSCRIBES, f"{FIRST}/topic0", TEXT, "topic0"),
+    )
+    bridged = (
+        PlannedTopic(f"{space}/{name}", bridge=(role,), type=TEXT)
+        for space in (FIRST, SECOND)
+        for name, role in (("scan", PUBLISHES), ("cmd_vel", SUBSCRIBES))
+    )
+    return small._replace(
+        robots=robots,
+        endpoints=(*moved, *shared),
+        topics=tuple(bridged),
+        one_of=tuple(tuple(f"{space}/{it}" for it in _OF_ONE) for space in (FIRST, SECOND)),
+        shared_nodes=("/map_server", "/manager"),
+        shared_topics=(*small.shared_topics, "/map"),
+    )
+
+
+_OF_ONE = ("amcl", "slam_toolbox")
+
+
+def rich_graph() -> Snapshot:
+    """As ``rich_plan`` has it; amcl runs, slam_toolbox does not."""
+    graph = nav2_graphs.healthy(rich_plan())
+    for space in (FIRST, SECOND):
+        graph = nav2_graphs.without_node(graph, f"{space}/slam_toolbox")
+    return graph
+
+
+def rich(graph: Snapshot) -> Scene:
+    return make_scene(rich_plan(), graph, check(rich_plan(), graph))
