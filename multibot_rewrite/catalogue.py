@@ -109,7 +109,7 @@ HOMES: tuple[Home, ...] = (
     Home(
         "MF7",
         "start poses and spawning",
-        ("fleets.start_poses", "fleets.spawn", "fleets.controller_files"),
+        ("fleets.start_pose_rules", "fleets.spawn", "fleets.controller_files"),
     ),
     Home(
         "MF8",

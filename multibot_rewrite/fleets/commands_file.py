@@ -26,6 +26,7 @@ def commands_file(
     ``each`` is every robot as a fleet of its own, ``windows`` the lines that open RViz, ``release``
     that whose facts they rest on.
     """
+    clocks: set[bool | None] = set()
     rows = [f"# Commands of this fleet{facts_of_release(release)}\n"]
     for one in each:
         (robot,) = one.robots
@@ -33,17 +34,29 @@ def commands_file(
         spawned, findings = spawn.spawns(one)
         yield from (*poses.findings, *findings)
         rows.append(f"\n## {robot.spec.name}\n\n```sh\n")
-        rows += [f"{command(it)}\n" for it in poses.transforms]
+        clock = robot.spec.use_sim_time
+        clocks.add(clock)
+        rows += [f"{with_clock(command(it), clock)}\n" for it in poses.transforms]
         rows += [spawn.either(it, robot) for it in spawned if spawn.is_simulated(robot)]
         rows += _controllers(one)
-        rows += [*(f"{teleop.command(it)}\n" for it in teleop.teleops(one)), "```\n"]
+        driven = (with_clock(teleop.command(it), clock) for it in teleop.teleops(one))
+        rows += [*(f"{it}\n" for it in driven), "```\n"]
         for pose in poses.initial:
             path = path_for(robot, START)
             rows.append(f"\nStart its {pose.node} with `--params-file {path}` as well.\n")
             yield OutputFile(path, _start_parameters(one, pose))
-    if lines := [f"{it}\n" for it in windows]:
+    both = clocks.pop() if len(clocks) == 1 else None
+    if lines := [f"{with_clock(it, both)}\n" for it in windows]:
         rows += ["\n## RViz\n\n```sh\n", *lines, "```\n"]
     yield OutputFile(COMMANDS, "".join(rows).encode())
+
+
+def with_clock(line: str, use_sim_time: bool | None) -> str:
+    """A command whose node has the clock that the fleet file says, if it says one."""
+    if use_sim_time is None:
+        return line
+    words = "" if "--ros-args" in line else " --ros-args"
+    return f"{line}{words} -p use_sim_time:={str(use_sim_time).lower()}"
 
 
 def _controllers(plan: FleetPlan) -> Iterator[str]:

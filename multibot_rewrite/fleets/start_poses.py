@@ -5,16 +5,26 @@ Sources: tf2_ros jazzy ``static_transform_publisher``; nav2_amcl jazzy (``set_in
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
+from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.rviz.rewrite import world_frame
-from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
-from multibot_rewrite.findings.rule import Rule, declare
+from multibot_rewrite.findings.finding import Finding
+from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import FleetFile, Pose
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot, at_robot
+from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.fleets.start_pose_rules import (
+    LOCALISED_ALREADY,
+    NO_SHARED_FRAME,
+    NO_SINGLE_ROOT,
+    OWN_ODOMETRY,
+    POSE_ON_WORLD,
+)
 from multibot_rewrite.graph.transforms import Edge, description_edges
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.remap.bridged_topics import TF_TYPE, bridge_data
@@ -28,117 +38,8 @@ AMCL = "amcl"
 ORIGIN = Pose()
 # Elements of gz-sim's drive and odometry systems that hold the odometry frame.
 ODOMETRY = ("frame_id", "odom_frame")
-
-
-LOCALISED_ALREADY = declare(
-    "MF701",
-    "pose-of-localised-robot",
-    WARNING,
-    what="A robot has a pose, but a node of its stack already publishes where the robot is. The pose "
-    "is not published.",
-    why="The frame would have two parents, and the robot would jump between two places.",
-    fix="Start the robot at that place in the simulator, or remove the pose. amcl needs neither: it "
-    "gets the pose in start_pose.yaml.",
-    bad="""\
-stack: slam_toolbox
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-stack: amcl
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-)
-NO_SINGLE_ROOT = declare(
-    "MF702",
-    "pose-without-root-frame",
-    WARNING,
-    what="A robot has a pose, but no root frame or several. The pose is not published.",
-    why="A pose is the transform from the world to the root frame of a robot.",
-    fix="Connect the frames to one tree, by a joint or by the base frame of a node.",
-    bad="""\
-# in two_trees.urdf no joint connects the base with the mast
-robots:
-  - {name: robot1, description: two_trees.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "two_trees.urdf": """\
-<robot name="rover">
-  <link name="base"/><link name="wheel"/><link name="mast"/><link name="lamp"/>
-  <joint name="a" type="fixed"><parent link="base"/><child link="wheel"/></joint>
-  <joint name="b" type="fixed"><parent link="mast"/><child link="lamp"/></joint>
-</robot>
-""",
-    },
-)
-POSE_ON_WORLD = declare(
-    "MF709",
-    "pose-of-robot-on-world",
-    ERROR,
-    what="A robot has a pose, and a joint of its description holds it on the world already.",
-    why="The joint's origin is where tf has the robot, so the pose moves it in the simulator alone: "
-    "two arms of one description are at the same place in tf, and plan through each other.",
-    fix="Make the joint's origin an argument of the xacro, give it with `arguments`, and remove the "
-    "pose. Or take the link world and its joint out of the description: the pose is published then.",
-    bad="""\
-# arm.urdf has a joint from the link "world" to "base_link"
-robots:
-  - {name: robot1, description: arm.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-    beside={
-        "arm.urdf": """\
-<robot name="arm">
-  <link name="world"/>
-  <link name="base_link"/>
-  <joint name="mount" type="fixed"><parent link="world"/><child link="base_link"/></joint>
-</robot>
-"""
-    },
-)
-NO_SHARED_FRAME = declare(
-    "MF704",
-    "pose-without-shared-frame",
-    WARNING,
-    what="A robot has a pose, but no frame is shared by all robots.",
-    why="Poses are in a frame that all robots share. Without one the pose is not published, and the "
-    "robots are not connected in tf.",
-    fix="Name a frame in shared_frames, or the frame of poses in world.",
-    bad="""\
-shared_frames: []
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    good="""\
-shared_frames: [map]
-robots:
-  - {name: robot1, description: robot.urdf, pose: {x: 1.0}}
-  - {name: robot2, description: robot.urdf}
-""",
-    line=3,
-    formats=("fleet",),
-)
+# What drivers call the parameter of their odometry frame.
+ODOMETRY_FRAME = re.compile(r"(^|[._])odom(etry)?_frame(_id|_name)?$")
 
 
 class StaticTransform(NamedTuple):
@@ -216,6 +117,10 @@ def _place(plan: FleetPlan, robot: RewrittenRobot, pose: Pose) -> Iterator[objec
         what = f"its pose is not published, because it has {frames} instead of one"
         yield _finding(NO_SINGLE_ROOT, robot, what, "connect them")
         return
+    if own := _own_odometry(plan, robot):
+        what = f"its pose is not published, because {own} may send where its base is"
+        yield _finding(OWN_ODOMETRY, robot, what, "describe it in a file of nodes, with sends:")
+        return
     local = AMCL in sent
     if local:
         yield InitialPose(name, AMCL, initial_pose(pose))
@@ -265,6 +170,22 @@ def _sent(plan: FleetPlan, robot: RewrittenRobot) -> dict[str, list[Edge]]:
         "": [*tree, *(Edge(it, base, False) for it in odometry if base)]
         or [Edge(link, link, True) for link in bare],
     }
+
+
+def _own_odometry(plan: FleetPlan, robot: RewrittenRobot) -> str:
+    """A node that nothing is known of, with the odometry frame that it is told and no known node
+    sends; empty if there is none."""
+    described = {it.name for it in plan.fleet.facts}
+    own = (edges for (name, _), edges in plan.fleet.edges.items() if name == robot.spec.namespace)
+    frames = {frame for edges in own for it in edges for frame in (it.parent, it.child)}
+    for node in plan.evidence[node_sources(robot.spec)].given:
+        told = {} if node.known or node.name in described else node.values
+        for name, it in told.items():
+            value = it.value
+            is_frame = ODOMETRY_FRAME.search(name) and isinstance(value, str) and value
+            if is_frame and spell(robot.names, "frame", str(value)) not in frames:
+                return f"{node.name}, whose {name} is {value!r} ({it.place.file}:{it.place.line}),"
+    return ""
 
 
 def _gz_odometry(inventory: Inventory, model: str) -> Iterator[str]:

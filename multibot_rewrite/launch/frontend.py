@@ -61,7 +61,7 @@ def container(entity: Any, parser: Any) -> Parsed:
     base = of_launch_ros("actions").ComposableNodeContainer
     given = _node("multibot_container", base, entity, parser)
     inside = _nested(entity, COMPONENT)
-    own = [_component(it, parser) for it in inside]
+    own = [{**action_options(it, parser), **_component(it, parser)} for it in inside]
     for it in inside:
         it.assert_entity_completely_parsed()
     known = given.pop("composable_node_descriptions", [])

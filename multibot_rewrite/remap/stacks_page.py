@@ -45,6 +45,21 @@ stacks:
       - {node: static_transform_publisher, as: table_to_base}
       - {node: twist_mux, names: {<topics.*.topic>: [nav_vel, pad_vel]}, remaps: {cmd_vel_out: cmd_vel}}
 ```
+
+A driver that sends tf says so: `frames` are its parameters that hold frames, with their defaults,
+`sends` the transforms, parent to child, by these parameters. Then the start pose of a robot is that of
+its odometry frame, and no second parent of its base; `rehearse` and `check` know who sends what.
+
+```yaml
+nodes:
+  base_driver:
+    package: acme_base
+    with: [tf_broadcaster]
+    publishes:
+      odom: nav_msgs/msg/Odometry
+    frames: {odom_frame: odom, base_frame: base_link}
+    sends: {odom_frame: base_frame}
+```
 """
 REACH = """\
 

@@ -109,3 +109,27 @@ def test_controllers_are_spawned_as_the_launch_file_does(tmp_path: Path) -> None
     lines = {it.split()[4]: it for it in rows if " spawner " in it}
     assert "spawner drive --param-file robot1/drive.yaml --inactive " in lines["drive"]
     assert not {"--param-file", "--inactive"} & set(lines["joint_state_broadcaster"].split())
+
+
+@pytest.mark.parametrize(("told", "wanted"), [("true", "true"), ("false", "false"), ("", "")])
+def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_path: Path) -> None:
+    robot = ROBOTS / "rover_gz.urdf"
+    key = f"use_sim_time: {told}\n" if told else ""
+    text = (
+        f"{key}layout: tf-per-robot\nstack: robot_state\nrobots:\n"
+        f"  - {{name: robot1, description: {robot}, pose: {{x: 1.0}}}}\n"
+        f"  - {{name: robot2, description: {robot}, use_sim_time: true}}\n"
+    )
+    (tmp_path / "fleet.yaml").write_text(text)
+    fleet = load_fleet(tmp_path / "fleet.yaml")
+    first, second = fleet.text("commands.md").split("## robot2")
+    lines = [it for it in first.splitlines() if "teleop" in it or "static_transform" in it]
+    assert lines
+    clocks = [it.rpartition(" -p use_sim_time:=")[2] if " -p use" in it else "" for it in lines]
+    assert clocks == [wanted] * len(lines)
+    assert second.count("-p use_sim_time:=true") == 1
+    node = fleet.robot("robot1").node("robot_state_publisher")
+    assert node["parameters"] == ([{"use_sim_time": wanted == "true"}] if wanted else [])
+    assert fleet.robot("robot2").node("robot_state_publisher")["parameters"] == [
+        {"use_sim_time": True}
+    ]

@@ -97,6 +97,17 @@ def test_twenty_robots_with_the_same_faults_are_one_card_and_one_drawing() -> No
     assert opened == ["g0", "shared"]
 
 
+def test_of_a_large_fleet_the_robots_with_findings_are_drawn() -> None:
+    plan = nav2_graphs.fleet(40, 2)
+    graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot39/topic1", "/topic1")
+    tree = page(nav2_graphs.scene(plan, graph))
+    groups = tree.xpath("//section[@id='graph']//details[starts-with(@id, 'g')]")
+    drawn = [it.get("id") for it in groups if it.xpath(".//svg")]
+    assert sorted(drawn) == sorted(["g38", *(f"g{at}" for at in range(29))])
+    assert len(groups) == 40
+    assert all("Not drawn" in it.text_content() for it in groups if not it.xpath(".//svg"))
+
+
 def test_both_robots_of_cross_talk_are_concerned() -> None:
     rows = {it.finding.code: it.robots for it in report_pages.spoiled().rows}
     assert rows["MG104"] == ("robot1", "robot2")

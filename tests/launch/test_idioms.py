@@ -201,3 +201,83 @@ def test_xml_and_yaml_need_no_type(name: str, text: str, fleet: Path) -> None:
         }
         assert parameters(state, f"{robot.namespace}/robot_state_publisher") == wanted
         assert parameters(manager, f"{robot.namespace}/controller_manager")["use_sim_time"] is False
+
+
+NAV2 = """\
+distro: jazzy
+layout: postfix
+stack: nav2_composed
+robots:
+  - {name: robot1, description: rover.urdf}
+  - {name: robot2, description: rover.urdf}
+companions: {params: params.yaml}
+"""
+PARAMS = """\
+controller_server:
+  ros__parameters: {odom_topic: odom}
+local_costmap:
+  local_costmap:
+    ros__parameters: {robot_base_frame: base_link, width: 3}
+"""
+COMPOSED = """\
+<launch>
+  <arg name="fleet"/>
+  <multibot_robots fleet="$(var fleet)" robots="robot1">
+    <multibot_container node="nav2_container" pkg="rclcpp_components" exec="component_container"
+                        files="params.yaml">
+      <multibot_composable_node node="controller_server" pkg="nav2_controller" plugin="p"
+                                files="params.yaml" if="false"/>
+    </multibot_container>
+  </multibot_robots>
+</launch>
+"""
+
+
+@pytest.fixture
+def composed(fleet: Path) -> Path:
+    fleet.write_text(NAV2)
+    fleet.with_name("params.yaml").write_text(PARAMS)
+    return fleet
+
+
+def test_a_component_has_its_own_and_its_container_what_its_costmap_needs(composed: Path) -> None:
+    container = {"component_container": "rclcpp_components"}
+    (box,) = programs(
+        started(composed, "box.launch.xml", COMPOSED, container), "component_container"
+    )
+    rules = [
+        word for flag, word in zip(box["words"], box["words"][1:], strict=False) if flag == "-r"
+    ]
+    # The costmap reads the rules and the files of the process (nav2_costmap_2d costmap_2d_ros.cpp:110).
+    assert "local_costmap:/scan:=/scan/robot1" in rules
+    (costmap,) = (
+        section["local_costmap"]["ros__parameters"]
+        for text in box["files"].values()
+        if "ros__parameters" in text
+        for name, section in yaml.safe_load(text).items()
+        if name == "/robot1/local_costmap"
+    )
+    assert costmap == {"robot_base_frame": "base_link/robot1", "width": 3}
+
+
+def test_a_component_is_asked_for_with_its_names(composed: Path) -> None:
+    from launch import LaunchContext
+    from launch_ros.actions.load_composable_nodes import get_composable_node_load_request
+
+    made = launch.composable_node(
+        "controller_server",
+        robot="robot1",
+        fleet=str(composed),
+        files="params.yaml",
+        package="nav2_controller",
+        plugin="nav2_controller::ControllerServer",
+        extra_arguments=[{"use_intra_process_comms": True}],
+        use_sim_time=True,
+    )
+    asked = get_composable_node_load_request(made, LaunchContext())
+    assert (asked.package_name, asked.node_name) == ("nav2_controller", "controller_server")
+    # Its code makes the costmap below its namespace, so it keeps its name in every layout.
+    assert asked.node_namespace == "/robot1"
+    assert "odom:=/odom/robot1" in asked.remap_rules
+    assert {it.name for it in asked.parameters} == {"odom_topic", "use_sim_time"}
+    assert [it.name for it in asked.extra_arguments] == ["use_intra_process_comms"]
