@@ -24,6 +24,7 @@ from multibot_rewrite.graph.snapshot import (
     incomplete,
     to_json,
 )
+from multibot_rewrite.graph.states import NodeState
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.plural import plural
 from multibot_rewrite.remap.records import (
@@ -84,7 +85,7 @@ def _remark(options: argparse.Namespace, caveat: Caveat) -> None:
 
 
 def report(snapshot: Snapshot) -> Iterator[str | Grid]:
-    """What is printed: how it was looked, a row a node, a row a tf topic."""
+    """What is printed: how it was looked, a row a node, a tf topic, a header, a node's answer."""
     yield _headline(snapshot)
     short = _short_processes(snapshot)
     counts = Counter((end.node, end.role, end.kind) for end in snapshot.endpoints)
@@ -97,6 +98,19 @@ def report(snapshot: Snapshot) -> Iterator[str | Grid]:
         yield ""
         tf = [(topic, str(times), ", ".join(who)) for (topic, who), times in sorted(heard.items())]
         yield Grid(("tf topic", "frames", "publishers"), tf)
+    if snapshot.heard:
+        yield ""
+        yield Grid(("message on", "frame_id"), snapshot.heard)
+    if snapshot.states:
+        yield ""
+        answers = [_state_cells(it) for it in snapshot.states]
+        yield Grid(("node", "state", "use_sim_time", "controllers"), answers)
+
+
+def _state_cells(state: NodeState) -> tuple[str, ...]:
+    timed = "" if state.sim_time is None else str(state.sim_time).lower()
+    controllers = ", ".join(f"{it.name} ({it.state})" for it in state.controllers)
+    return state.node, state.lifecycle, timed, controllers
 
 
 def _cells(counts: Counter[tuple[str, str, str]], node: str) -> Iterator[str]:

@@ -17,6 +17,7 @@ from multibot_rewrite.bounded import load_yaml
 from multibot_rewrite.companions.params.known_nodes import KnownNodes
 from multibot_rewrite.companions.params.sections import raw_sections
 from multibot_rewrite.companions.yaml_text import YamlText, read_yaml
+from multibot_rewrite.evidence.bridge_rows import bridge_rows
 from multibot_rewrite.evidence.launch_findings import launch_findings
 from multibot_rewrite.evidence.launch_records import LaunchedNode, LaunchGraph, ParameterText
 from multibot_rewrite.evidence.nodes import MANAGER
@@ -25,7 +26,7 @@ from multibot_rewrite.evidence.records import GivenNode, Place
 from multibot_rewrite.evidence.spawners import Spawned, is_spawner, spawned_in, texts_of
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.model import InputError
-from multibot_rewrite.remap.records import NodeFacts
+from multibot_rewrite.remap.records import Endpoint, NodeFacts
 from multibot_rewrite.rosnames import expand
 
 _TF = ("/tf", "/tf_static")
@@ -122,7 +123,9 @@ def as_launched(nodes: Iterable[NodeFacts], launched: Launched) -> Iterator[Node
             above = controller.manager.rpartition("/")[0]
             yield _remapped(it, controller.rules, above)
         elif it.host in launched.started:
-            yield it._replace(origin=origins.get(it.name, it.origin))
+            yield _in_process(it, launched.started[it.host])._replace(
+                origin=origins.get(it.name, it.origin)
+            )
         elif it.name in origins or it.host or it.name == MANAGER or not launched.whole:
             yield it
 
@@ -146,7 +149,7 @@ def _pair(
     unnamed = "" if it.name or own else NO_NAME
     found = facts._replace(
         name=_below(it.namespace, name, words),
-        endpoints=tuple(end._replace(remapped="") for end in facts.endpoints),
+        endpoints=bridge_rows(it, words) or _unmapped(facts),
         known=facts.known or facts.name if base else "",
         # A node that usually serves all robots, in the namespace of one, is that robot's.
         shared=facts.shared and not _is_of_robot(it.namespace, words),
@@ -155,6 +158,11 @@ def _pair(
         origin=_origin(it.place),
     )
     return _Pair(it, found, base is not None)
+
+
+def _unmapped(facts: NodeFacts) -> tuple[Endpoint, ...]:
+    """Its endpoints without the rules of a stack: those of the launch count."""
+    return tuple(end._replace(remapped="") for end in facts.endpoints)
 
 
 def known_node(
@@ -204,7 +212,9 @@ def _hosted(
     origins = {it.facts.known: it.facts.origin for it in pairs}
     for node in known.values():
         if node.host and node.host in origins and node.host != MANAGER and node.name not in there:
-            yield node._replace(origin=origins[node.host])
+            own = programs().names.get(f"{node.package}/{node.name}", node.name)
+            known_as = node.name if own != node.name else node.known
+            yield node._replace(name=own, known=known_as, origin=origins[node.host])
 
 
 def _controllers(
@@ -303,9 +313,20 @@ def _remapped(node: NodeFacts, rules: Iterable[tuple[str, str]], namespace: str)
     return node._replace(endpoints=tuple(ends))
 
 
+def _in_process(node: NodeFacts, host: LaunchedNode) -> NodeFacts:
+    """The rules of a launch file are for all nodes of a process; controllers have their own."""
+    if node.host == MANAGER:
+        return node
+    below = node.name.rpartition("/")[0]
+    above = f"{host.namespace.rstrip('/')}/{below}".rstrip("/")
+    return _remapped(node, host.remappings, above)
+
+
 def _target(new: str, above: str, home: str) -> str:
     """The target of a rule as its robot has it, of a node in the namespace ``above`` whose robot is in
     ``home``."""
     inner = above != home and not new.startswith(("/", "~"))
     full = f"{above}/{new}" if inner else new
-    return full.removeprefix(f"{home}/") if home else full
+    mine = full.removeprefix(f"{home}/") if home else full
+    # From a namespace in that of the robot, only this leads to the robot's.
+    return f"/{mine}" if above != home and mine[0] not in "/~" else mine

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import struct
+from pathlib import Path
 
 import pytest
 from fault_changes import nav, shared_tf
 from graph_examples import read_danger, read_example
 from healthy_systems import SYSTEMS, plan
 
+from multibot_rewrite.cli import multibot
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.check import check
 from multibot_rewrite.graph.dangers.find import find_dangers
@@ -109,6 +111,19 @@ def test_systems_whose_headers_are_right(name: str) -> None:
     assert [str(it) for it in findings] == []
 
 
+def test_a_robots_tf_topic_is_its_own_whoever_sends_there() -> None:
+    """A relay of all robots sends robot1's tf, as rmw or a bridge does."""
+    graph, owners = read_danger(
+        "running: /relay publishes /robot1/tf tf2_msgs/msg/TFMessage\n"
+        "running: /robot1/lidar publishes /robot1/scan sensor_msgs/msg/LaserScan\n"
+        "running: transform base_link -> laser on /robot1/tf by /relay\n"
+    )
+    assert find_dangers(heard(graph, "/robot1/scan", "laser"), owners) == []
+    assert [it.code for it in find_dangers(heard(graph, "/robot1/scan", "lidar"), owners)] == [
+        "MG412"
+    ]
+
+
 def test_check_says_it_as_well() -> None:
     """With a plan, whether tf is shared or each robot's own; the topic itself is planned."""
     bare = heard(shared_tf(), "/robot1/scan", "base_link")
@@ -153,10 +168,11 @@ def end(topic: str, type_: str = SCAN, node: str = "/a") -> GraphEndpoint:
 
 
 def test_one_message_of_one_publisher_ends_its_subscription() -> None:
-    callbacks, ended = {}, []
+    callbacks, ended, subscribed = {}, [], []
 
     def subscribe(topic: str, type_: str, latched: bool, callback: object) -> object:
         callbacks[topic] = callback
+        subscribed.append(topic)
         return lambda: ended.append(topic)
 
     samples = HeaderSamples(subscribe)  # type: ignore[arg-type]
@@ -169,7 +185,7 @@ def test_one_message_of_one_publisher_ends_its_subscription() -> None:
     ]
     for _ in range(2):
         samples.update(ends)
-    assert set(callbacks) == {"/scan", "/two", "/silent"}
+    assert sorted(subscribed) == ["/scan", "/silent", "/two"]
     for frame in ("x", "y"):
         callbacks["/two"](serialized(frame))  # type: ignore[operator]
     callbacks["/scan"](serialized("laser"))  # type: ignore[operator]
@@ -223,3 +239,18 @@ def test_looks_from_two_machines_are_joined() -> None:
     both = merged([Look("1", first), Look("2", second)])
     assert both.heard == (("/a", "x"), ("/a", "y"), ("/b", "x"))
     assert both.states == (NodeState("/m", "active"), NodeState("/n", "inactive"))
+
+
+def test_the_table_shows_what_was_heard_and_answered(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    states = (
+        NodeState("/m", "", False, (Controller("arm", "active"),)),
+        NodeState("/n", "inactive"),
+    )
+    graph = nav()._replace(heard=(HeardFrame("/scan", "laser"),), states=states)
+    (tmp_path / "g.json").write_bytes(to_json(graph))
+    assert multibot.main(["snapshot", "--merge", str(tmp_path / "g.json")]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["/scan", "laser"] in lines and ["/n", "inactive"] in lines
+    assert ["/m", "false", "arm", "(active)"] in lines

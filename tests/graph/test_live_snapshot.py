@@ -172,7 +172,7 @@ def test_frames_have_topic_and_publishers(seen: Snapshot, has_tf: bool) -> None:
     assert set(seen.frames) == {
         GraphFrame("base_link", "odom", "/robot1/tf", False, ("/robot1/state",)),
         GraphFrame("base_link", "odom", "/robot2/tf", False, ("/robot2/state",)),
-        GraphFrame("lidar", "base_link", "/tf_static", True, states),
+        GraphFrame("lidar", "base_link", "/tf_static", True, states, several=True),
         GraphFrame("robot1/imu", "base_link", "/tf_static", True, states),
         GraphFrame("robot2/imu", "base_link", "/tf_static", True, states),
     }

@@ -323,13 +323,12 @@ def test_names_from_the_graph_run_nothing(show: Open) -> None:
     assert "</script><script>window.pwned=1</script>" in text
 
 
-def test_a_hundred_robots_open_soon(show: Open) -> None:
+def test_a_hundred_robots_are_few_elements(show: Open) -> None:
     plan = nav2_graphs.fleet(100, 20)
     graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot50/topic2", "/topic2")
     driver = show(to_html(nav2_graphs.scene(plan, graph)))
-    timing = "return performance.getEntriesByType('navigation')[0].domComplete"
-    # Milliseconds; a busy machine has a share of it.
-    assert 0 < driver.execute_script(timing) < 8000
+    # How long a browser works is by how much there is.
+    assert driver.execute_script("return document.all.length") < 15_000
     row(driver, "MG103").click()
     assert "/topic2" in labels(driver, "g.hit")
 

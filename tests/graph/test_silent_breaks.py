@@ -186,6 +186,18 @@ def test_a_bare_odom_of_a_plugin(layout: str) -> None:
 
 
 @pytest.mark.parametrize("layout", NAMED)
+def test_a_bare_odom_where_nothing_else_has_it(layout: str) -> None:
+    def bare(frame: GraphFrame) -> GraphFrame:
+        mine = frame.child == spelled(layout, "base_footprint")
+        return frame._replace(parent="odom") if mine else frame
+
+    (finding,) = hints(layout, reframed(bare)(healthy(layout)), "MG207")
+    drive = named(layout, "diff_drive")
+    assert f"expected {spelled(layout, 'odom')}: by the plan {drive} sends" in finding.hint
+    assert finding.line == 88
+
+
+@pytest.mark.parametrize("layout", NAMED)
 @pytest.mark.parametrize("several", [True, False])
 def test_the_parameters_of_robot1_in_the_drive_of_robot2(layout: str, several: bool) -> None:
     def swapped(frame: GraphFrame) -> GraphFrame | None:

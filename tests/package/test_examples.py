@@ -131,7 +131,9 @@ def test_everything_has_the_postfix(built: dict[str, Path]) -> None:
         assert all(it.endswith(f"_{robot}") and it.count("/") == 1 for it in own["nodes"])
         names = [end[2] for ends in own["nodes"].values() for end in ends]
         assert f"/cmd_vel/{robot}" in names
-        assert all(it.endswith(f"/{robot}") for it in names if it not in plan["shared_topics"])
+        # Below a camera's name its own topics follow.
+        ends = (f"/{robot}", f"_{robot}/image_raw", f"_{robot}/camera_info")
+        assert all(it.endswith(ends) for it in names if it not in plan["shared_topics"])
 
 
 def test_the_tree_hangs_below_the_world(built: dict[str, Path]) -> None:

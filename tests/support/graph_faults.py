@@ -6,10 +6,19 @@ to it, the code that has to be found, and words that the finding must have: who 
 
 from __future__ import annotations
 
+from answered_faults import header_rows, state_rows
 from moving_faults import command_rows, tf_rows
 from naming_faults import clock_rows, data_rows, name_rows
 
-FAULTS = (*tf_rows(), *command_rows(), *name_rows(), *data_rows(), *clock_rows())
+FAULTS = (
+    *tf_rows(),
+    *command_rows(),
+    *name_rows(),
+    *data_rows(),
+    *clock_rows(),
+    *header_rows(),
+    *state_rows(),
+)
 # Those whose types are on PyPI; a fault in an action needs nav2_msgs.
 LIVE = (
     "a joystick in the root",

@@ -15,7 +15,7 @@ from multibot_rewrite.graph.snapshot import LISTENER, Caveat, GraphEndpoint, Hea
 from multibot_rewrite.graph.zenoh.cdr import read_header_frame
 from multibot_rewrite.remap.records import PUBLISHES, TOPIC
 
-# Their headers name frames of tf.
+# Their headers name frames of tf; where there are too many topics the first ones matter most.
 PACKAGES = (
     "sensor_msgs", "nav_msgs", "geometry_msgs", "stereo_msgs", "vision_msgs", "radar_msgs",
     "map_msgs", "nav2_msgs", "grid_map_msgs", "octomap_msgs", "visualization_msgs",
@@ -27,7 +27,7 @@ WITHOUT_FRAME = frozenset({
     "geometry_msgs/msg/AccelStamped",
 })  # fmt: skip
 # A subscription costs a few milliseconds.
-MOST_TOPICS = 500
+MOST_TOPICS = 200
 # Of a topic with several publishers.
 MOST_FRAMES = 8
 # topic, type, latched, callback -> what ends the subscription; None for a type without a header first.
@@ -44,14 +44,19 @@ class SensorTopic(NamedTuple):
 
 
 def sensor_topics(endpoints: Iterable[GraphEndpoint]) -> Iterator[SensorTopic]:
-    """The topics worth a subscription."""
+    """The topics worth a subscription, sensors first."""
     found: dict[str, list[GraphEndpoint]] = defaultdict(list)
     for end in endpoints:
         if (end.kind, end.role) == (TOPIC, PUBLISHES) and _names_a_frame(end):
             found[end.name].append(end)
-    for name, ends in sorted(found.items()):
+    for name, ends in sorted(found.items(), key=_rank):
         latched = all(it.qos and it.qos.durability == "TRANSIENT_LOCAL" for it in ends)
         yield SensorTopic(name, ends[0].type, latched, len(ends))
+
+
+def _rank(topic: tuple[str, list[GraphEndpoint]]) -> tuple[int, str]:
+    name, ends = topic
+    return PACKAGES.index(ends[0].type.partition("/")[0]), name
 
 
 def _names_a_frame(end: GraphEndpoint) -> bool:

@@ -7,6 +7,7 @@ from itertools import groupby
 
 from multibot_rewrite.graph.pictures.overview import Tile, overview
 from multibot_rewrite.graph.pictures.page_sections import (
+    MOST_DRAWN,
     SMALL_FLEET,
     PageSection,
     look_of,
@@ -26,6 +27,7 @@ UNPLANNED = {
     MISSING: "missing: something waits for it",
     UNEXPECTED: "a tool, or with a warning",
 }
+UNDRAWN = f"Not drawn: of a large fleet {MOST_DRAWN} robots are, those with findings first."
 # So many robots without faults are folded together.
 MANY_HEALTHY = 12
 
@@ -94,6 +96,9 @@ def _group(section: PageSection, scene: Scene, ids: Ids) -> Iterator[str]:
     yield f'<summary class="{look_of(section)}">'
     yield f"<b>{safe(title)}</b> <span>{counts}</span> <em>{findings}</em></summary>\n"
     yield from _alternatives(section, scene)
+    if not section.drawn:
+        yield f'<p class="one-of">{UNDRAWN}</p></details>\n'
+        return
     yield _pane(group_svg(section.shown, ids, f"{section.id}-"))
     more = only_common(section.group)
     if more.edges:

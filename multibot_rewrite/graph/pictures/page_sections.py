@@ -16,6 +16,8 @@ from multibot_rewrite.graph.pictures.text import counted
 LEVELS = (ERROR, WARNING, INCONCLUSIVE)
 # In a larger fleet only faulty robots are unfolded, and no more than MOST_OPEN.
 SMALL_FLEET, MOST_OPEN = 3, 10
+# Of more robots only so many are drawn, those with findings first, and each finding once before that.
+MOST_DRAWN = 30
 SHARED = "shared"
 _Key = TypeVar("_Key", bound=Hashable)
 
@@ -33,6 +35,7 @@ class PageSection(NamedTuple):
     levels: Mapping[str, int]
     faulty: bool
     open: bool
+    drawn: bool = True
 
 
 def make_ids(scene: Scene) -> Ids:
@@ -80,7 +83,9 @@ def make_sections(scene: Scene) -> list[PageSection]:
         left -= opened
         shown = without_common(group)
         sections.append(PageSection(group, shown, id_, levels, faulty, opened))
-    return sections
+    worst_first = sorted(sections[:-1], key=lambda it: (not it.open, not it.faulty))
+    drawn = {it.id for it in worst_first[:MOST_DRAWN]} | {SHARED}
+    return [it._replace(drawn=it.id in drawn) for it in sections]
 
 
 def concerns_of(scene: Scene) -> dict[str, tuple[int, ...]]:
@@ -99,6 +104,8 @@ def look_of(section: PageSection) -> str:
 
 def ids_in(section: PageSection, ids: Ids) -> set[str]:
     """What can be linked to in a section."""
+    if not section.drawn:
+        return set()
     nodes = {ids.nodes[node.name] for node in section.shown.nodes}
     return nodes | {ids.names[name.name] for name in section.shown.names if not name.merged}
 

@@ -4,6 +4,7 @@ function zoomed(pane, factor) {
   const old = svg.getBoundingClientRect().width;
   const middle = (pane.scrollLeft + pane.clientWidth / 2) / old;
   const wide = factor ? Math.min(Math.max(old * factor, 200), 8000) : 0;
+  pane.classList.toggle("zoomed", Boolean(wide));
   svg.style.minWidth = wide ? "0" : "";
   svg.style.maxWidth = wide ? "none" : "";
   svg.style.width = wide ? `${wide}px` : "";

@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.graph.expectation import PlannedRobot
-from multibot_rewrite.graph.rules.causes import tf_rule
+from multibot_rewrite.graph.rules.causes import Cause, caused, tf_rule
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
 from multibot_rewrite.graph.rules.frame_prefixes import added_prefixes
 from multibot_rewrite.graph.rules.ownership import SEPARATORS, without_tag_once
 from multibot_rewrite.graph.rules.similar_names import similar
-from multibot_rewrite.graph.rules.tf_senders import state_publisher
+from multibot_rewrite.graph.rules.tf_senders import sent_by_robot, state_publisher, where_set
 from multibot_rewrite.graph.rules.tf_trees import TfTree, frames_in
 from multibot_rewrite.graph.snapshot import GraphFrame
 from multibot_rewrite.graph.wording import shorten
@@ -95,11 +95,25 @@ def frame_without_robot_name(view: View) -> Iterator[Finding]:
             if len(robots) == 1 and frame not in view.robots[robots[0]].frames:
                 own[robots[0]].append(frame)
         for robot, found in own.items():
-            expected = _by_plain_name(view, view.robots[robot])[found[0]]
             message = f"frames {shorten(found)} on {tree.topic} do not have the name of {robot}"
-            cause = f"expected {expected}: load the rewritten description in "
-            cause += shorten(tree.senders.get(robot, ())) or "its robot_state_publisher"
-            yield frame_without_robot_name.finding(message, cause, robot=robot, names=tuple(found))
+            cause = _why_bare(view, tree, view.robots[robot], found)
+            yield frame_without_robot_name.finding(
+                message, **cause._asdict(), robot=robot, names=tuple(found)
+            )
+
+
+def _why_bare(view: View, tree: TfTree, robot: PlannedRobot, names: Sequence[str]) -> Cause:
+    """The node that sends all of them by the plan, besides the description; else the description."""
+    by_name = _by_plain_name(view, robot)
+    expected = {by_name[name] for name in names}
+    sent = next((it for it in sent_by_robot(view, robot) if expected <= {*it[1:]}), None)
+    first = f"expected {by_name[names[0]]}"
+    if sent:
+        place = where_set(view, sent.node)
+        see = f", see {place}" if place else ""
+        return caused(f"{first}: by the plan {sent.node} sends {sent}{see}", place)
+    senders = shorten(tree.senders.get(robot.name, ())) or "its robot_state_publisher"
+    return Cause(f"{first}: load the rewritten description in {senders}")
 
 
 def _frames_without_robot(view: View, tree: TfTree) -> dict[str, list[str]]:

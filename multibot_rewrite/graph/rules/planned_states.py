@@ -143,7 +143,7 @@ def _whose(view: View, node: str, found: Sequence[Difference]) -> str:
     wanted = {(it.name, value) for it, value in found}
     for other in view.plan.states:
         theirs = view.robot_of.get(other.node, "")
-        if theirs in ("", robot) or whose.without_robot(other.node, theirs) != plain:
+        if not theirs or whose.without_robot(other.node, theirs) != plain:
             continue
         if wanted <= {(it.name, it.value) for it in other.parameters}:
             return theirs

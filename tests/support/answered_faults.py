@@ -1,0 +1,82 @@
+"""Seeded faults that only messages and answers of nodes show: frames of headers, states."""
+
+from __future__ import annotations
+
+from fault_changes import Change, Fault, nav, shared_tf, simulation
+
+from multibot_rewrite.findings.finding import WARNING
+from multibot_rewrite.graph.snapshot import HeardFrame
+from multibot_rewrite.graph.states import Controller, NodeState
+
+MANAGERS = "/robot1/controller_manager", "/robot1/gz/controller_manager"
+
+
+def heard(topic: str, frame: str) -> Change:
+    """A message on the topic names the frame."""
+    return lambda graph: graph._replace(heard=(*graph.heard, HeardFrame(topic, frame)))
+
+
+def answered(*states: NodeState) -> Change:
+    return lambda graph: graph._replace(states=(*graph.states, *states))
+
+
+def header_rows() -> tuple[Fault, ...]:
+    return (
+        Fault(
+            "robot1's lidar has a bare frame_id", shared_tf, heard("/robot1/scan", "lidar_link"),
+            "MG412", ("/robot1/lidar_driver", "to lidar_link/robot1"),
+        ),
+        Fault(
+            "robot2's lidar has robot1's frame_id", shared_tf,
+            heard("/robot2/scan", "lidar_link/robot1"),
+            "MG411", ("/robot2/lidar_driver", "a frame of robot1"),
+        ),
+        Fault(
+            "the robot's name in a frame_id, and not in tf", nav,
+            heard("/robot1/scan", "robot1/lidar_link"),
+            "MG412", ("/robot1/lidar_driver", "to lidar_link"),
+        ),
+        Fault(
+            "a camera whose frame nobody sends", nav, heard("/robot1/front/image_raw", "thermal"),
+            "MG412", ("/robot1/camera_driver", "send a transform"), WARNING,
+        ),
+        Fault(
+            "odometry in the other robot's odom", shared_tf, heard("/robot1/odom", "odom/robot2"),
+            "MG411", ("/robot1/diff_drive", "a frame of robot2"),
+        ),
+    )  # fmt: skip
+
+
+def state_rows() -> tuple[Fault, ...]:
+    arm = Controller("arm_controller", "active", ("joint1/position",))
+    spare = Controller("arm_controller", "inactive")
+    return (
+        Fault(
+            "amcl was never activated", nav, answered(NodeState("/robot1/amcl", "inactive")),
+            "MG511", ("/robot1/lifecycle_manager_localization", "ros2 lifecycle get /robot1/amcl"),
+        ),
+        Fault(
+            "a driver that nobody activates", nav,
+            answered(NodeState("/robot1/lidar_driver", "unconfigured")),
+            "MG511", ("/robot1/lidar_driver", "nobody activates it"), WARNING,
+        ),
+        Fault(
+            "one of robot2's nodes has use_sim_time false", simulation,
+            answered(
+                NodeState("/robot2/amcl", sim_time=True),
+                NodeState("/robot2/planner_server", sim_time=True),
+                NodeState("/robot2/lidar_driver", sim_time=False),
+            ),
+            "MG514", ("/robot2/lidar_driver", "the same for all"), WARNING,
+        ),
+        Fault(
+            "a controller manager of the driver and one of the simulator", nav,
+            answered(*(NodeState(it, controllers=(arm,)) for it in MANAGERS)),
+            "MG512", (*MANAGERS, "stop one"),
+        ),
+        Fault(
+            "controllers that no spawner activated", nav,
+            answered(NodeState(MANAGERS[0], controllers=(spare,))),
+            "MG513", ("arm_controller (inactive)", "spawners"), WARNING,
+        ),
+    )  # fmt: skip
