@@ -143,7 +143,17 @@ def _source(what: str, value: object) -> object:
         raise _wrong(what, value, "write a path, XML text or bytes") from None
 
 
+def _fleet(what: str, value: object) -> object:
+    if isinstance(value, Mapping):
+        return value
+    try:
+        return _path(what, value)
+    except UsageError:
+        raise _wrong(what, value, "write a path, or a dict") from None
+
+
 READERS: Mapping[str, Reader] = {
+    "str | os.PathLike[str] | Mapping[str, Any]": _fleet,
     "str": _text,
     "str | None": _or_none(_text),
     "bool": _switch,

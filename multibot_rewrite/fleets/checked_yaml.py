@@ -36,7 +36,12 @@ class CheckedYaml(NamedTuple):
 def read_checked(path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
     """Read a file; InputError with its line, the key and what is allowed. ``hint`` says what to write
     into an empty file."""
-    document = read_yaml(read_file(path), path)
+    return text_checked(read_file(path), path, schema, hint)
+
+
+def text_checked(text: bytes, path: str, schema: Mapping[str, Any], hint: str) -> CheckedYaml:
+    """The same of a text, which errors call ``path``."""
+    document = read_yaml(text, path)
     if document.root is None:
         raise InputError(f"{path}: the file is empty; {hint}")
     refuse_anchors(document)

@@ -2,25 +2,23 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cache
-from importlib.resources import files
 from typing import Any, NamedTuple, cast
 
 from multibot_rewrite.companions.rviz.colours import read_colour
 from multibot_rewrite.evidence.launch_records import LaunchOrder, launch_order
-from multibot_rewrite.fleets.checked_yaml import Path, read_checked
+from multibot_rewrite.fleets.checked_yaml import Path
 from multibot_rewrite.fleets.fleet import facts_of
-from multibot_rewrite.fleets.fleet_paths import Places, check_files, listed, nodl_files, with_paths
+from multibot_rewrite.fleets.fleet_data import FleetData, read_data
+from multibot_rewrite.fleets.fleet_paths import listed, nodl_files
+from multibot_rewrite.fleets.robot_choice import ALL, Choice, with_robots
 from multibot_rewrite.model import InputError, UsageError
-from multibot_rewrite.naming import LAYOUTS, NAMESPACE, Naming, Policy, make_naming
-from multibot_rewrite.releases import RELEASES, chosen_release
+from multibot_rewrite.naming import NAMESPACE, Naming, Policy, make_naming
+from multibot_rewrite.releases import chosen_release
 from multibot_rewrite.sources.own_names import filled, name_robot
 
-SCHEMA = "fleet.schema.json"
 KINDS = ("params", "rviz", "moveit", "bridge", "behavior_trees", "lua")
 LISTS = ("include", "stack", "nodl", "vocabulary", "shared_frames", "shared_topics")
 POLICY = tuple(Policy.__annotations__)
@@ -28,7 +26,6 @@ POLICY = tuple(Policy.__annotations__)
 Sources = tuple[str, str, tuple[tuple[str, str], ...], str]
 # What ``simulator`` says of a real robot.
 REAL = "none"
-EXAMPLE = "robots: [{name: robot1}, {name: robot2}]"
 
 
 class Pose(NamedTuple):
@@ -105,21 +102,20 @@ class FleetFile(NamedTuple):
     sros2: bool = False
 
 
-class _Read(NamedTuple):
-    """One file's data, the file and line of each value by path, and the files that were read."""
+def read_fleet(
+    source: str | Mapping[str, Any],
+    distro: str,
+    environment: Mapping[str, str],
+    choice: Choice = ALL,
+) -> FleetFile:
+    """Read a fleet file and those it includes, or the same as a dict; raises InputError with file and
+    line.
 
-    file: str
-    data: dict[str, Any]
-    places: Places
-    files: tuple[str, ...]
-
-
-def read_fleet(path: str, distro: str, environment: Mapping[str, str]) -> FleetFile:
-    """Read a fleet file and those it includes; raises InputError with file and line.
-
-    The release is ``distro``, else that of the file, else as ``chosen_release`` says.
+    The release is ``distro``, else that of the file, else as ``chosen_release`` says. ``choice`` says
+    which robots there are, where that is decided later than the file.
     """
-    read = _with_includes(path, ())
+    read = with_robots(read_data(source), choice)
+    path = read.file
     data = read.data
     release = chosen_release(distro or data.get("distro", ""), environment)
     policy = cast(Policy, {key: _policy(key, data[key]) for key in POLICY if key in data})
@@ -157,47 +153,11 @@ def input_files(fleet: FleetFile) -> Iterator[str]:
         yield from (it.file for it in robot.launch)
 
 
-def _with_includes(path: str, above: tuple[str, ...]) -> _Read:
-    real = os.path.realpath(path)
-    if real in above:
-        ring = " -> ".join(os.path.basename(it) for it in (*above, real))
-        raise InputError(f"{path}: the file includes itself ({ring}); remove one include")
-    read = _read(path)
-    for other in listed(read.data.pop("include", [])):
-        under = _with_includes(other, (*above, real))
-        both = {**under.data, **read.data}, {**under.places, **read.places}
-        read = _Read(path, *both, (*read.files, *under.files))
-    if not above and "robots" not in read.data:
-        raise InputError(f"{path}: there are no robots; write {EXAMPLE}")
-    return read
-
-
-def _read(path: str) -> _Read:
-    # An included file need not list robots.
-    wanted = {key: value for key, value in schema().items() if key != "required"}
-    data, lines = read_checked(path, wanted, f"write {EXAMPLE}")
-    places = {at: (path, line) for at, line in lines.items()}
-    resolved = with_paths(os.path.dirname(path), data)
-    check_files(resolved, (), places)
-    return _Read(path, resolved, places, (path,))
-
-
-@cache
-def schema() -> dict[str, Any]:
-    """The published JSON Schema of fleet files, with the layouts and releases that there are."""
-    text = files("multibot_rewrite.fleets").joinpath(SCHEMA).read_text()
-    result: dict[str, Any] = json.loads(text)
-    names = [*(it.name for it in LAYOUTS), *(it.short for it in LAYOUTS)]
-    result["properties"]["layout"]["enum"] = names
-    result["properties"]["distro"]["enum"] = list(RELEASES)
-    return result
-
-
 def _policy(key: str, value: Any) -> Any:
     return tuple(listed(value)) if key in LISTS else value
 
 
-def _naming(read: _Read, policy: Policy) -> Naming:
+def _naming(read: FleetData, policy: Policy) -> Naming:
     try:
         return make_naming(**policy)
     except UsageError as error:
@@ -206,7 +166,7 @@ def _naming(read: _Read, policy: Policy) -> Naming:
         raise InputError(f"{file}:{line}: {error}") from None
 
 
-def _check_world(read: _Read, naming: Naming) -> None:
+def _check_world(read: FleetData, naming: Naming) -> None:
     world = read.data.get("world", "")
     if world and world not in naming.shared_frames:
         file, line = read.places["world",]
@@ -215,7 +175,7 @@ def _check_world(read: _Read, naming: Naming) -> None:
         raise InputError(f"{file}:{line}: world {world!r} is not a shared frame ({shared}); {hint}")
 
 
-def _robot(read: _Read, naming: Naming, at: int, release: str) -> RobotSpec:
+def _robot(read: FleetData, naming: Naming, at: int, release: str) -> RobotSpec:
     data, own = read.data, read.data["robots"][at]
     file, line = read.places["robots", at]
     place, name = f"{file}:{line}", own["name"]
@@ -261,7 +221,7 @@ def _launch(data: Mapping[str, Any], own: Mapping[str, Any], place: str) -> Iter
         raise InputError(f"{place}: {own['name']!r}: {error}") from None
 
 
-def _check_stacks(read: _Read, at: int, stacks: tuple[str, ...], release: str) -> None:
+def _check_stacks(read: FleetData, at: int, stacks: tuple[str, ...], release: str) -> None:
     try:
         nodl = listed(read.data.get("nodl", []))
         facts_of(stacks, read.data.get("nodes") or None, release, nodl)

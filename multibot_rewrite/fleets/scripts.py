@@ -32,6 +32,7 @@ from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.node_names import NodeNames, Rules, names_of
 from multibot_rewrite.fleets.output_file import OutputFile
 from multibot_rewrite.fleets.rewritten_robots import Jobs, RewrittenRobot
+from multibot_rewrite.fleets.robot_choice import Choice
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import UsageError
 from multibot_rewrite.naming import NAMESPACE, TF_TOPICS
@@ -292,9 +293,19 @@ class LoadedFleet:
 
 @checked
 def load_fleet(
-    path: str | os.PathLike[str], *, trust: bool = False, distro: str = ""
+    path: str | os.PathLike[str] | Mapping[str, Any],
+    *,
+    trust: bool = False,
+    distro: str = "",
+    robots: str = "",
+    count: int = 0,
 ) -> LoadedFleet:
     """Read a fleet file, rewrite its robots' descriptions and make their tables.
+
+    ``path`` may be what a fleet file holds, as a dict; its paths are relative to the working directory.
+    ``robots`` are the robots in place of those of the file, with their poses, as Nav2 writes them:
+    ``robot1={x: 1.0, y: 0}; robot2={x: 2.0}``. ``count`` is the number of robots of the one that is a
+    pattern.
 
     ``trust`` lets xacro files do anything; without it they only compute (SECURITY.md). ``distro``
     is the ROS 2 release whose facts count (default: the fleet file's, else ROS_DISTRO, else the newest
@@ -303,7 +314,9 @@ def load_fleet(
     Raises InputError and UsageError for what cannot be read or used, RewriteRefused if two
     robots would get the same name, VocabularyError and ProofError as ``rewrite`` does.
     """
-    fleet = LoadedFleet(plan_fleet(read_fleet(os.fspath(path), distro, os.environ), trust=trust))
+    source = path if isinstance(path, Mapping) else os.fspath(path)
+    file = read_fleet(source, distro, os.environ, Choice(robots, count))
+    fleet = LoadedFleet(plan_fleet(file, trust=trust))
     _refuse(fleet.findings)
     return fleet
 

@@ -13,6 +13,7 @@ from multibot_rewrite.launch import later
 from multibot_rewrite.launch.context import (
     FLEET,
     ROBOT,
+    ROBOTS,
     SIM_TIME,
     Action,
     Context,
@@ -44,14 +45,18 @@ _OWN = "multibot.yaml"
 def each_robot(fleet: Text, make: Make, robots: Text = "", **action: Any) -> Action:
     """An action that runs what ``make`` returns for every robot, each robot in its own group.
 
-    ``robots`` are some robots' names, with commas; ``action`` are options such as a condition.
+    ``robots`` are some robots' names, with commas, or robots in place of those of the file with their
+    poses, as Nav2 writes them (``robot1={x: 1.0}; robot2={}``); ``action`` are options such as a
+    condition.
 
         each_robot(LaunchConfiguration("fleet"), lambda robot: [Node(..., **robot.node("amcl"))])
     """
 
     def groups(context: Context) -> list[Action]:
-        loaded = fleet_of(context, fleet)
         names = listed(context, robots)
+        if "=" in (text := ",".join(names)):
+            context.launch_configurations[ROBOTS], names = text, []
+        loaded = fleet_of(context, fleet)
         chosen = [loaded.robot(name) for name in names] if names else loaded.robots
         return [_group(context, loaded, robot, make) for robot in chosen]
 

@@ -26,6 +26,8 @@ Context = Any
 Substitution = Any
 # Launch configurations: fleet and robot of a group; may xacro files do anything ("true")? the release.
 FLEET, ROBOT, TRUST, DISTRO = (f"multibot_{it}" for it in ("fleet", "robot", "trust", "distro"))
+# The robots in place of those of the file, as a text with poses, or the number of those of a pattern.
+ROBOTS, COUNT = "multibot_robots", "multibot_count"
 # What a launch keeps: its fleets by path, its folder, the warnings that it has logged.
 _FLEETS, _FOLDER, _LOGGED = "multibot_fleets", "multibot_folder", "multibot_logged"
 
@@ -66,15 +68,27 @@ def fleet_of(context: Context, fleet: Text = None) -> LoadedFleet:
     """The fleet of a file, for a function of OpaqueFunction; a launch loads each file once.
 
     ``fleet`` may hold substitutions. The launch configurations ``multibot_trust:=true`` and
-    ``multibot_distro`` are options of ``load_fleet``. Warnings go to launch's log. Raises as that.
+    ``multibot_distro``, ``multibot_robots`` and ``multibot_count`` are options of ``load_fleet``.
+    Warnings go to launch's log. Raises as that.
     """
     path = _scoped(context, FLEET, "fleet") if fleet is None else perform(context, fleet)
     known: dict[str, LoadedFleet] = _of_launch(context, _FLEETS, dict)
-    if path not in known:
-        trust, distro = (str(context.launch_configurations.get(it, "")) for it in (TRUST, DISTRO))
-        known[path] = load_fleet(path, trust=trust.lower() in ("true", "1"), distro=distro)
-        _warn(context, known[path].findings)
-    return known[path]
+    words = (TRUST, DISTRO, ROBOTS, COUNT)
+    trust, distro, robots, count = (str(context.launch_configurations.get(it, "")) for it in words)
+    key = f"{path} {robots} {count}"
+    if key not in known:
+        trusted = trust.lower() in ("true", "1")
+        number = number_of(count)
+        known[key] = load_fleet(path, trust=trusted, distro=distro, robots=robots, count=number)
+        _warn(context, known[key].findings)
+    return known[key]
+
+
+def number_of(count: str) -> int:
+    """The number of robots that a launch argument says, 0 for none; raises UsageError."""
+    if count and not count.isdecimal():
+        raise UsageError(f"{COUNT}: {count!r} is no number of robots; write {COUNT}:=20")
+    return int(count or 0)
 
 
 def robot_of(context: Context, of: RobotRef = HERE) -> LoadedRobot:

@@ -18,15 +18,8 @@ from paths import ROOT
 
 from multibot_rewrite.cli.multibot import main
 from multibot_rewrite.fleets.checked_yaml import TYPES
-from multibot_rewrite.fleets.fleet_file import (
-    KINDS,
-    SCHEMA,
-    FleetFile,
-    Pose,
-    RobotSpec,
-    read_fleet,
-    schema,
-)
+from multibot_rewrite.fleets.fleet_data import SCHEMA, schema
+from multibot_rewrite.fleets.fleet_file import KINDS, FleetFile, Pose, RobotSpec, read_fleet
 from multibot_rewrite.fleets.fleet_or_plan import is_fleet
 from multibot_rewrite.model import InputError
 

@@ -383,7 +383,7 @@ def test_a_launch_loads_a_fleet_once(
 ) -> None:
     loads = []
 
-    def counted(path: str, trust: bool = False, distro: str = "") -> Any:
+    def counted(path: str, trust: bool = False, **more: Any) -> Any:
         loads.append(path)
         return load_fleet(path, trust=trust)
 
@@ -409,7 +409,7 @@ def test_a_launch_trusts_xacro_files_where_it_is_told(
 ) -> None:
     asked = []
 
-    def counted(path: str, trust: bool = False, distro: str = "") -> Any:
+    def counted(path: str, trust: bool = False, **more: Any) -> Any:
         asked.append(trust)
         return load_fleet(path)
 
