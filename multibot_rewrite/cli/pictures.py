@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
-from itertools import islice
 
 from multibot_rewrite.cli.output import STANDARD, write_files
 from multibot_rewrite.cli.walk import check_folder, check_target
@@ -13,13 +13,15 @@ from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.graph.expectation import Expectation
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.watching import Outcome
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.model import MultibotError, UsageError
+from multibot_rewrite.sources.read import read_file
 
 NAMES = ("report", "mermaid", "dot")
 # What a command may have read.
 _INPUTS = ("plan", "input")
 # How much of a source is shown: lines before and after the one, letters of each.
 _AROUND, _LONGEST = 2, 160
+_SOURCES = (".urdf", ".xacro", ".srdf", ".sdf", ".xml", ".world", ".yaml", ".yml")
 
 
 def check(options: argparse.Namespace) -> None:
@@ -66,11 +68,12 @@ def snippets(places: Iterable[str]) -> dict[str, list[str]]:
 
 def _lines_around(file: str, line: int) -> list[str]:
     first = max(line - 1 - _AROUND, 0)
+    # A plan may be somebody else's: it does not say that any file is read.
+    if not file.endswith(_SOURCES) or not os.path.isfile(file):
+        return []
     try:
-        with open(file, encoding="utf-8") as text:
-            # A line may be as long as the file.
-            lines = list(islice(text, first, line + _AROUND))
-    except (OSError, ValueError):
+        lines = read_file(file).decode().splitlines()[first : line + _AROUND]
+    except (MultibotError, ValueError):
         return []
     return [
         f"{number:5d} {it.rstrip()[:_LONGEST]}" for number, it in enumerate(lines, start=first + 1)

@@ -64,6 +64,11 @@ def spawned_in(nodes: Iterable[LaunchedNode]) -> tuple[tuple[Spawned, ...], tupl
     return tuple(found), tuple(notes)
 
 
+def active(spawned: Mapping[str, Spawned]) -> set[str]:
+    """The names of those that are active as soon as all is started, whatever happens."""
+    return {name for name, it in spawned.items() if not (it.inactive or it.later)}
+
+
 def controller_files(program: str, words: Sequence[str]) -> tuple[str, ...]:
     """The files with parameters of controllers that a program (``package/executable``) gets with these
     arguments; none if it is no spawner."""

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from multibot_rewrite.closure.frames import Sender, frame_gaps, tree_gaps, unsent_gaps
 from multibot_rewrite.closure.gap import Gap
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
+from multibot_rewrite.evidence.spawners import active
 from multibot_rewrite.findings.finding import ERROR, NOTE, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.closing_bridges import bridge_findings
@@ -19,7 +20,7 @@ from multibot_rewrite.fleets.gap_findings import at_gap
 from multibot_rewrite.fleets.output_values import OutputText
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_groups import group_robots
-from multibot_rewrite.fleets.robot_nodes import RobotEvidence, node_sources
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.systems import system_after, system_before
 from multibot_rewrite.fleets.tf_conflicts import tf_conflicts
 from multibot_rewrite.graph.transforms import description_edges, edges_in
@@ -114,7 +115,9 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         evidence = plan.evidence[node_sources(robot.spec)]
         before, library = system_before(robot, evidence), evidence.known
         after = system_after(robot, fleet, texts, known)
-        yield from controller_findings(robot, before, after, library, texts, _active(evidence))
+        yield from controller_findings(
+            robot, before, after, library, texts, active(evidence.spawned)
+        )
         yield from _frames(robot, frame_gaps(before.given, library, before.sent), before.senders)
         joints = list(edges_in(robot.member.source.root))
         old = list(tree_gaps(joints, before.senders))
@@ -126,11 +129,6 @@ def closing(plan: FleetPlan, fleet: Fleet, texts: Sequence[OutputText]) -> Itera
         yield from topic_findings(robot, before, after)
         yield from semantic_findings(plan, robot, before, after)
         yield from bridge_findings(plan, robot, texts)
-
-
-def _active(evidence: RobotEvidence) -> set[str]:
-    """The controllers that launch files start and leave active, whatever happens."""
-    return {name for name, it in evidence.spawned.items() if not (it.inactive or it.later)}
 
 
 def _frames(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from closed_arm import ARM_FILES
 from closure_findings import found
 
 from multibot_rewrite.closure.interfaces import claims_any, contested_gaps
@@ -49,6 +48,15 @@ def test_an_interface_has_one_owner(word: str, active: set[str], names: list[str
     for it in gaps:
         assert (it.node, it.near) == ("two", "one")
         assert (it.place, it.near_place) == (Place("c.yaml", 8), Place("c.yaml", 6))
+
+
+def test_a_state_is_read_by_many() -> None:
+    type_ = "joint_trajectory_controller/JointTrajectoryController"
+    text = CONTROLLERS.replace(FORWARD, type_).replace("WORD", "x")
+    for word in ("position", "velocity"):
+        own = f"command_interfaces: [{word}], state_interfaces: [position]"
+        text = text.replace("interface_name: " + ("position" if word == "position" else "x"), own)
+    assert list(contested_gaps(given(text), KNOWN, {"one", "two"})) == []
 
 
 def test_two_managers_do_not_share_interfaces() -> None:
@@ -116,12 +124,11 @@ def test_names_that_only_a_prefix_reaches(affix: str, codes: set[str], tmp_path:
     assert all(it.hint.endswith("set affix: prefix") for it in errors)
 
 
-def test_another_hint_where_a_postfix_reaches_all(tmp_path: Path) -> None:
-    # What the controller claims was open before: the layout is no reason.
-    files = {**ARM_FILES, "fleet.yaml": f"affix: postfix\n{ARM_FILES['fleet.yaml']}"}
-    broken = files["controllers.yaml"].replace(
-        "command_interfaces: [position]", "command_interfaces: [effort]"
-    )
-    built, _ = found(tmp_path, {**files, "controllers.yaml": broken})
-    assert "MF811" in {it.code for it in built}
-    assert not [it for it in built if "affix: prefix" in it.hint]
+def test_another_hint_for_what_was_open_before(tmp_path: Path) -> None:
+    """The description has no such interface, whatever the robot is called."""
+    broken = BROADCASTER.replace("force.x}", "force.w}")
+    files = {"ur.urdf": UR, "controllers.yaml": broken}
+    built, _ = found(tmp_path, {**files, "fleet.yaml": FLEET.replace("AFFIX", "postfix")})
+    hints = [it.hint for it in built if (it.code, it.level) == ("MF811", "warning")]
+    assert hints
+    assert not [it for it in hints if "affix: prefix" in it]

@@ -6,7 +6,7 @@ import pytest
 from launched_nodes import AMCL, AT, launched, runs, started
 
 from multibot_rewrite.evidence.launch_records import LaunchedNode, ParameterText
-from multibot_rewrite.evidence.spawners import controller_files, spawned_in
+from multibot_rewrite.evidence.spawners import active, controller_files, spawned_in
 
 DRIVE, ARM = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
 MANAGER_FILE = ParameterText(
@@ -131,3 +131,11 @@ def test_a_spawner_that_an_event_starts_makes_its_controllers_optional() -> None
     late = spawner("drive")._replace(later="at an event")
     assert runs(launched(manager(MANAGER_FILE), late))["drive"].when == "at an event"
     assert "spawner" not in runs(launched(AMCL, late))
+
+
+@pytest.mark.parametrize("words", [("drive", "--inactive"), ("drive", "--load-only")])
+def test_what_a_spawner_leaves_inactive(words: tuple[str, ...]) -> None:
+    late = spawner("spare")._replace(later="at an event")
+    found = launched(manager(MANAGER_FILE), spawner(*words), late)
+    assert active(found.spawned) == set()
+    assert active(launched(manager(MANAGER_FILE), spawner("drive"), late).spawned) == {"drive"}

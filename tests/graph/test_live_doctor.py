@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
@@ -18,6 +19,7 @@ from graph_cases import sent
 from graph_faults import FAULTS, LIVE
 from healthy_systems import SYSTEMS
 
+from multibot_rewrite.graph.doctor.diagnose import diagnose
 from multibot_rewrite.graph.snapshot import Snapshot
 from multibot_rewrite.graph.snapshot_file import read_snapshot
 
@@ -40,6 +42,7 @@ HEALTHY = (
     "namespaces of two levels",
     "one robot",
 )
+CODE = re.compile(r"MG\d{3}")
 PLANNED = """\
 layout: frames-per-robot
 shared_nodes: {}
@@ -117,53 +120,47 @@ def test_odometry_of_two_senders_live(needed: Mapping[str, str]) -> None:
     assert all(word in outcome.said for word in fault.words), outcome.said
 
 
-def test_states_that_nodes_are_asked_for(needed: Mapping[str, str]) -> None:
-    """The one that hangs, because nobody spins it, costs the time that is allowed and nothing else."""
-    arguments = ["--ros-args", "-p", "use_sim_time:=true"]
-    robot = [
-        {"name": "amcl", "namespace": "/robot1", "state": "inactive", "arguments": arguments},
-        {"name": "map_server", "namespace": "/robot1", "state": "active"},
-    ]
-    hangs = [{"name": "hangs", "namespace": "/robot1", "services": [["~/get_state", STATE_TYPE]]}]
-    domain = live_commands.domain(18)
-    env = {**live_fleet.environ(domain), **needed}
-    with live_fleet.running(domain, robot, hangs, **needed):
-        done = live_commands.multibot("doctor", "--state", *PATIENTLY, env=env)
-    assert "multibot: 2 of 3 nodes answered --state" in done.stderr, done.stderr
-    assert "MG511 /robot1/amcl is inactive, not active" in done.stdout
-    assert "MG514 use_sim_time is " in done.stdout
-    assert "MG501" in done.stdout and done.returncode == 1
-
-
-def test_frames_of_messages_that_are_sent(needed: Mapping[str, str], tmp_path: Path) -> None:
-    """Best effort, large, latched before the look, another robot's, and one that is never sent."""
-    scan, image, map_ = ("LaserScan", "Image", "OccupancyGrid")
+def test_what_nodes_send_and_answer(needed: Mapping[str, str], tmp_path: Path) -> None:
+    """Headers: best effort, large, latched before the look, another robot's, one that is no frame.
+    States: the node that hangs, because nobody spins it, costs the time that is allowed and no more."""
+    scan, image, map_, joints = (
+        "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/Image", "nav_msgs/msg/OccupancyGrid",
+        "sensor_msgs/msg/JointState",
+    )  # fmt: skip
+    simulated = ["--ros-args", "-p", "use_sim_time:=true"]
     tf = [[f"robot{at}/base", f"robot{at}/laser"] for at in (1, 2)]
-    joints = ["robot1/joints", "sensor_msgs/msg/JointState", "hardware"]
+    body = [["odom", "nav_msgs/msg/Odometry"], ["joint_states", joints]]
     nodes = [
         {"name": "tf", "frames": [["/tf_static", True, ["map", "robot1/base"], *tf]]},
-        {"name": "map_server", "headers": [["/map", f"nav_msgs/msg/{map_}", "map", "latched"]],
-         "subscriptions": [["/map", f"nav_msgs/msg/{map_}", "latched"]]},
-        {"name": "lidar", "namespace": "robot1", "publishers": [["odom", "nav_msgs/msg/Odometry"]],
-         "headers": [["scan", f"sensor_msgs/msg/{scan}", "laser", "best_effort"], joints]},
-        {"name": "camera", "namespace": "robot2", "publishers": [["odom", "nav_msgs/msg/Odometry"]],
-         "headers": [["image", f"sensor_msgs/msg/{image}", "robot1/laser", "best_effort"]]},
+        {"name": "map_server", "headers": [["/map", map_, "map", "latched"]],
+         "subscriptions": [["/map", map_, "latched"]]},
+        {"name": "lidar", "namespace": "/robot1", "publishers": body, "state": "active",
+         "headers": [["scan", scan, "laser", "best_effort"], ["joints", joints, "hardware"]]},
+        {"name": "camera", "namespace": "/robot2", "publishers": body,
+         "headers": [["image", image, "robot1/laser", "best_effort"]]},
+        {"name": "amcl", "namespace": "/robot1", "state": "inactive", "arguments": simulated},
     ]  # fmt: skip
-    domain, file = live_commands.domain(17), str(tmp_path / "g.json")
+    hangs = [{"name": "hangs", "namespace": "/robot1", "services": [["~/get_state", STATE_TYPE]]}]
+    domain, file = live_commands.domain(18), str(tmp_path / "graph.json")
     env = {**live_fleet.environ(domain), **needed}
-    with live_fleet.running(domain, nodes, **needed):
-        live_commands.multibot("snapshot", "-o", file, env=env)
-        without = live_commands.multibot("snapshot", "--no-frame-ids", "-o", "-", env=env)
-    assert '"heard"' not in without.stdout and "lidar" in without.stdout
-    assert set(read_snapshot(file).heard) == {
+    with live_fleet.running(domain, nodes, hangs, **needed):
+        live_commands.multibot("snapshot", "--state", "-o", file, "--timeout", "40", env=env)
+    seen = read_snapshot(file)
+    assert set(seen.heard) == {
         ("/robot1/scan", "laser"),
         ("/robot2/image", "robot1/laser"),
         ("/map", "map"),
     }
-    said = live_commands.multibot("doctor", "--snapshot", file, env=env).stdout
-    assert "MG412 frame_id of /robot1/scan is laser" in said, said
-    assert "sent by /robot1/lidar" in said and "to robot1/laser" in said
-    assert "MG411 frame_id of /robot2/image is robot1/laser, a frame of robot1" in said
+    states = {it.node: (it.lifecycle, it.sim_time) for it in seen.states}
+    assert states["/robot1/amcl"] == ("inactive", True) and "/robot1/hangs" not in states
+    assert states["/robot1/lidar"] == ("active", False) and states["/robot2/camera"] == ("", False)
+    said = [str(it) for it in diagnose(seen).findings]
+    (bare,) = [it for it in said if "MG412" in it]
+    assert "frame_id of /robot1/scan is laser" in bare and "to robot1/laser" in bare
+    assert "/robot1/lidar" in bare
+    (crossed,) = [it for it in said if "MG411" in it]
+    assert "frame_id of /robot2/image is robot1/laser, a frame of robot1" in crossed
+    assert {"MG501", "MG511", "MG514"} <= set(CODE.findall("".join(said)))
 
 
 @pytest.mark.deep
@@ -174,7 +171,12 @@ def test_parameters_that_nodes_were_started_with(needed: Mapping[str, str], tmp_
     nodes = [
         {"name": "amcl", "namespace": "/robot1", "parameters": given, "state": "inactive"},
         {"name": "amcl", "namespace": "/robot2", "parameters": right, "state": "active"},
-        {"name": "silent", "namespace": "/robot2", "state": "active"},
+        {
+            "name": "silent",
+            "namespace": "/robot2",
+            "state": "active",
+            "headers": [["scan", "sensor_msgs/msg/LaserScan", "laser"]],
+        },
     ]
     for robot in ("robot1", "robot2"):
         (tmp_path / robot).mkdir()
@@ -187,6 +189,8 @@ def test_parameters_that_nodes_were_started_with(needed: Mapping[str, str], tmp_
     env = {**live_fleet.environ(domain), **needed}
     with live_fleet.running(domain, nodes, **needed):
         done = live_commands.multibot("check", str(planned), "--state", *PATIENTLY, env=env)
+        deaf = live_commands.multibot("snapshot", "--no-frame-ids", "-o", "-", env=env)
+    assert '"heard"' not in deaf.stdout and "/robot1/amcl" in deaf.stdout
     (differs,) = [it for it in done.stdout.splitlines() if "MG132" in it]
     assert 'base_frame is "base_link", planned is "robot1/base_link"' in differs, done.stdout
     assert "robot1/nav2.yaml:1" in differs and "rate" not in differs

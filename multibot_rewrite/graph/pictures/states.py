@@ -62,7 +62,9 @@ def find_targets(view: View, findings: Iterable[Finding]) -> tuple[Targets, ...]
     homes = (tree_topic(robot.tf) for robot in view.plan.robots)
     topics = [*dict.fromkeys((*(tree.topic for tree in view.trees), *homes))]
     return tuple(
-        Targets((), (), tuple(_frame_targets(view, finding, topics)))
+        Targets(
+            tuple(filter(None, (finding.node,))), (), tuple(_frame_targets(view, finding, topics))
+        )
         if finding.code.startswith(TF_CODES) and not _names_topics(view, finding)
         else _endpoint_targets(view, finding)
         for finding in findings
