@@ -259,6 +259,20 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
 
 
+def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
+    found = []
+    robots = "robot2={x: 4.0, y: 1}; third={x: 6.0}"
+    run(context, launch.each_robot(fleet, lambda it: found.append(it) or [], robots=robots))
+    assert [(it.name, it.pose.x) for it in found] == [("robot2", 4.0), ("third", 6.0)]
+
+
+@pytest.mark.parametrize("count", ["three", "-1", "2.5"])
+def test_a_number_of_robots_that_is_none(count: str, fleet: str, context: Any) -> None:
+    context.launch_configurations["multibot_count"] = count
+    with pytest.raises(UsageError, match="write multibot_count:=20"):
+        launch.fleet_of(context, fleet)
+
+
 def test_a_condition(fleet: str, context: Any) -> None:
     never = importlib.import_module("launch.conditions").IfCondition("false")
     always = importlib.import_module("launch.conditions").IfCondition("true")
