@@ -17,11 +17,15 @@ from multibot_rewrite.fleets.member import Member, line_of, member
 from multibot_rewrite.graph.expectation import (
     Expectation,
     PlannedEndpoint,
+    PlannedParameter,
+    PlannedState,
     PlannedTopic,
     expect,
     named_frames,
     vacuous,
 )
+from multibot_rewrite.graph.questions import SIM_TIME
+from multibot_rewrite.graph.states import parameter_text
 from multibot_rewrite.graph.transforms import STATE_PUBLISHER, Edge, Edges, edges_of, frames_of
 from multibot_rewrite.library import rewrite_all
 from multibot_rewrite.model import UsageError
@@ -34,6 +38,7 @@ from multibot_rewrite.remap.plugin_nodes import plugin_nodes
 from multibot_rewrite.remap.records import NodeFacts, Table
 from multibot_rewrite.remap.stacks import built_in, user_stack
 from multibot_rewrite.remap.table import build_table, joined
+from multibot_rewrite.remap.ways import merged
 from multibot_rewrite.sources.read import Source
 from multibot_rewrite.steps.collect import Inventory
 
@@ -49,7 +54,8 @@ class Fleet(NamedTuple):
     that names it. ``tags`` are the robots whose prefix or postfix
     differs from their namespace, with it. ``read`` are the files that were read for descriptions,
     ``gaps`` what is open in the robots, ``bridged`` what a ros_gz_bridge has to carry;
-    ``maybe_real`` are robots of which nothing says that they are simulated."""
+    ``maybe_real`` are robots of which nothing says that they are simulated, ``clocks`` the
+    ``use_sim_time`` of robots for which the fleet file says it."""
 
     table: Table
     inventories: dict[str, Inventory]
@@ -63,6 +69,7 @@ class Fleet(NamedTuple):
     gaps: tuple[Finding, ...] = ()
     bridged: tuple[PlannedTopic, ...] = ()
     maybe_real: frozenset[str] = frozenset()
+    clocks: tuple[tuple[str, bool], ...] = ()
 
 
 def make_fleet(
@@ -243,7 +250,17 @@ def expected(fleet: Fleet) -> Expectation:
     if nothing:
         hint = f"name a stack of its nodes, or leave out {NO_STATE_PUBLISHER}"
         raise UsageError(f"{nothing}, so every graph would be as planned; {hint}")
-    return plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
+    plan = plan._replace(release=fleet.table.release, gaps=fleet.gaps, topics=fleet.bridged)
+    return plan._replace(states=(*plan.states, *_clocks(fleet)))
+
+
+def _clocks(fleet: Fleet) -> Iterator[PlannedState]:
+    """The clock of each node of a robot; one in a plugin has that of the simulator."""
+    clocks = dict(fleet.clocks)
+    for it in merged(fleet.table.nodes):
+        if it.robot in clocks and not it.home.plugin:
+            clock = PlannedParameter(SIM_TIME, parameter_text(clocks[it.robot]))
+            yield PlannedState(it.full_name, parameters=(clock,))
 
 
 def _sends(fleet: Fleet) -> Iterator[tuple[str, str]]:

@@ -68,6 +68,9 @@ def plan_fleet(
             evidence[key] = found._replace(findings=(*found.findings, note(it)))
         maybe = frozenset(it.spec.namespace for it in real)
         fleet = _fleet(file, robots, naming, evidence)._replace(maybe_real=maybe)
+        told = ((it.spec.namespace, it.spec.use_sim_time) for it in robots)
+        clocks = tuple((name, clock) for name, clock in told if clock is not None)
+        fleet = fleet._replace(clocks=clocks)
         return FleetPlan(file, tuple(robots), fleet, read, evidence)
 
 

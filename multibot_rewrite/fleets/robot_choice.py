@@ -18,6 +18,8 @@ from multibot_rewrite.rosnames import check_robot_name
 
 COUNT, STEP, POSE, NAME = "count", "step", "pose", "name"
 AXES = ("x", "y", "z", "roll", "pitch", "yaw")
+# What each robot has for itself.
+OWN = ("namespace", "prefix", "postfix", "model")
 MOST = 10_000
 _EXAMPLE = "write robot1={x: 1.0, y: 0}; robot2={x: 2.0}"
 
@@ -73,7 +75,7 @@ def _repeated(read: FleetData, at: int, asked: int) -> Iterator[_Row]:
     if not 0 < count <= MOST:
         raise UsageError(f"count {count}: write a number from 1 to {MOST}")
     kept = _without(robot)
-    for key in ("namespace", "prefix", "postfix", "model"):
+    for key in OWN:
         if key in robot:
             raise InputError(f"{file}:{line}: robots with count cannot share a {key}; leave it out")
     for number in range(count):
@@ -89,11 +91,10 @@ def _without(robot: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _chosen(text: str, rows: list[_Row], given: list[dict[str, Any]]) -> Iterator[_Row]:
-    """The robots that a text names: as the file has them, else as its pattern, else its first robot's
-    place and nothing of it."""
+    """The robots that a text names: as the file has them, else as its pattern or first robot."""
     known = {robot[NAME]: (at, robot) for at, robot in rows}
-    pattern = next((at for at, it in enumerate(given) if COUNT in it), None)
-    base = (0, {}) if pattern is None else (pattern, _without(given[pattern]))
+    like = next((at for at, it in enumerate(given) if COUNT in it), 0)
+    base = like, {key: it for key, it in _without(given[like]).items() if key not in OWN}
     for name, pose in parse_robots(text):
         at, robot = known.get(name, base)
         yield at, {**robot, NAME: name, **({POSE: pose} if pose else {})}

@@ -519,3 +519,21 @@ def test_missing_streams(
     assert result.code == code
     assert said in result.err
     assert result.err.count("\n") == bool(said)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "code", "told"),
+    [
+        (("rover.urdf", "r1"), 0, False),
+        (("rover.urdf", "r1", "--verbose"), 0, True),
+        (("rover.urdf", "r1", "-o", "out.urdf"), 0, True),
+        (("nowhere.urdf", "r1"), 2, True),
+    ],
+)
+def test_a_program_that_reads_two_pipes_hears_of_failures_alone(
+    words: tuple[str, ...], code: int, told: bool, folder: Path
+) -> None:
+    line = [*COMMAND, *words]
+    done = subprocess.run(line, cwd=folder, capture_output=True, check=False, timeout=PATIENCE)
+    assert (done.returncode, bool(done.stderr)) == (code, told)

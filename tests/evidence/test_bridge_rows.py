@@ -60,8 +60,10 @@ def test_the_arguments_of_another_program_are_no_rows() -> None:
 
 def test_a_topic_of_one_robots_model_is_known_by_its_rule() -> None:
     row = "/model/robot1/{}@nav_msgs/msg/Odometry[gz.msgs.Odometry"
-    rules = (("/model/robot1/odometry", "odom"), ("/model/robot1/tf", "tf"), ("/clock", "time"))
-    found = said(*(row.format(it) for it in ("odometry", "tf", "other")), remappings=rules)
+    rules = (("/model/robot1/odometry", "odom"), ("/model/robot1/tf", "tf"))
+    # What leads to this robot alone is not the name for any robot.
+    rules += (("/model/robot1/own", "/robot1/own"),)
+    found = said(*(row.format(it) for it in ("odometry", "tf", "own", "other")), remappings=rules)
     assert found == [f"publishes topic {it} nav_msgs/msg/Odometry" for it in ("odom", "/tf")]
 
 

@@ -128,6 +128,12 @@ def test_all_nodes_have_the_clock_of_the_fleet_file(told: str, wanted: str, tmp_
     clocks = [it.rpartition(" -p use_sim_time:=")[2] if " -p use" in it else "" for it in lines]
     assert clocks == [wanted] * len(lines)
     assert second.count("-p use_sim_time:=true") == 1
+    planned = yaml.safe_load(fleet.text("plan.yaml"))["states"]
+    own = planned.get("/robot1/robot_state_publisher", {}).get("parameters", {})
+    assert own == ({"use_sim_time": wanted == "true"} if wanted else {})
+    assert planned["/robot2/robot_state_publisher"] == {"parameters": {"use_sim_time": True}}
+    # The plugins have the simulator's.
+    assert not [it for it in planned if it.endswith("controller_manager")]
     node = fleet.robot("robot1").node("robot_state_publisher")
     assert node["parameters"] == ([{"use_sim_time": wanted == "true"}] if wanted else [])
     assert fleet.robot("robot2").node("robot_state_publisher")["parameters"] == [

@@ -119,6 +119,13 @@ def test_one_robot_may_be_real_and_another_simulated(tmp_path: Path) -> None:
     assert SCAN not in bridged(plan) and "/r2/scan" in bridged(plan)
 
 
+def test_what_is_open_for_one_robot_is_not_for_another(tmp_path: Path) -> None:
+    fleet = FLEET.replace("{name: r2,", "{name: r2, simulator: gazebo,")
+    plan = expected(closed_plan(plan_of(tmp_path, LAUNCH, fleet=fleet)))
+    assert [it.optional for it in plan.robots] == [(DRIVE,), ()]
+    assert SCAN not in bridged(plan) and {"/r2/scan", "/clock"} <= set(bridged(plan))
+
+
 def outputs(folder: Path, more: str) -> Outputs:
     return make_outputs(plan_of(folder, more))
 

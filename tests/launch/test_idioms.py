@@ -116,6 +116,7 @@ def parameters(it: dict[str, Any], node: str) -> dict[str, Any]:
 def started(fleet: Path, file: str, text: str, more: dict[str, str]) -> list[dict[str, Any]]:
     path = fleet.with_name(file)
     path.write_text(text)
+    told: list[dict[str, Any]]
     told, said = launched(path, fleet.parent, f"fleet:={fleet}", programs=more)
     assert "ERROR" not in said and "Caught exception" not in said, said
     return told

@@ -9,6 +9,7 @@ import gc
 import importlib
 import inspect
 import io
+import json
 import re
 import subprocess
 import sys
@@ -18,6 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import launch_signatures
 import launch_stand_in
 import pytest
 import yaml
@@ -70,14 +72,6 @@ class Started:
         self.ran = True
 
 
-class StartedLifecycle(Started):
-    """Stands for LifecycleNode."""
-
-
-class StartedContainer(Started):
-    """Stands for ComposableNodeContainer."""
-
-
 class Set(Started):
     """Stands for SetParameter."""
 
@@ -86,17 +80,27 @@ class Set(Started):
         self.name, self.value = name, value
 
 
+SIGNATURES = json.loads((FIXTURES / "launch_signatures.json").read_text())
+
+
+def refusing(name: str) -> Any:
+    """A class that refuses the options that the one of launch_ros refuses."""
+
+    def made(self: Started, **options: Any) -> None:
+        unknown = sorted(set(options) - {*SIGNATURES[name]})
+        if unknown:
+            raise TypeError(f"{name} got an unexpected keyword argument {unknown[0]!r}")
+        Started.__init__(self, **options)
+
+    return type(name, (Started,), {"__init__": made})
+
+
 def stand_ins(monkeypatch: pytest.MonkeyPatch) -> None:
     """Classes that start nothing in place of those of launch_ros."""
     actions, descriptions = ModuleType("launch_ros.actions"), ModuleType("launch_ros.descriptions")
-    vars(actions).update(
-        Node=Started,
-        LifecycleNode=StartedLifecycle,
-        ComposableNodeContainer=StartedContainer,
-        LoadComposableNodes=Started,
-        SetParameter=Set,
-    )
-    vars(descriptions).update(ComposableNode=Started)
+    names = ("Node", "LifecycleNode", "ComposableNodeContainer", "LoadComposableNodes")
+    vars(actions).update({name: refusing(name) for name in names}, SetParameter=Set)
+    vars(descriptions)["ComposableNode"] = refusing("ComposableNode")
     for module in (actions, descriptions):
         monkeypatch.setitem(sys.modules, module.__name__, module)
     if not REAL:
@@ -253,6 +257,20 @@ def test_several_files(files: Any, fleet: str, context: Any) -> None:
     Path(fleet).write_text(FLEET.replace("params: params.yaml", "params: [params.yaml, more.yaml]"))
     (made,) = run(context, launch.node("amcl", files=files, robot="robot2", fleet=fleet))
     assert [Path(it).name for it in made.options["parameters"]] == ["params.yaml", "more.yaml"]
+
+
+def test_robots_that_the_file_does_not_have(fleet: str, context: Any) -> None:
+    found = []
+    robots = "robot2={x: 4.0, y: 1}; third={x: 6.0}"
+    run(context, launch.each_robot(fleet, lambda it: found.append(it) or [], robots=robots))
+    assert [(it.name, it.pose.x) for it in found] == [("robot2", 4.0), ("third", 6.0)]
+
+
+@pytest.mark.parametrize("count", ["three", "-1", "2.5"])
+def test_a_number_of_robots_that_is_none(count: str, fleet: str, context: Any) -> None:
+    context.launch_configurations["multibot_count"] = count
+    with pytest.raises(UsageError, match="write multibot_count:=20"):
+        launch.fleet_of(context, fleet)
 
 
 def test_a_condition(fleet: str, context: Any) -> None:
@@ -587,6 +605,33 @@ def test_the_stand_in_is_like_launch(module: str, name: str) -> None:
     for method, function in vars(ours).items():
         if inspect.isfunction(function) and not method.startswith("_"):
             assert signature(getattr(real, method)) == signature(function), method
+
+
+@in_launch
+def test_the_table_of_options_is_that_of_launch_ros() -> None:
+    assert launch_signatures.table() == SIGNATURES
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda **it: launch.node("amcl", **it),
+        lambda **it: launch.lifecycle_node("amcl", **it),
+        lambda **it: launch.spawn("gz", **it),
+        launch.place,
+    ],
+)
+def test_an_option_that_launch_ros_has_not_is_refused_at_once(
+    make: Callable[..., Any], context: Any
+) -> None:
+    with pytest.raises(TypeError, match="on_exitt"):
+        make(on_exitt=[])
+
+
+def test_a_name_comes_from_the_fleet(context: Any) -> None:
+    for made in (launch.node, launch.lifecycle_node, launch.container, launch.composable_node):
+        with pytest.raises(UsageError, match="namespace comes from the fleet file"):
+            made("amcl", namespace="/own")
 
 
 LAUNCH_FILES = ("gz.launch.py", "gz.launch.xml", "classic.launch.py", "classic.launch.yaml")

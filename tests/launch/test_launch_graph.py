@@ -290,3 +290,39 @@ def test_the_files_of_a_spawner_are_its_parameters(tmp_path: Path) -> None:
     )
     assert [it.source for it in found.parameters] == [str(source)]
     assert found.arguments[0] == "a"
+
+
+@in_launch
+def test_a_launch_file_sees_the_command_line_of_ros2_launch(tmp_path: Path) -> None:
+    """As nav2_common's ParseMultiRobotPose looks at it."""
+    file = tmp_path / "bringup.launch.py"
+    file.write_text(
+        "import sys\n"
+        "from launch import LaunchDescription\n"
+        "from launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        "    names = sys.argv[4].partition(':=')[2].split(';')\n"
+        "    return LaunchDescription([\n"
+        "        Node(package='a', executable='b', namespace=it) for it in names])\n"
+    )
+    order = LaunchOrder(str(file), (("robots", "r1;r2"),), (), True, "my_package")
+    assert [it.namespace for it in launch_graph(order).nodes] == ["/r1", "/r2"]
+
+
+@in_launch
+def test_the_text_of_a_file_that_the_launch_makes_is_kept(tmp_path: Path) -> None:
+    made = "tempfile.NamedTemporaryFile('w', suffix='.yaml', delete=False)"
+    file = tmp_path / "bringup.launch.py"
+    file.write_text(
+        "import tempfile\n"
+        "from launch import LaunchDescription\n"
+        "from launch_ros.actions import Node\n"
+        "def generate_launch_description():\n"
+        f"    with {made} as out:\n"
+        "        out.write('- {topic_name: scan}\\n')\n"
+        "    bridge = {'parameters': [{'config_file': out.name}]}\n"
+        "    return LaunchDescription([\n"
+        "        Node(package='ros_gz_bridge', executable='parameter_bridge', **bridge)])\n"
+    )
+    (node,) = launch_graph(LaunchOrder(str(file), (), (), True)).nodes
+    assert "- {topic_name: scan}\n" in [it.text for it in node.parameters]

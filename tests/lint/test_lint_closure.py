@@ -68,6 +68,8 @@ def test_the_file_that_the_description_names(named: str, file: str, tmp_path: Pa
 def test_both_lines_are_named(tmp_path: Path) -> None:
     (it,) = lint(tmp_path, SYSTEM + LOADS.format("controllers.yaml"), COMMAND="positon")
     assert it.hint == "did you mean j/position (line 4)?"
+    (it,) = lint(tmp_path, SYSTEM + LOADS.format("controllers.yaml"), COMMAND="effort")
+    assert it.hint == "name an interface that is there (line 4), or add it"
 
 
 def test_the_one_file_beside_where_none_is_named(tmp_path: Path) -> None:

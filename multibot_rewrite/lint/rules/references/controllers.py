@@ -73,7 +73,7 @@ def _missing(gap: Gap, more: int, expanded: bool) -> tuple[str, str]:
     line = f" (line {gap.near_place.line})" if gap.near_place and not expanded else ""
     near = f"did you mean {gap.near}{line}?" if gap.near else ""
     message = f"{_at(gap)}: {gap.node} claims {names}, which no <ros2_control> exports"
-    return message, near or "name an interface that is there, or add it"
+    return message, near or f"name an interface that is there{line}, or add it"
 
 
 def _at(gap: Gap) -> str:
