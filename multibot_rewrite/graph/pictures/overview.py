@@ -49,9 +49,12 @@ def overview(robots: Sequence[Tile], crossings: Sequence[Crossing], shared: Iter
         arrows.append(_arrow(crossing, path))
         if len(crossings) <= MOST_LABELS and crossing.target and crossing.state in FAULTY:
             labels.append(_label(crossing, x, y))
+    # A few boxes are readable on a narrow screen.
+    few = " few" if max(len(robots), len(below)) <= SIZES[0][0] else ""
     boxes = (_tile(tile, places[tile.key]) for tile in tiles)
     return (
-        f'<svg class="overview" viewBox="0 0 {WIDTH} {high:g}" role="group" aria-label="the fleet">'
+        f'<svg class="overview{few}" viewBox="0 0 {WIDTH} {high:g}" role="group"'
+        ' aria-label="the fleet">'
         f"{_TIPS}{''.join((*arrows, *boxes, *labels))}</svg>"
     )
 
