@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 from multibot_rewrite.graph.expectation import PlannedParameter, PlannedState
-from multibot_rewrite.graph.states import parameter_text
+from multibot_rewrite.graph.states import parameter_text, parameter_value
 from multibot_rewrite.model import InputError
 from multibot_rewrite.remap.yaml_with_lines import unknown
 
@@ -18,7 +17,7 @@ LIFECYCLE = ("unconfigured", "inactive", "active", "finalized")
 
 def state_value(state: PlannedState) -> dict[str, object]:
     """A state as a mapping; a parameter that is from a file is not the plan's own."""
-    own = {it.name: json.loads(it.value) for it in state.parameters if not it.place}
+    own = {it.name: parameter_value(it.value) for it in state.parameters if not it.place}
     given = {"lifecycle": state.lifecycle, "host": state.host, "parameters": own}
     return {key: value for key, value in given.items() if value}
 

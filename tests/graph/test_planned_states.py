@@ -181,6 +181,9 @@ def test_planned_simulated_time_is_compared_alone() -> None:
         ("word", "true", True),
         ("names", '["a", "1"]', False),
         ("use_sim_time", "0", True),
+        # What no node answers; a file that somebody wrote may have it.
+        ("a.rate", "}", True),
+        ("a.rate", "[" * 100_000, True),
     ],
 )
 def test_values_are_compared_as_values(name: str, value: str, differs: bool) -> None:

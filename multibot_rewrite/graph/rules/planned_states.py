@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -12,7 +11,7 @@ from multibot_rewrite.graph.questions import SIM_TIME
 from multibot_rewrite.graph.reach import machines
 from multibot_rewrite.graph.rules.comparison import View
 from multibot_rewrite.graph.rules.declaration import graph_rule
-from multibot_rewrite.graph.states import NodeState, parameter_text
+from multibot_rewrite.graph.states import NodeState, parameter_text, parameter_value
 from multibot_rewrite.graph.wording import FEW, SEVERAL, shorten
 
 # A planned parameter, and its value there.
@@ -106,13 +105,16 @@ def _is_same(planned: str, value: str) -> bool:
         return True
     if "true" in (planned, value) or "false" in (planned, value):
         return False
-    return bool(json.loads(planned) == json.loads(value))
+    return bool(parameter_value(planned) == parameter_value(value))
 
 
 def _is_serious(view: View, node: str, it: PlannedParameter) -> bool:
     """Whether the plan itself says it, or it is a frame of a robot."""
     frames = view.frames_of.get(view.robot_of.get(node, ""), frozenset())
-    return not it.place or json.loads(it.value) in [*frames, *(f"/{frame}" for frame in frames)]
+    return not it.place or parameter_value(it.value) in [
+        *frames,
+        *(f"/{frame}" for frame in frames),
+    ]
 
 
 def _differs(view: View, node: str, found: Sequence[Difference]) -> Finding:
