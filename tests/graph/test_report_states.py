@@ -18,13 +18,15 @@ from report_pages import FIRST, SECOND
 from multibot_rewrite.catalogue import rules
 from multibot_rewrite.cli import multibot
 from multibot_rewrite.cli.pictures import snippets
-from multibot_rewrite.findings.finding import ERROR
+from multibot_rewrite.findings.finding import ERROR, Finding
 from multibot_rewrite.graph.pictures.page import to_html
 from multibot_rewrite.graph.pictures.page_sections import ids_of, make_ids
 from multibot_rewrite.graph.pictures.scene import BRIDGE, Scene
-from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, UNEXPECTED
+from multibot_rewrite.graph.pictures.states import CLASH, MISSING, OK, UNEXPECTED, robots_of
+from multibot_rewrite.graph.plan_file import to_yaml
 from multibot_rewrite.graph.rehearsal import with_substitutes
-from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode
+from multibot_rewrite.graph.rules.comparison import make_view
+from multibot_rewrite.graph.snapshot import GraphEndpoint, GraphNode, to_json
 from multibot_rewrite.remap.records import ACTION, SERVES
 
 GRAPHS = ROOT / "fixtures" / "graphs"
@@ -120,6 +122,12 @@ def test_a_robot_is_not_concerned_by_a_robot_with_a_longer_name() -> None:
     plan = nav2_graphs.fleet(11, 2)
     graph = nav2_graphs.moved(nav2_graphs.healthy(plan), "/robot11/topic1", "/topic1")
     assert {it.robots for it in nav2_graphs.scene(plan, graph).rows} == {("robot11",)}
+
+
+def test_a_frame_concerns_the_robot_that_has_its_word() -> None:
+    view = make_view(report_pages.rich_plan(), report_pages.rich_graph())
+    found = Finding("MG201", ERROR, "has two parents", names=("robot2/laser",))
+    assert robots_of(view, found) == {"fleet_a/robot2"}
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=[it.name for it in FAULTS])
@@ -242,6 +250,21 @@ def test_page_and_command_say_the_same(
     assert f": {words} (" in capsys.readouterr().err
     listed = len(tree.find_class("finding"))
     assert (tree.find(".//header").get("class") == "good") == (listed == 0)
+
+
+def test_the_open_ends_of_a_plan_are_on_the_page(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    plan, graph = tmp_path / "plan.yaml", tmp_path / "graph.json"
+    made = nav2_graphs.nav2()
+    plan.write_text(to_yaml(made._replace(gaps=(report_pages.OPEN_END,))))
+    graph.write_bytes(to_json(nav2_graphs.healthy(made)))
+    code, tree = drawn(tmp_path, "check", str(plan), "--snapshot", str(graph))
+    words = "as planned, but the plan does not close"
+    assert (code, tree.find(".//h1").text) == (0, words)
+    assert f": {words} (" in capsys.readouterr().err
+    assert [it.get("data-robot") for it in tree.find_class("finding")] == ["1"]
+    assert tree.find(".//header").get("class") == "unsure"
 
 
 def test_the_doctor_says_its_own_words(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from multibot_rewrite.graph.watching import Outcome, Verdict
 from multibot_rewrite.remap.records import PUBLISHES, SUBSCRIBES, TOPIC
 
 FIRST, SECOND = "/fleet_a/robot1", "/fleet_a/robot2"
-OPEN_END = Finding("MF801", WARNING, "reads scan2, which nothing sends", robot="robot2")
+OPEN_END = Finding("MF801", WARNING, "/robot2/amcl reads scan2, which nothing sends")
 
 
 def healthy() -> Scene:
