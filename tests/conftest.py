@@ -97,3 +97,11 @@ def tf2(pytestconfig: pytest.Config) -> dict[str, str]:
     if find_spec("tf2_msgs") or tf2_build.missing():
         return {}
     return tf2_build.build(pytestconfig.cache.mkdir("tf2_msgs"))
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """How many tests were skipped for want of the real launch."""
+    skipped = terminalreporter.stats.get("skipped", ())
+    count = sum("real launch" in str(it.longrepr) for it in skipped)
+    if count:
+        terminalreporter.write_line(f"{count} tests need the real launch, which is not here")
