@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 import yaml
 from graph_cases import as_planned
-from test_one_word import LAYOUTS, RELEASE, STACKS, planned, random_file
+from random_parameters import LAYOUTS, RELEASE, STACKS, planned, random_file
 
 from multibot_rewrite.fleets.build import make_outputs
 from multibot_rewrite.fleets.closed_plan import closed_plan

@@ -300,7 +300,7 @@ def test_a_package_that_nobody_has_is_named(
     packages(tmp_path)
     (found,) = linted(tmp_path, "ws/robot/urdf/far.xacro")
     assert (found.code, found.line) == ("MB103", 2)
-    assert found.message == "xacro failed: package 'far' is not found"
+    assert found.message.startswith("xacro failed: package 'far' is not found")
     assert "roots" in found.hint
 
 
