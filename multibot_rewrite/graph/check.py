@@ -15,7 +15,7 @@ from multibot_rewrite.graph.bags.recording import is_recorded
 from multibot_rewrite.graph.dangers.beside_plan import dangers_beside
 from multibot_rewrite.graph.dangers.find import DANGERS
 from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.patterns import with_patterns
+from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.rules import (
     demands,
     endpoints,
@@ -60,7 +60,7 @@ ABSENCE = frozenset(it.code for it in ALL_RULES.values() if it.options["absence"
 def check(plan: Expectation, graph: Snapshot) -> list[Finding]:
     """All findings in the order of the rules; empty for a fleet as planned."""
     with gc_paused():
-        view = make_view(plan, with_patterns(plan, graph))
+        view = make_view(*fitted(plan, graph))
         rules = FRAME_RULES if is_recorded(graph) else RULES
         found = [finding for rule in rules.values() for finding in _ask(rule, view)]
         if not is_recorded(graph):

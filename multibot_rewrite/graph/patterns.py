@@ -1,11 +1,21 @@
-"""Nodes whose names are made at run time: a plan holds them as patterns, with a ``*``."""
+"""Names that are made at run time: a plan holds nodes and their endpoints as patterns, with a ``*``."""
 
 from __future__ import annotations
 
 import re
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 
-from multibot_rewrite.graph.expectation import Expectation
-from multibot_rewrite.graph.snapshot import Snapshot
+from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint
+from multibot_rewrite.graph.snapshot import GraphEndpoint, Snapshot
+
+ANY = "*"
+
+
+def fitted(plan: Expectation, graph: Snapshot) -> tuple[Expectation, Snapshot]:
+    """Plan and graph with the same words for what is made at run time."""
+    known = with_patterns(plan, graph)
+    return with_names(plan, known), known
 
 
 def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
@@ -13,7 +23,8 @@ def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
 
     Two nodes of one process that a pattern stands for are one node of the plan.
     """
-    patterns = {it: _compiled(it) for robot in plan.robots for it in robot.nodes if "*" in it}
+    planned = (*plan.shared_nodes, *(it for robot in plan.robots for it in robot.nodes))
+    patterns = {it: _compiled(it) for it in planned if ANY in it}
     if not patterns:
         return graph
     names = {
@@ -28,6 +39,30 @@ def with_patterns(plan: Expectation, graph: Snapshot) -> Snapshot:
     return graph._replace(
         nodes=(*others, *dict.fromkeys(nodes)), endpoints=tuple(dict.fromkeys(endpoints))
     )
+
+
+def with_names(plan: Expectation, graph: Snapshot) -> Expectation:
+    """The plan, with what runs in place of each pattern of an endpoint's name; a pattern that nothing
+    fits stays, and is missing. ``graph`` has its nodes as the plan calls them."""
+    if not any(ANY in it.name for it in plan.endpoints):
+        return plan
+    by_node: dict[str, list[GraphEndpoint]] = defaultdict(list)
+    for end in graph.endpoints:
+        by_node[end.node].append(end)
+    found = (end for it in plan.endpoints for end in _there(it, by_node))
+    return plan._replace(endpoints=tuple(dict.fromkeys(found)))
+
+
+def _there(
+    planned: PlannedEndpoint, by_node: Mapping[str, Sequence[GraphEndpoint]]
+) -> Iterator[PlannedEndpoint]:
+    if ANY not in planned.name:
+        yield planned
+        return
+    pattern, kind = _compiled(planned.name), (planned.kind, planned.role)
+    own = [it.name for it in by_node.get(planned.node, ()) if (it.kind, it.role) == kind]
+    fitting = [name for name in own if pattern.fullmatch(name)]
+    yield from (planned._replace(name=name) for name in fitting or [planned.name])
 
 
 def _compiled(pattern: str) -> re.Pattern[str]:

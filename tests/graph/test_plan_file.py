@@ -185,3 +185,36 @@ def test_a_map_that_is_not_latched() -> None:
         for it in found.endpoints
     )
     assert codes(found._replace(endpoints=ends)) == [("MG123", "/map_server")]
+
+
+PATTERN = PLAN.replace(
+    "      /robot1/amcl: []\n",
+    "      /robot1/amcl:\n"
+    "      - [publishes, topic, /robot1/camera_*/image_raw, sensor_msgs/msg/Image, image_raw]\n",
+).replace("  /rviz2: []", "  /rviz_*: []")
+IMAGE = "sensor_msgs/msg/Image"
+
+
+@pytest.mark.parametrize(
+    ("topics", "found"),
+    [
+        (("/robot1/camera_left/image_raw",), []),
+        (("/robot1/camera_left/image_raw", "/robot1/camera_right/image_raw"), []),
+        ((), ["MG102"]),
+        (("/robot1/camera_left/depth/image_raw",), ["MG102"]),
+        (("/camera_left/image_raw",), ["MG102", "MG103"]),
+    ],
+)
+def test_names_that_are_made_at_run_time(topics: tuple[str, ...], found: list[str]) -> None:
+    """A star stands for a part of one segment, in topics as in nodes; what fits is planned."""
+    images = [("/robot1/amcl", "publishes", name, IMAGE) for name in topics]
+    seen = graph(*RUNNING, *images, more=("/rviz_47", "/robot1/amcl"))
+    findings = check(read_plan(plan(PATTERN), "plan.yaml"), seen)
+    assert [it.code for it in findings] == found
+
+
+def test_a_pattern_is_compared_by_its_type() -> None:
+    wrong = ("/robot1/amcl", "publishes", "/robot1/camera_left/image_raw", "std_msgs/msg/String")
+    seen = graph(*RUNNING, wrong, more=("/rviz_47",))
+    (finding,) = check(read_plan(plan(PATTERN), "plan.yaml"), seen)
+    assert (finding.code, finding.names) == ("MG106", ("/robot1/camera_left/image_raw",))

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.findings.grouping import with_members
 from multibot_rewrite.graph.expectation import Expectation, PlannedEndpoint, robot_words
-from multibot_rewrite.graph.patterns import with_patterns
+from multibot_rewrite.graph.patterns import fitted
 from multibot_rewrite.graph.pictures.states import (
     FAULTY,
     LEAK,
@@ -153,7 +153,7 @@ def make_scene(
     """What is drawn of ``graph`` with its plan and findings; the outcome follows from these if a
     command does not say otherwise."""
     verdict = judge(found, graph)
-    view = make_view(plan, with_patterns(plan, graph))
+    view = make_view(*fitted(plan, graph))
     targets = find_targets(view, found)
     states = make_states(found, targets)
     edges = sorted(_edges(view, states))
