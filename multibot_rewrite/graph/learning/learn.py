@@ -73,12 +73,14 @@ class _SeenPlace(NamedTuple):
     """Where a node was seen.
 
     ``base`` is the robot's namespace, empty for the root; ``node`` the node's name below it.
-    ``literal_names`` are names below the base that the code is known to contain as they are.
+    ``literal_names`` are names below the base that the code is known to contain as they are,
+    ``relative_names`` those that a node in its robot's namespace in every layout has without a slash.
     """
 
     base: str
     node: str
-    literal_names: frozenset[str]
+    literal_names: frozenset[str] = frozenset()
+    relative_names: frozenset[str] = frozenset()
 
 
 def learn(
@@ -108,13 +110,19 @@ def _learn_node(
 ) -> LearnedNode:
     node = name.removeprefix(f"{base}/")
     known = library.nodes.get(node)
-    place = _SeenPlace(base, node, frozenset(_literal_names(known)) if known else frozenset())
+    place = _SeenPlace(base, node)
+    if known:
+        place = _SeenPlace(
+            base, node, frozenset(_literal_names(known)), frozenset(_relative_names(known))
+        )
     usual = _on_every_node(library)
     found = _with_helpers(name, ends, helpers, place)
     rest, parts = fold_parts(found.values(), library.parts, not base and "/" not in node)
     own = sorted((end for end in rest if (end.role, end.name) not in usual), key=_order)
     taken = (end for part in parts for end in library.parts[part])
-    facts = NodeFacts(node, "", (*own, *taken), note=f"seen as {name}")
+    # That its code places it cannot be seen.
+    apart = known is not None and known.apart
+    facts = NodeFacts(node, "", (*own, *taken), note=f"seen as {name}", apart=apart)
     remarks = [] if ends.get(name) else [NO_ENDPOINTS]
     remarks += [] if helpers.sure else [f"{SHARED_PROCESS}: {', '.join(helpers.names)}"]
     remarks += [_compare(facts, known, usual)] if known else []
@@ -143,6 +151,12 @@ def _literal_names(known: NodeFacts) -> Iterator[str]:
         full = _full_name(end.name, known.name)
         if end.name.startswith("/") or (end.name[0] != "~" and full.startswith(f"/{known.name}/")):
             yield full
+
+
+def _relative_names(known: NodeFacts) -> Iterator[str]:
+    """Full names of what the code of a node that stands apart writes without a slash."""
+    names = (end.name for end in known.endpoints if known.apart and end.name[0] not in "/~<")
+    return (f"/{name}" for name in names)
 
 
 def _endpoints(ends: Iterable[GraphEndpoint], place: _SeenPlace) -> dict[_Slot, Endpoint]:
@@ -193,6 +207,8 @@ def _name_in_code(name: str, types: Sequence[str], place: _SeenPlace) -> str:
     full = f"{place.base}/{place.node}"
     above = full.rpartition("/")[0]
     level = name.removeprefix(place.base) if name.startswith(f"{place.base}/") else name
+    if level in place.relative_names:
+        return level.lstrip("/")
     # tf2 uses /tf: if it is in a namespace, a remap rule moved it there.
     if level in place.literal_names or (level in _TF and TF_TYPE in types):
         return level

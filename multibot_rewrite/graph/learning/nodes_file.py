@@ -57,6 +57,7 @@ def _node(node: LearnedNode) -> Iterator[str]:
         yield from _comment(remark, "  ")
     yield f"  {_scalar(facts.name)}:"
     yield f"    note: {_scalar(facts.note)}"
+    yield from ["    apart: true"] * facts.apart
     if node.parts:
         yield f"    with: {_flow(list(node.parts))}"
     for role in ROLES:

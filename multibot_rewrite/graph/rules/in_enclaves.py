@@ -36,15 +36,19 @@ running: enclave /robot2 of /robot2/driver
 )
 def enclave_of_another_robot(view: View) -> Iterator[Finding]:
     """By the robots' names in the path of the enclave."""
-    for node in view.graph.nodes:
-        robot = view.robot_of.get(node.name, "")
-        words = {*node.enclave.split("/")}
-        others = sorted(words & view.robots.keys() - {robot})
-        if robot and others and robot not in words:
-            message = f"{node.name} is in the enclave {node.enclave}, which is of {others[0]}"
-            yield enclave_of_another_robot.finding(
-                message, _start(robot), robot=robot, node=node.name
-            )
+    for name, enclave in dict.fromkeys((it.name, it.enclave) for it in view.graph.nodes):
+        robot = view.robot_of.get(name, "")
+        if not (robot and enclave) or _is_of(enclave, robot):
+            continue
+        other = next((it for it in sorted(view.robots) if _is_of(enclave, it)), "")
+        if other:
+            message = f"{name} is in the enclave {enclave}, which is of {other}"
+            yield enclave_of_another_robot.finding(message, _start(robot), robot=robot, node=name)
+
+
+def _is_of(enclave: str, robot: str) -> bool:
+    """A robot's name may have several levels."""
+    return bool(robot) and f"/{robot}/" in f"{enclave}/"
 
 
 @graph_rule(

@@ -49,6 +49,7 @@ that topics are made of, a ``subtopic`` is below a stem or namespace.
     form=transport   a topic of Gazebo Classic's own: ``~/topic`` or ``~/model/topic``
     form=regex       a regular expression for whole names, alternatives affixed one by one
     form=prefix      put in front of names in code: a postfix cannot reach them (MB422)
+    form=lettered    the same behind a letter, which the code drops
     form=remap       a ROS remap rule ``from:=to``: ``to`` is the name, and with the kind ``stem``
                      what ``from`` begins with is one
     form=argument    the same as an argument, ``__ns:=`` and ``__node:=`` among them
