@@ -12,7 +12,9 @@ from multibot_rewrite.cli.multibot import main
 pytestmark = pytest.mark.live
 
 
-@pytest.mark.parametrize("layout", ["frames-per-robot", "postfix"])
+@pytest.mark.parametrize(
+    "layout", ["postfix", pytest.param("frames-per-robot", marks=pytest.mark.deep)]
+)
 def test_the_plan_of_a_robot_s_own_files_holds(
     layout: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

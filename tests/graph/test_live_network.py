@@ -92,6 +92,7 @@ def test_peers_are_named_on_one_side_only(plan: Path) -> None:
     assert (named.returncode, named.stdout) == (0, ""), named.stderr
 
 
+@pytest.mark.deep
 def test_peers_where_multicast_is_lost(tmp_path: Path) -> None:
     """Under SUBNET Fast DDS asks 4 participants of a peer."""
     plan = write_plan(tmp_path / "plan.yaml", MANY[:6])

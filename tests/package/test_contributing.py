@@ -13,7 +13,15 @@ pytestmark = pytest.mark.slow
 PAGES = sorted((ROOT / "docs" / "contributing").glob("*.md"))
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+# The longest one: it asks the rules of the graph, too.
+DEEP = pytest.mark.deep
+
+
+@pytest.mark.parametrize(
+    "page",
+    [pytest.param(it, marks=[DEEP] * (it.stem == "graph-rule")) for it in PAGES],
+    ids=lambda page: page.stem,
+)
 def test_a_page_works_as_written(page: Path, tmp_path: Path) -> None:
     text = page.read_text()
     steps = guides.steps(text)

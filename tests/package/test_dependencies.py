@@ -112,7 +112,10 @@ def test_the_first_python_reads_every_file(path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("version", [FIRST, LAST], ids=["first", "last"])
+@pytest.mark.parametrize(
+    "version",
+    [pytest.param(FIRST, id="first"), pytest.param(LAST, id="last", marks=pytest.mark.deep)],
+)
 def test_mypy_finds_nothing_for_the_first_and_the_last_python(
     version: tuple[int, int], tmp_path: Path
 ) -> None:

@@ -80,10 +80,10 @@ def arrives(sender: Any, listener: Any, name: str, witness: str) -> bool:
     ]
 
     def sent() -> bool:
-        # In this order: when the witness has arrived, so has what is sent before it.
+        # In this order, and twice: where the witness is subscribed to, so is what was declared before it.
         for it in (name, witness):
             sender.put(it, b"hello")
-        return witness in heard
+        return heard.count(witness) > 1
 
     wait_until(sent)
     for it in subscriptions:
