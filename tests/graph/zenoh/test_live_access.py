@@ -80,7 +80,7 @@ def arrives(sender: Any, listener: Any, name: str, witness: str) -> bool:
     ]
 
     def sent() -> bool:
-        # In this order, and twice: where the witness is subscribed to, so is what was declared before it.
+        # In this order, and twice: who hears the witness heard of the name before it.
         for it in (name, witness):
             sender.put(it, b"hello")
         return heard.count(witness) > 1
