@@ -149,7 +149,7 @@ def expect(
     table: Table,
     naming: Naming,
     frames: Mapping[str, Sequence[str]],
-    facts: Iterable[NodeFacts] = (),
+    facts: Sequence[NodeFacts] = (),
     named: Mapping[str, Sequence[str]] = NOTHING,
     sources: Mapping[str, str] = NOWHERE,
     words: Mapping[str, str] = NOWHERE,
@@ -161,24 +161,29 @@ def expect(
     ``facts`` describe the nodes that every robot runs. ``words`` has the name of a robot in its
     frames, where that is another one than its name; plugins of ``maybe_real`` robots may be missing.
     """
-    known = tuple(facts)
-    nodes, conditional = _nodes(table), {node.name for node in known if node.when}
+    nodes = _nodes(table)
     plugins = {node.node for node in table.nodes if node.home.written and node.robot in maybe_real}
+    conditional = {node.name for node in facts if node.when}
     private = _private_nodes(table.names)
     always = _private_nodes(it for it in table.names if not it.endpoint.when)
-    usual = dict.fromkeys((*_defaults(known), *USUAL_FRAMES))
+    usual = dict.fromkeys((*_defaults(facts), *USUAL_FRAMES))
     robots = []
     for name in dict.fromkeys((*frames, *filter(None, nodes))):
         own, word = tuple(frames.get(name, ())), words.get(name, name)
         others = (*named.get(name, ()), *(spelled(naming, word, "frame", frame) for frame in usual))
-        left = [f for f in dict.fromkeys(others) if f not in {*own, *naming.shared_frames}]
-        made = private.get(name, ())
-        full = tuple(dict.fromkeys((*(it for _, it in nodes.get(name, ())), *made)))
+        of_stack, made = nodes.get(name, ()), private.get(name, ())
         optional = conditional | plugins if name in maybe_real else conditional
-        may_miss = _may_miss(nodes.get(name, ()), optional, made, always.get(name, ()))
-        tag = word if word != name else ""
-        tf = tf_topic(name, naming)
-        robots.append(PlannedRobot(name, full, own, tf, tuple(left), may_miss, tag))
+        robots.append(
+            PlannedRobot(
+                name,
+                tuple(dict.fromkeys((*(full for _, full in of_stack), *made))),
+                own,
+                tf_topic(name, naming),
+                _further(others, own, naming),
+                _may_miss(of_stack, optional, made, always.get(name, ())),
+                word if word != name else "",
+            )
+        )
     return Expectation(
         table.layout,
         tuple(robots),
@@ -189,6 +194,12 @@ def expect(
         sources=tuple(sources.items()),
         ways=tuple(_ways(table)),
     )
+
+
+def _further(others: Iterable[str], own: Iterable[str], naming: Naming) -> tuple[str, ...]:
+    """Frames that may come besides a robot's own and those that all share."""
+    known = {*own, *naming.shared_frames}
+    return tuple(frame for frame in dict.fromkeys(others) if frame not in known)
 
 
 def _may_miss(
