@@ -218,3 +218,24 @@ def test_a_pattern_is_compared_by_its_type() -> None:
     seen = graph(*RUNNING, wrong, more=("/rviz_47",))
     (finding,) = check(read_plan(plan(PATTERN), "plan.yaml"), seen)
     assert (finding.code, finding.names) == ("MG106", ("/robot1/camera_left/image_raw",))
+
+
+BRIDGED = PLAN.replace(
+    "topics:\n",
+    "topics:\n"
+    "  /robot1/scan: {bridge: [publishes], type: sensor_msgs/msg/LaserScan}\n"
+    "  /robot1/imu: {bridge: [publishes], type: sensor_msgs/msg/Imu}\n",
+)
+
+
+@pytest.mark.parametrize(
+    ("type_", "found"),
+    [("sensor_msgs/msg/LaserScan", []), ("sensor_msgs/msg/PointCloud2", ["MG126"])],
+)
+def test_a_bridge_that_carries_another_type(type_: str, found: list[str]) -> None:
+    """Who reads the scan gets nothing, though a topic of that name is there."""
+    rows = (("/robot1/scan", type_), ("/robot1/imu", "sensor_msgs/msg/Imu"))
+    ends = (("/ros_gz_bridge", "publishes", name, one) for name, one in rows)
+    seen = graph(*RUNNING, *ends, more=NODES)
+    findings = check(read_plan(plan(BRIDGED), "plan.yaml"), seen)
+    assert [it.code for it in findings] == found
