@@ -24,7 +24,7 @@ from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
 from multibot_rewrite.sources.job import Job, Reader, job_for, reader
-from multibot_rewrite.sources.own_names import ROBOT
+from multibot_rewrite.sources.own_names import ROBOT, Arguments, common_to
 from multibot_rewrite.steps.collect import NOTHING
 from multibot_rewrite.steps.template import Template
 
@@ -89,9 +89,13 @@ def read_jobs(
         return reader(source, naming, urdf, tuple(vocabulary), "", trust, release)
 
     found: dict[Sources, Jobs] = {}
+    given_to: dict[str, list[tuple[Arguments, Sequence[str]]]] = {}
+    for it in robots:
+        given_to.setdefault(it.description, []).append((it.arguments, it.words))
+    common = {source: common_to(each) for source, each in given_to.items()}
     for it in robots:
         if it.sources not in found:
-            given = it.arguments, it.words
+            given = it.arguments, it.words, common[it.description]
             description = job_for(read(it.description, None), *given)
             srdf = job_for(read(it.srdf, it.description), *given) if it.srdf else None
             # An argument may be for the SRDF alone, which is read beside the description.
