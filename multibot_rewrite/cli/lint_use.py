@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 
+from multibot_rewrite.cli.output import detail
 from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
-from multibot_rewrite.model import UsageError
+from multibot_rewrite.lint.cache.cache import Cache, cache_folder
+from multibot_rewrite.lint.cache.identity import identity
+from multibot_rewrite.lint.config.settings import Settings
+from multibot_rewrite.model import UsageError, VocabularyError
 from multibot_rewrite.sources.own_names import filled
 
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
@@ -25,8 +31,30 @@ def check_use(options: argparse.Namespace) -> None:
         raise UsageError("--diff shows what --fix would change: give both")
     if options.diff and options.output:
         raise UsageError("--diff prints to standard output: leave out --output")
+    if options.statistics and (options.format != "text" or options.diff or options.write_baseline):
+        raise UsageError("--statistics is a table: leave out --format, --diff and --write-baseline")
     if options.write_baseline and (options.fix or options.baseline or options.output):
         raise UsageError("--write-baseline takes neither --fix, --baseline nor --output")
+
+
+@contextmanager
+def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
+    """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
+    try:
+        cache = None if _is_alone(options) else Cache(cache_folder(), identity(settings))
+    except (OSError, ValueError, VocabularyError):  # reported where it is read
+        cache = None
+    yield cache
+    if cache:
+        try:
+            cache.save()
+        except OSError as error:
+            detail(options, f"the cache is not kept: {cache.folder}: {error.strerror}")
+
+
+def _is_alone(options: argparse.Namespace) -> bool:
+    """Is nothing to be taken from the cache? What trusted files look at is not known."""
+    return bool(options.no_cache or options.trust)
 
 
 def given(options: argparse.Namespace) -> dict[str, object]:

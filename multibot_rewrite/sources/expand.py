@@ -11,6 +11,7 @@ from typing import NamedTuple
 from multibot_rewrite.bounded import MAX_BYTES
 from multibot_rewrite.findings.place import locate
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import outside
 from multibot_rewrite.sources.access import BOUNDED, Access, Find, Reach
 from multibot_rewrite.sources.conversation import Failure, Result, Sources, converse
 from multibot_rewrite.sources.trace import Origins, Trace, alike
@@ -132,6 +133,7 @@ def _check_root(path: str, prefix: str, tag: str) -> None:
         )
 
 
+@outside
 def _check_file(path: str) -> None:
     try:
         with open(path, "rb") as file:

@@ -14,6 +14,7 @@ from multibot_rewrite.checks.links_and_joints import Robot, read_robot
 from multibot_rewrite.lazy import lazy_compile
 from multibot_rewrite.lint.config.settings import Settings, matches
 from multibot_rewrite.model import InputError
+from multibot_rewrite.outside import is_file, outside
 from multibot_rewrite.rewriters.builtin import builtin_tree
 from multibot_rewrite.rewriters.forms import Declared
 from multibot_rewrite.sources.access import Reach
@@ -53,10 +54,11 @@ def named_urdfs(paths: Sequence[str], included: frozenset[str]) -> tuple[tuple[s
     if len(others) == len(paths):
         return ()
     whole = (it for it in others if it not in included or not it.endswith(".xacro"))
-    named = ((robot_name(path), path) for path in whole if os.path.isfile(path))
+    named = ((robot_name(path), path) for path in whole if is_file(path))
     return tuple((name, path) for name, path in named if name)
 
 
+@outside
 def robot_name(path: str) -> str:
     """The name on the root element as it is written; empty if the first bytes do not have it."""
     try:
@@ -112,8 +114,13 @@ def _near(path: str, folder: str, name: str) -> list[str]:
 def _files(folder: str) -> Iterator[str]:
     for place in NEAR:
         for ending in ENDINGS:
-            found = glob(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
-            yield from (it for it in sorted(found) if SRDF_MARK not in os.path.basename(it))
+            found = _found(os.path.normpath(f"{escape(folder)}/{place}/{ending}"))
+            yield from (it for it in found if SRDF_MARK not in os.path.basename(it))
+
+
+@outside
+def _found(pattern: str) -> tuple[str, ...]:
+    return tuple(sorted(glob(pattern)))
 
 
 def _stem(path: str) -> str:
