@@ -5,14 +5,16 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.cli.output import detail
 from multibot_rewrite.cli.usage import plain_words, policy, xacro_args
-from multibot_rewrite.lint.cache.cache import Cache, cache_folder
-from multibot_rewrite.lint.cache.identity import identity
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.model import UsageError, VocabularyError
 from multibot_rewrite.sources.own_names import filled
+
+if TYPE_CHECKING:
+    from multibot_rewrite.lint.cache.cache import Cache
 
 _LISTS = ("select", "ignore", "robots", "roots", "target", "vocabulary")
 _PLAIN = ("urdf", "baseline", "fail_on", "trust")
@@ -40,8 +42,15 @@ def check_use(options: argparse.Namespace) -> None:
 @contextmanager
 def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | None]:
     """The cache for a lint, which is saved at the end; a folder that cannot be written is no error."""
+    # What trusted files look at is not known.
+    if options.no_cache or options.trust:
+        yield None
+        return
+    from multibot_rewrite.lint.cache.cache import Cache, cache_folder
+    from multibot_rewrite.lint.cache.identity import identity
+
     try:
-        cache = None if _is_alone(options) else Cache(cache_folder(), identity(settings))
+        cache = Cache(cache_folder(), identity(settings))
     except (OSError, ValueError, VocabularyError):  # reported where it is read
         cache = None
     yield cache
@@ -50,11 +59,6 @@ def cached(options: argparse.Namespace, settings: Settings) -> Iterator[Cache | 
             cache.save()
         except OSError as error:
             detail(options, f"the cache is not kept: {cache.folder}: {error.strerror}")
-
-
-def _is_alone(options: argparse.Namespace) -> bool:
-    """Is nothing to be taken from the cache? What trusted files look at is not known."""
-    return bool(options.no_cache or options.trust)
 
 
 def given(options: argparse.Namespace) -> dict[str, object]:

@@ -6,9 +6,9 @@ import os
 import signal
 from collections.abc import Callable, Iterable, Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from multibot_rewrite.findings.finding import Finding, by_place
-from multibot_rewrite.lint.cache.cache import Cache
 from multibot_rewrite.lint.cache.written import (
     among_from,
     among_written,
@@ -17,6 +17,9 @@ from multibot_rewrite.lint.cache.written import (
 )
 from multibot_rewrite.lint.config.settings import Settings
 from multibot_rewrite.outside import Asked, digest, recorded
+
+if TYPE_CHECKING:
+    from multibot_rewrite.lint.cache.cache import Cache
 
 # A worker costs more to start than a few files to lint.
 FEW = 12

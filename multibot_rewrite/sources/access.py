@@ -9,7 +9,7 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from multibot_rewrite.bounded import MAX_BYTES
-from multibot_rewrite.model import MultibotError
+from multibot_rewrite.model import InputError, MultibotError
 from multibot_rewrite.outside import outside, real_path, variable
 from multibot_rewrite.sources.child.frames import FENCES
 
@@ -115,6 +115,19 @@ class Access:
         if data is None:
             raise NotAllowedError(f"{name} is no regular file, and xacro may not read it")
         return data
+
+
+@outside
+def check_file(path: str) -> None:
+    """Raise InputError for a file that cannot be read, or is too large."""
+    try:
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+    except OSError as error:
+        raise InputError(f"{path}: cannot be read: {error.strerror}") from None
+    if size > MAX_BYTES:
+        limit = f"{MAX_BYTES // 2**20} MB"
+        raise InputError(f"{path}: {size / 2**20:.0f} MB is over the limit of {limit}")
 
 
 @outside

@@ -74,7 +74,7 @@ class Cache:
         for path in self.shards.keys() - self.changed.keys():
             if self.shards[path]:
                 os.utime(path)
-        if self.changed:
+        if self.changed and os.path.isdir(self.folder):
             bound(self.folder)
 
     def _path(self, group: str) -> str:

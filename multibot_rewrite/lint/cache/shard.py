@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import os
+from _thread import get_ident  # threading is slow to import
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from threading import get_ident
 from typing import Any, NamedTuple
 
+from multibot_rewrite.bounded import load_json
 from multibot_rewrite.outside import Asked, Question, digest
 
 # Of one file, and of all files of the cache; the oldest ones go.
@@ -30,7 +30,7 @@ def read_shard(path: str) -> dict[str, Entry]:
         told, _, body = data.partition(b"\n")
         if told.decode() != digest(body):
             return {}
-        table, entries = json.loads(body)
+        table, entries = load_json(body)
         asked = [
             (Question(name, _tuples(args), _tuples(named)), it) for name, args, named, it in table
         ]
@@ -44,6 +44,8 @@ def read_shard(path: str) -> dict[str, Entry]:
 
 def shard_bytes(entries: Mapping[str, Entry]) -> bytes:
     """The bytes of a file; a question that several entries have is written once."""
+    import json  # slow to import, and often nothing is new
+
     numbers: dict[tuple[Question, str], int] = {}
     written = {
         key: (it.value, [numbers.setdefault(pair, len(numbers)) for pair in it.asked.items()])
