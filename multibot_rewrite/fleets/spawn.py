@@ -42,7 +42,8 @@ class Spawn(NamedTuple):
 def spawns(plan: FleetPlan) -> tuple[tuple[Spawn, ...], tuple[Finding, ...]]:
     """How each robot is spawned, and findings: only some of its plugins have a namespace, a plugin
     looks for the robot by another name."""
-    made, findings = [], []
+    made: list[Spawn] = []
+    findings: list[Finding] = []
     for robot in plan.robots:
         known = fleet_topics(plan.fleet.table, plan.fleet.facts, robot.spec.namespace)
         made.append(spawn(robot, known.get(DESCRIPTION, "")))
