@@ -35,11 +35,11 @@ _EXECUTED = (
         "SetParameter",
         "SetParametersFromFile",
         "SetRemap",
-        "SetUseSimTime",
     ),
 )
-# They start no node.
+# They start no node; SetUseSimTime is for the node that launch itself would have.
 _PASSED = (
+    "SetUseSimTime",
     *("LogInfo", "EmitEvent", "Shutdown", "SetROSLogDir", "LifecycleTransition"),
     "UnregisterEventHandler",
 )
