@@ -41,7 +41,7 @@ running: /robot1/driver publishes /robot1/tf tf2_msgs/msg/TFMessage
     line=2,
 )
 def tf_on_two_topics(seen: Seen) -> Iterator[Finding]:
-    """Where the odd topic is another robot's, it is that robot's tree that is disturbed. A topic that is
+    """Where the odd topic is another robot's, it is that robot's tree that is disturbed. One that is
     not called tf, such as that of a simulator's ground truth, is no robot's tree."""
     senders: dict[str, dict[str, list[str]]] = defaultdict(dict)
     listeners: dict[str, dict[str, list[str]]] = defaultdict(dict)

@@ -24,7 +24,7 @@ from multibot_rewrite.launch.graph.made_files import source_of
 from multibot_rewrite.launch.graph.places import place_of
 
 _LIMIT = 1 << 24
-# launch_ros says so of a text that is no YAML, or no value (jazzy, utilities/evaluate_parameters.py:82).
+# launch_ros says so of a text that is no YAML or value (jazzy, utilities/evaluate_parameters.py:82).
 _FAILS = "try wrapping it"
 # The commands of Gazebo, and what ROS starts it with.
 _SIMULATORS = ("gz", "ign", "gazebo", "gzserver")
