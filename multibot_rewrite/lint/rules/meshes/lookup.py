@@ -6,7 +6,6 @@ import os
 from collections.abc import Callable, Iterator
 from functools import cache
 from typing import NamedTuple
-from urllib.parse import unquote
 
 from multibot_rewrite.checks.problem import Problem
 from multibot_rewrite.findings.finding import ERROR, NOTE
@@ -51,6 +50,8 @@ def _where(
     if it.scheme == "":
         here = os.path.dirname(os.path.abspath(file))
         return (here, os.path.dirname(here)), it.path
+    from urllib.parse import unquote  # slow to import, and many robots have no meshes
+
     package, _, path = unquote(it.path).partition("/")
     if not package or not path:
         return (), ""
