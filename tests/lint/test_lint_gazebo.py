@@ -96,6 +96,7 @@ PLANTED = {
         "MB151",
     ),
     "a sensor without name": (in_link('<sensor type="imu"/>'), "MB153"),
+    "a sensor with an empty name": (in_link('<sensor name="" type="imu"/>'), "MB153"),
     "a sensor without type": (in_link('<sensor name="s"/>'), "MB153"),
     "updateRate": (sensor("imu", "<updateRate>9</updateRate>"), "MB154"),
     "horizontal_fow": (camera("<horizontal_fow>1</horizontal_fow>"), "MB154"),

@@ -44,6 +44,7 @@ _WORDS = "words"
 Version = tuple[int, ...]
 # What the last release with Gazebo Classic reads.
 CLASSIC = (1, 9)
+SENSOR_TYPE = "sensor/@type"
 
 
 def version_of_release(release: str) -> Version:
@@ -149,7 +150,7 @@ def _element(element: _Element, section: str, version: Version) -> Iterator[Faul
 def _missing(element: _Element, known: Described, version: Version) -> Iterator[Fault]:
     """Attributes without which sdformat refuses the model; MB158 reports those of plugins."""
     for name, rows in known.rows.items():
-        if name[0] == "@" and rows[-1].required and name[1:] not in element.attrib:
+        if name[0] == "@" and rows[-1].required and not element.get(name[1:], "").strip():
             row = _of_version(rows, version)
             if row.required and row.first <= version and element.tag != "plugin":
                 yield Fault("missing", element, None, f"<{element.tag}> has no {name[1:]!r}")
@@ -216,7 +217,7 @@ def _word(
     if not known or text in known or (text.lower() in known and _is_folded(name)):
         return
     near = nearest(text, known)
-    if not near and version <= CLASSIC:
+    if not near and version <= CLASSIC and name == SENSOR_TYPE:
         return  # Gazebo Classic lets plugins add types of sensors
     hint = f"did you mean {near!r}?" if near else ""
     yield Fault(
