@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.records import Place
-from multibot_rewrite.findings.finding import ERROR, Finding
+from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -29,6 +29,7 @@ from multibot_rewrite.fleets.value_checks import (
     RobotNames,
     ValueInFile,
     check_value,
+    doubled,
     holds_twice,
 )
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
@@ -46,13 +47,13 @@ def consistency(
     plan: FleetPlan, fleet: Fleet, files: Sequence[OutputText], known: Iterable[Finding] = ()
 ) -> tuple[Finding, ...]:
     """What is wrong with the files of a fleet. ``fleet`` is the plan's fleet with all nodes that are
-    started; lines that have a finding in ``known`` are left out."""
+    started; lines that have a finding of the same or a higher level in ``known`` are left out."""
     robots = _robot_names(plan, fleet)
-    lines = {(it.file, it.line) for it in known}
+    lines = {(it.file, it.line, level) for it in known for level in {it.level, WARNING}}
     in_files = (*_in_files(plan, robots, files), *_in_common(robots, files))
     return (
         *_of_two_robots(plan, fleet),
-        *_counted(it for it in in_files if (it.file, it.line) not in lines),
+        *_counted(it for it in in_files if (it.file, it.line, it.level) not in lines),
     )
 
 
@@ -242,6 +243,6 @@ def _in_common(robots: Sequence[RobotNames], files: Sequence[OutputText]) -> Ite
         for token in dict.fromkeys(TOKEN.findall(lines)):
             found = _DOUBLED.search(token)
             own = words.get(found[1]) if found else None
-            if found and own and not any(found[1] in it.split("/") for it in own.bare):
+            if found and own and doubled(token, own):
                 line = file.text.count("\n", 0, file.text.index(token)) + 1
                 yield _placed(file, own, line, holds_twice(token, found[1]))
