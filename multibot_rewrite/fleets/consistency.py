@@ -21,8 +21,9 @@ from multibot_rewrite.fleets.output_values import (
     line_in_source,
     values_in,
 )
-from multibot_rewrite.fleets.prefix_parameters import prefix_lines
+from multibot_rewrite.fleets.prefix_parameters import at_run_time, prefix_lines
 from multibot_rewrite.fleets.rewritten_robots import SET_PREFIX, RewrittenRobot, at_robot
+from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.value_checks import (
     PREFIXES,
     TOKEN,
@@ -193,7 +194,10 @@ def _in_files(
         like.add(masked)
         others = {word: robot for word, robot in words.items() if word not in own.words}
         mine = [it for it in files if it.path.startswith(f"{own.robot.spec.name}/")]
-        lines = prefix_lines(mine, known) if any(it in file.text for it in PREFIXES) else NO_LINES
+        given = plan.evidence[node_sources(own.robot.spec)].given
+        bare = at_run_time(plan.fleet.naming, given, known)
+        looked = bare or any(it in file.text for it in PREFIXES)
+        lines = prefix_lines(mine, known, bare) if looked else NO_LINES
         yield from _in_file(file, own, others, plan.fleet.naming, lines)
 
 

@@ -52,7 +52,8 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     names = robot.names._replace(robot=spec.tag)
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
-    return RvizRobot(spec.name, names, topics, spec.colour, known)
+    prefix = spec.tag if names.naming.layout.at_run_time else ""
+    return RvizRobot(spec.name, names, topics, spec.colour, known, prefix)
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:

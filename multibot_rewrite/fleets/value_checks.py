@@ -191,7 +191,9 @@ def _prefix_at_run_time(place: ValueInFile) -> Iterator[Finding]:
     key, text = place.value.key, place.value.text.strip()
     if not place.naming.layout.frames or place.value.is_key or place.before_names:
         return
-    prefix = key in PREFIXES and text not in ("", "~", "null", "/")
+    tag, run_time = place.own.robot.spec.tag, place.naming.layout.at_run_time
+    right = {"", "~", "null", "/", *((tag, f"{tag}/") if run_time else ())}
+    prefix = key in PREFIXES and text not in right
     if prefix or (key == ENABLES and text.lower() == "true"):
         message = f"{key}: {text} adds a prefix to frames that already have the robot's name"
         yield ROBOT_TWICE.finding(message, 'write ""' if key in PREFIXES else "write false")
@@ -296,7 +298,7 @@ BARE_FRAME = declare(
 
 def _bare_frame(place: ValueInFile) -> Iterator[Finding]:
     text, key = place.value.text, place.value.key
-    if place.value.is_key or not _FRAME_KEY.search(key.rpartition(".")[2]):
+    if place.value.is_key or place.before_names or not _FRAME_KEY.search(key.rpartition(".")[2]):
         return
     if text in place.own.bare and text not in place.own.right:
         right = " or ".join(sorted(place.own.bare[text]))

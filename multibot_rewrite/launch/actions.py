@@ -203,7 +203,7 @@ def _own_file(
     """The path of a file with the node's description, start pose and clock, if it needs one."""
     values = robot.start_parameters(node)
     if describe:
-        values["robot_description"] = robot.description
+        values |= robot.description_parameters
     if clock is not None:
         values[SIM_TIME] = clock
     if not values:

@@ -67,6 +67,7 @@ def rewrite_params(
     facts: Iterable[NodeFacts] = (),
     robots: Iterable[str] = (),
     own: Iterable[str] = (),
+    at_run_time: Iterable[str] = (),
 ) -> Companion:
     """A parameter file with slots for a robot, and the findings about it.
 
@@ -74,7 +75,8 @@ def rewrite_params(
     what they set is not inserted here. ``facts`` are those of the robot's nodes, whose remap rules
     move topics too. ``robots`` are namespaces and tags of robots: a name that holds one of them is
     an error.
-    A file for one robot may have its sections below one of ``own``. Raises InputError for a file that
+    A file for one robot may have its sections below one of ``own``. ``at_run_time`` are the nodes that
+    put the robot's name before their frames themselves. Raises InputError for a file that
     is not a parameter file or that rcl rejects.
     """
     with gc_paused():
@@ -87,6 +89,7 @@ def rewrite_params(
             facts_by_name(facts, context.distro),
             words,
             tuple(own),
+            frozenset(at_run_time),
         )
         return _params(job, beside)
 
