@@ -89,7 +89,7 @@ def _build(
     ]
     for robot in robots:
         controllers = _given_by_plugins(own, robot, release)
-        problems += useless_rules(plugins.get(robot, ()), controllers)
+        problems += useless_rules(plugins.get(robot, ()), controllers, release)
     twin = _copies(own, PROBE) if len(robots) == 1 else ()
     kept = [*names_of(shared), *(name for robot in robots for name in names[robot])]
     tables = [table for _, table in shared]

@@ -154,6 +154,15 @@ def test_a_section_with_a_doubtful_name_is_reported(name: str, code: str) -> Non
     assert code in codes(made(section(name, "x: 1"))[1])
 
 
+def test_a_slash_above_a_node_is_the_root_namespace() -> None:
+    """As rcl_yaml_param_parser reads it: the node is /amcl; a slash alone is no node."""
+    text, findings = made("/:\n  amcl:\n    ros__parameters: {base_frame_id: base_link}\n", L2)
+    assert text.splitlines()[:2] == ["/robot1:", "  amcl:"]
+    assert "r1/base_link" in text
+    assert not {"MF104", "MF105", "MF106"} & set(codes(findings))
+    assert "MF106" in codes(made("/:\n  ros__parameters: {a: 1}\n")[1])
+
+
 def test_a_robots_name_in_a_file_is_an_error() -> None:
     source = section("amcl", "scan_topic: /robot2/scan")
     found = made(source, robots=["robot1", "robot2"])[1]

@@ -149,7 +149,9 @@ def _below(
                 f"{place}: {PARAMETERS} has no node name above it; write /**: above it"
             )
         if isinstance(value, yaml.MappingNode):
-            whole = "/".join(it.value.strip("/") for it in above)
+            # rcl takes / alone above a node for the root namespace.
+            names = above[1:] if above[0].value == "/" and len(above) > 1 else above
+            whole = "/".join(it.value.strip("/") for it in names)
             yield RawSection(above, without_robot(whole), value)
         elif not (isinstance(value, yaml.ScalarNode) and not value.value):
             place = f"{document.file}:{line_of(value)}"
