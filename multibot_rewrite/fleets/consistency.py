@@ -14,6 +14,7 @@ from multibot_rewrite.companions.params.known_nodes import load_known_nodes
 from multibot_rewrite.evidence.records import Place
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.doubled_names import doubled
 from multibot_rewrite.fleets.fleet import Fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.output_values import (
@@ -30,7 +31,6 @@ from multibot_rewrite.fleets.value_checks import (
     RobotNames,
     ValueInFile,
     check_value,
-    doubled,
     holds_twice,
 )
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
@@ -81,7 +81,8 @@ def _robot_names(plan: FleetPlan, fleet: Fleet) -> list[RobotNames]:
 def _names_of(robot: RewrittenRobot, graph: Iterable[str]) -> RobotNames:
     spec = robot.spec
     names = robot.names._replace(robot=spec.tag)
-    kinds = {word: names.declared.get(word, ()) for word in ("link", "joint", "frame", "sensor")}
+    words_of = ("link", "joint", "frame", "sensor", "group")
+    kinds = {word: names.declared.get(word, ()) for word in words_of}
     bare: dict[str, set[str]] = {}
     for word, declared in (*kinds.items(), ("frame", USUAL_FRAMES)):
         for name in declared:
@@ -247,6 +248,6 @@ def _in_common(robots: Sequence[RobotNames], files: Sequence[OutputText]) -> Ite
         for token in dict.fromkeys(TOKEN.findall(lines)):
             found = _DOUBLED.search(token)
             own = words.get(found[1]) if found else None
-            if found and own and doubled(token, own):
+            if found and own and doubled(token, own.words, own.right, own.bare):
                 line = file.text.count("\n", 0, file.text.index(token)) + 1
                 yield _placed(file, own, line, holds_twice(token, found[1]))

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
-from multibot_rewrite.checks.twice import is_part
 from multibot_rewrite.companions.names.rename_map import spell
 from multibot_rewrite.findings.finding import ERROR, WARNING, Finding
 from multibot_rewrite.findings.rule import declare
+from multibot_rewrite.fleets.doubled_names import doubled
 from multibot_rewrite.fleets.output_values import OutputValue
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.graph.expectation import USUAL_FRAMES
@@ -63,37 +63,6 @@ def check_value(place: ValueInFile) -> Iterator[Finding]:
         return
     for check in _CHECKS:
         yield from check(place)
-
-
-def twice(token: str, words: Iterable[str]) -> str:
-    """The word of a robot that a name holds twice in a row; empty for none."""
-    for word in words:
-        if f"{word}/{word}" in token or f"{word}_{word}" in token:
-            repeated = re.compile(f"(?<![A-Za-z0-9])({re.escape(word)})[/_]\\1(?![A-Za-z0-9])")
-            if repeated.search(token):
-                return word
-    return ""
-
-
-def doubled(token: str, own: RobotNames) -> str:
-    """The word of the robot that a name holds once too often; empty for none.
-
-    A declared name, as it is written for the robot, is right whatever is in it. A robot may be called
-    as parts are: its name twice tells nothing in ``left/left_scan``, but ``left_left_base_link`` can
-    only be the declared base_link.
-    """
-    name = token.strip("/")
-    word = "" if name in own.right else twice(name, own.words)
-    if not word or not is_part(word) or f"/{word}/{word}/" in f"/{name}/":
-        return word
-    return word if _without_twice(name, word) in own.bare else ""
-
-
-def _without_twice(name: str, word: str) -> str:
-    rest = re.sub(
-        f"(?<![A-Za-z0-9]){re.escape(word)}[/_]{re.escape(word)}(?![A-Za-z0-9])", "", name
-    )
-    return rest.strip(_BETWEEN)
 
 
 def _tokens(place: ValueInFile) -> Iterator[str]:
@@ -175,7 +144,7 @@ acme_driver:
 
 def _doubled(place: ValueInFile) -> Iterator[Finding]:
     for token in _tokens(place):
-        word = doubled(token, place.own)
+        word = doubled(token, place.own.words, place.own.right, place.own.bare)
         if word:
             yield holds_twice(token, word)
 

@@ -266,16 +266,14 @@ class _Names(NamedTuple):
     full: frozenset[tuple[str, str]]
 
 
-def useless_rules(
-    pairs: Pairs, controllers: Pairs | None = (), release: str = ""
-) -> Iterator[Finding]:
+def useless_rules(pairs: Pairs, release: str, controllers: Pairs | None = ()) -> Iterator[Finding]:
     """Rules that match no name of their node, and rules after one that matches first.
 
     ``controllers`` are those that a plugin hands its rules on to; None if they are not known. A
     description may serve robots with other controllers: a rule for one known in ``release`` is right.
     """
     others = [_names(*pair) for pair in controllers or ()]
-    known = _of_managers(release) if release else frozenset()
+    known = _of_managers(release)
     by_file = any(":" in node.origin for node, _ in controllers or ())
     for node, table in pairs:
         own = _names(node, table)

@@ -12,10 +12,10 @@ from paths import CORPUS
 from multibot_rewrite.findings.finding import Finding
 from multibot_rewrite.fleets.build import Outputs, make_outputs
 from multibot_rewrite.fleets.consistency import consistency
+from multibot_rewrite.fleets.doubled_names import twice
 from multibot_rewrite.fleets.fleet_file import read_fleet
 from multibot_rewrite.fleets.fleet_plan import FleetPlan, plan_fleet
 from multibot_rewrite.fleets.output_values import OutputText, line_in_source, values_in
-from multibot_rewrite.fleets.value_checks import twice
 from multibot_rewrite.fleets.with_start_pose_nodes import with_start_pose_nodes
 from multibot_rewrite.model import MultibotError
 
