@@ -20,6 +20,7 @@ from multibot_rewrite.findings.rule import Rule
 from multibot_rewrite.fleets.fleet_file import REAL, RobotSpec, Sources
 from multibot_rewrite.fleets.member import Member, member
 from multibot_rewrite.fleets.srdf_of_another import srdf_findings
+from multibot_rewrite.graph.transforms import Edge, links_of, tree_of
 from multibot_rewrite.library import Rewrite, rewrite_job
 from multibot_rewrite.model import InputError
 from multibot_rewrite.naming import Naming
@@ -58,6 +59,21 @@ class RewrittenRobot(NamedTuple):
     topics: CompanionNames
     member: Member
     findings: tuple[Finding, ...]
+
+    @property
+    def tree(self) -> list[Edge]:
+        """The transforms that its robot_state_publisher sends."""
+        return list(tree_of(self.member.inventory, self.names.naming, self.spec.tag))
+
+    @property
+    def links(self) -> list[str]:
+        """Its links as frames."""
+        return links_of(self.member.inventory, self.names.naming, self.spec.tag)
+
+    @property
+    def frame_prefix(self) -> str:
+        """What its robot_state_publisher puts before the links; empty where they have its name."""
+        return f"{self.spec.tag}/" if self.names.naming.layout.at_run_time else ""
 
     @property
     def needs_prefix(self) -> bool:

@@ -78,8 +78,10 @@ class Job(NamedTuple):
     @property
     def inventories(self) -> list[Inventory]:
         """What is in the description, and in the URDF beside an SRDF; raises InputError."""
-        own = collect(read_document(self.data, self.file), self.tree, self.urdf_declarations)
-        return [own, collect(read_document(*self.urdf), self.tree)] if self.urdf else [own]
+        tree, apart = self.tree, self.naming.layout.at_run_time
+        own = collect(read_document(self.data, self.file), tree, self.urdf_declarations, apart)
+        urdf = [collect(read_document(*self.urdf), tree, apart=apart)] if self.urdf else []
+        return [own, *urdf]
 
 
 def read_job(
