@@ -1,0 +1,257 @@
+"""A planned fleet -> what its launch file starts, robot by robot; ``launch_python`` and ``launch_xml``
+write it down.
+
+What only runs under a condition that no file answers, and nodes whose program is not known, are left
+to the reader: they are named in the file.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Collection, Iterator, Mapping
+from typing import Any, NamedTuple
+
+from multibot_rewrite.evidence.parameter_files import OWN_TYPE
+from multibot_rewrite.fleets import spawn, start_poses
+from multibot_rewrite.fleets.fleet_file import REAL
+from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.node_names import NodeNames, names_of
+from multibot_rewrite.fleets.output_file import path_for
+from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
+from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.remap.programs import MANAGER_KIND, Program, program_of
+from multibot_rewrite.remap.records import MANAGER, PUBLISHES, NodeFacts
+from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
+from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
+
+STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
+# Started by hand, or once for all robots.
+_BY_HAND = ("teleop_twist_keyboard", "rviz2", start_poses.NODE)
+_BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
+
+
+class File(NamedTuple):
+    """The path of a file of the build."""
+
+    path: str
+
+
+class Text(NamedTuple):
+    """What a file of the build holds."""
+
+    path: str
+
+
+Value = str | int | float | bool | File | Text | list[str]
+
+
+class Component(NamedTuple):
+    """A node that is loaded into the process of another."""
+
+    package: str
+    plugin: str
+    namespace: str
+    name: str
+    parameters: tuple[File | Mapping[str, Any], ...]
+    remappings: tuple[tuple[str, str], ...]
+
+
+class Start(NamedTuple):
+    """A process: its program, its node's name and namespace (empty for those of its code), and what it
+    is given. ``components`` are loaded into it."""
+
+    package: str
+    executable: str
+    namespace: str = ""
+    name: str = ""
+    parameters: tuple[File | Mapping[str, Any], ...] = ()
+    remappings: tuple[tuple[str, str], ...] = ()
+    arguments: tuple[str | File, ...] = ()
+    components: tuple[Component, ...] = ()
+
+
+class RobotStarts(NamedTuple):
+    """What one robot runs; ``spawned`` is what brings it into the simulator, ``left`` are nodes that are
+    not started, each with the reason."""
+
+    name: str
+    about: str
+    starts: tuple[Start, ...]
+    spawned: tuple[Start, ...]
+    left: tuple[tuple[str, str], ...]
+
+
+def of_robot(one: FleetPlan, files: Collection[str]) -> RobotStarts:
+    """What the one robot of a plan runs; ``files`` are the paths that the build writes."""
+    (robot,) = one.robots
+    names = names_of(one.fleet.table, robot.spec.namespace)
+    facts = {it.name: it for it in one.evidence[node_sources(robot.spec)].nodes}
+    left = dict(_left(names, facts))
+    given = _Given(one, robot, names, facts, files)
+    simulated = spawn.is_simulated(robot)
+    starts = [it for name in names.started if name not in left for it in _started(given, name)]
+    bridge = path_for(robot, BRIDGE)
+    spawned = []
+    if simulated:
+        spawned = [_spawner(given)]
+        spawned += [_bridge(names, robot, bridge)] if bridge in files else []
+    placed = start_poses.start_poses(one).transforms
+    about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
+    starts += [_transform(it) for it in placed]
+    return RobotStarts(robot.spec.name, about, tuple(starts), tuple(spawned), tuple(left.items()))
+
+
+class _Given(NamedTuple):
+    plan: FleetPlan
+    robot: RewrittenRobot
+    names: NodeNames
+    facts: Mapping[str, NodeFacts]
+    files: Collection[str]
+
+
+def _where(names: NodeNames) -> str:
+    spaces = {it.namespace for it in names.nodes.values() if it.namespace != "/"}
+    return f"namespace {min(spaces, key=len)}" if spaces else "the root namespace"
+
+
+def _left(names: NodeNames, facts: Mapping[str, NodeFacts]) -> Iterator[tuple[str, str]]:
+    """The nodes that are not started, each with the reason."""
+    for name in names.started:
+        it = facts.get(name)
+        if name in _BY_HAND:
+            yield name, "it is started by hand" if name != start_poses.NODE else ""
+        elif it is None or (it.when and not _is_needed(it, names, facts)):
+            yield name, it.when if it else "nothing is known of its program"
+        elif names.is_controller(name) or program_of(it) is not None:
+            continue
+        else:
+            yield name, f"the program of package {it.package} is not known"
+
+
+def _is_needed(it: NodeFacts, names: NodeNames, facts: Mapping[str, NodeFacts]) -> bool:
+    """A node under a condition: joint states that nobody else sends are needed."""
+    if (it.known or it.name) != JOINT_STATES:
+        return False
+    others = (facts[name] for name in names.nodes if name in facts and name != it.name)
+    return not any(
+        end.name == "joint_states" and end.role == PUBLISHES
+        for one in others
+        for end in one.endpoints
+    )
+
+
+def _started(given: _Given, name: str) -> Iterator[Start]:
+    it, facts = given.names.started[name], given.facts[name]
+    if it.way == SPAWNER:
+        yield _controller(given, it)
+    elif it.way != COMPONENT:
+        program = program_of(facts)
+        assert program is not None
+        yield Start(
+            program.package,
+            program.executable,
+            it.node.namespace,
+            it.node.name,
+            _parameters(given, name),
+            it.rules,
+            program.words,
+            tuple(_components(given, name)),
+        )
+
+
+def _components(given: _Given, container: str) -> Iterator[Component]:
+    for name, it in given.names.started.items():
+        if it.way == COMPONENT and it.node.home.container == container and name in given.facts:
+            program = program_of(given.facts[name])
+            if program is not None and program.plugin:
+                yield Component(
+                    program.package,
+                    program.plugin,
+                    it.node.namespace,
+                    it.node.name,
+                    _parameters(given, name),
+                    it.rules,
+                )
+
+
+def _parameters(given: _Given, name: str) -> tuple[File | Mapping[str, Any], ...]:
+    """Its robot's parameter files, and what no file says of it."""
+    robot, facts = given.robot, given.facts[name]
+    found: list[File | Mapping[str, Any]] = [
+        File(path_for(robot, it)) for it in robot.spec.companions.get("params", ())
+    ]
+    known = facts.known or facts.name
+    if known == start_poses.AMCL and path_for(robot, "start_pose.yaml") in given.files:
+        found.append(File(path_for(robot, "start_pose.yaml")))
+    if known == STATE:
+        found.append({"robot_description": Text(_description(robot))})
+    if known == "move_group":
+        srdf = {"robot_description_semantic": Text(path_for(robot, robot.spec.srdf))}
+        found += [{"robot_description": Text(_description(robot))}, srdf]
+    if known == MANAGER_KIND:
+        managed = [given.names.name(it) for it in given.names.managed.get(name, ())]
+        found.append({"autostart": True, "node_names": managed})
+    return tuple(found)
+
+
+def _description(robot: RewrittenRobot) -> str:
+    return path_for(robot, robot.spec.description.removesuffix(".xacro"))
+
+
+def _controller(given: _Given, it: Started) -> Start:
+    """The spawner of a controller, with the file that has its type where that is the controller's own."""
+    package, executable = SPAWN
+    words: list[str | File] = list(spawner_arguments(it))
+    evidence = given.plan.evidence[node_sources(given.robot.spec)]
+    own = next((one for one in evidence.given if one.name == it.node.node), None)
+    params = given.robot.spec.companions.get("params", ())
+    if own and OWN_TYPE in own.values and own.values[OWN_TYPE].place.file in params:
+        words += ["--param-file", File(path_for(given.robot, own.values[OWN_TYPE].place.file))]
+    if it.node.node in evidence.spawned and evidence.spawned[it.node.node].inactive:
+        words.append("--inactive")
+    return Start(package, executable, it.node.namespace, arguments=tuple(words))
+
+
+def _spawner(given: _Given) -> Start:
+    """What puts the robot into its simulator; an SDF is read from its file, nobody publishes it."""
+    (it,), _ = spawn.spawns(given.plan)
+    classic = spawn.CLASSIC_PLUGIN.encode() in given.robot.description
+    package, executable = spawn.CLASSIC if classic else spawn.GZ
+    words: list[str | File] = list(
+        (spawn.classic_arguments if classic else spawn.gz_arguments)(it)
+    )
+    if given.robot.member.inventory.document.root.tag == "sdf":
+        at = words.index("-topic")
+        words[at : at + 2] = ["-file", File(_description(given.robot))]
+    return Start(package, executable, arguments=tuple(words))
+
+
+def _bridge(names: NodeNames, robot: RewrittenRobot, path: str) -> Start:
+    spaces = {it.namespace for it in names.nodes.values()}
+    namespace = min(spaces, key=len, default="/")
+    name = "" if namespace != "/" else f"ros_gz_bridge_{robot.spec.namespace}"
+    found: tuple[File | Mapping[str, Any], ...] = ({"config_file": File(path)},)
+    return Start(*_BRIDGE[:2], namespace, name, found)
+
+
+def _transform(it: start_poses.StaticTransform) -> Start:
+    words = start_poses.arguments(it)
+    return Start("tf2_ros", "static_transform_publisher", arguments=tuple(words))
+
+
+def is_classic(robot: RewrittenRobot) -> bool:
+    """Is its simulator Gazebo Classic?"""
+    return spawn.CLASSIC_PLUGIN.encode() in robot.description
+
+
+def simulators(plan: FleetPlan) -> list[str]:
+    """The simulators of the robots: ``classic``, ``gz``, none."""
+    simulated = [it for it in plan.robots if spawn.is_simulated(it) and it.spec.simulator != REAL]
+    return sorted({"classic" if is_classic(it) else "gz" for it in simulated})
+
+
+def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
+    """What runs once for all robots: the bridge of the clock."""
+    if BRIDGE not in files or MANAGER == "":
+        return ()
+    return (Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE)},)),)
