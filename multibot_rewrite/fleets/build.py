@@ -22,6 +22,7 @@ from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
+from multibot_rewrite.fleets.params_style import check_style, in_style
 from multibot_rewrite.fleets.rviz_outputs import rviz_commands, rviz_files, rviz_outputs
 from multibot_rewrite.fleets.with_start_pose_nodes import split_per_robot, with_start_pose_nodes
 from multibot_rewrite.gc_pause import gc_paused
@@ -48,8 +49,9 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
     """Every file of a fleet. ``folder`` is where they will be, if they are written at all.
 
     Raises InputError for a companion that cannot be read or rewritten, UsageError where two files
-    would have the same path.
+    would have the same path, and for parameter files in a style that does not serve the layout.
     """
+    check_style(plan.file)
     with gc_paused():
         fleet, each = with_start_pose_nodes(plan), list(split_per_robot(plan))
         configs = list(rviz_outputs(plan, each))
@@ -70,7 +72,10 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         gaps = gaps_of(plan, fleet, texts, findings)
         findings += (*consistency(plan, fleet, texts, findings), *gaps)
         fleet = fleet._replace(gaps=gaps, bridged=bridged_by(demanded(plan, texts)))
-        files = sorted((*files, *_tables(plan, fleet)))
+        styled = list(in_style(plan, files))
+        findings += [it for it in styled if isinstance(it, Finding)]
+        kept = (it for it in styled if isinstance(it, OutputFile))
+        files = sorted((*kept, *_tables(plan, fleet)))
         _check_paths_differ(files)
         return Outputs(tuple(files), tuple(_once(plan, findings)))
 

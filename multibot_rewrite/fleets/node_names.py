@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 from multibot_rewrite.arguments import checked
@@ -65,6 +65,12 @@ class NodeNames(NamedTuple):
         it = self.started.get(node)
         return self.full_name(it.node.home.container) if it and it.way == COMPONENT else ""
 
+    def inside(self, node: str) -> list[str]:
+        """The other nodes in the process that is started for this one: costmaps, components; raises
+        nothing."""
+        homes = {it.node: it.home.host or it.home.container for it in self.nodes.values()}
+        return [name for name in homes if node in _above(name, homes)]
+
     @checked
     def name(self, node: str) -> str:
         """The name the node runs under, without its namespace; raises as ``for_node``."""
@@ -86,6 +92,12 @@ class NodeNames(NamedTuple):
         where = f"robot {self.robot!r}" if self.robot else "nodes for all robots"
         hint = "add its stack to stack: in the fleet file"
         raise UsageError(f"{where}: {unknown('node', node, self.nodes)}; {hint}")
+
+
+def _above(name: str, homes: Mapping[str, str]) -> Iterator[str]:
+    """The nodes whose process this one is in, nearest first."""
+    while name := homes.get(name, ""):
+        yield name
 
 
 def names_of(table: Table, robot: str) -> NodeNames:

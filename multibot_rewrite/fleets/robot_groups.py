@@ -32,7 +32,7 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
     for robot in plan.robots:
         spec = robot.spec
         files = tuple(spec.companions.items())
-        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files
+        key = spec.sources, spec.stacks, spec.launch, spec.simulator, files, spec.use_sim_time
         groups.setdefault(key, []).append(robot)
     for robots in groups.values():
         spec = robots[0].spec

@@ -106,6 +106,7 @@ def test_the_check_sees_the_imports_there_are() -> None:
     assert inner("library.py") >= {"model.py", "naming.py", "pipeline.py"}
     assert inner("__init__.py") == {
         "findings/finding.py",
+        "fleets/loaded_robot.py",
         "fleets/scripts.py",
         "library.py",
         "model.py",
