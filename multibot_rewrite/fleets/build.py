@@ -20,6 +20,7 @@ from multibot_rewrite.fleets.controller_files import with_own_controllers
 from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.launch_file import launch_files
 from multibot_rewrite.fleets.meeting import without_started
 from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, path_for
 from multibot_rewrite.fleets.params_style import check_style, in_style
@@ -76,6 +77,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings += [it for it in styled if isinstance(it, Finding)]
         kept = (it for it in styled if isinstance(it, OutputFile))
         files = sorted((*kept, *_tables(plan, fleet)))
+        files = sorted((*files, *launch_files(plan, each, configs, files)))
         _check_paths_differ(files)
         return Outputs(tuple(files), tuple(_once(plan, findings)))
 

@@ -8,7 +8,7 @@ to the reader: they are named in the file.
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from multibot_rewrite.evidence.parameter_files import OWN_TYPE
@@ -19,14 +19,15 @@ from multibot_rewrite.fleets.node_names import NodeNames, names_of
 from multibot_rewrite.fleets.output_file import path_for
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
+from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.remap.programs import MANAGER_KIND, Program, program_of
-from multibot_rewrite.remap.records import MANAGER, PUBLISHES, NodeFacts
+from multibot_rewrite.remap.records import PUBLISHES, NodeFacts
 from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
 
 STATE, JOINT_STATES, BRIDGE = "robot_state_publisher", "joint_state_publisher", "bridge.yaml"
 # Started by hand, or once for all robots.
-_BY_HAND = ("teleop_twist_keyboard", "rviz2", start_poses.NODE)
+_BY_HAND = ("teleop_twist_keyboard", "rviz2", "ros_gz_bridge", start_poses.NODE)
 _BRIDGE = Program("ros_gz_bridge", "parameter_bridge")
 
 
@@ -71,11 +72,12 @@ class Start(NamedTuple):
 
 
 class RobotStarts(NamedTuple):
-    """What one robot runs; ``spawned`` is what brings it into the simulator, ``left`` are nodes that are
-    not started, each with the reason."""
+    """What one robot runs; ``files`` are its parameter files, ``spawned`` is what brings it into the
+    simulator, ``left`` are nodes that are not started, each with the reason."""
 
     name: str
     about: str
+    files: tuple[str, ...]
     starts: tuple[Start, ...]
     spawned: tuple[Start, ...]
     left: tuple[tuple[str, str], ...]
@@ -98,7 +100,9 @@ def of_robot(one: FleetPlan, files: Collection[str]) -> RobotStarts:
     placed = start_poses.start_poses(one).transforms
     about = f"{os.path.basename(robot.spec.description)} in {_where(names)}"
     starts += [_transform(it) for it in placed]
-    return RobotStarts(robot.spec.name, about, tuple(starts), tuple(spawned), tuple(left.items()))
+    params = tuple(path_for(robot, it) for it in robot.spec.companions.get("params", ()))
+    found = tuple(starts), tuple(spawned), tuple(left.items())
+    return RobotStarts(robot.spec.name, about, params, *found)
 
 
 class _Given(NamedTuple):
@@ -199,7 +203,7 @@ def _description(robot: RewrittenRobot) -> str:
 
 
 def _controller(given: _Given, it: Started) -> Start:
-    """The spawner of a controller, with the file that has its type where that is the controller's own."""
+    """The spawner of a controller, with the file that has its type where that is its own section."""
     package, executable = SPAWN
     words: list[str | File] = list(spawner_arguments(it))
     evidence = given.plan.evidence[node_sources(given.robot.spec)]
@@ -217,9 +221,7 @@ def _spawner(given: _Given) -> Start:
     (it,), _ = spawn.spawns(given.plan)
     classic = spawn.CLASSIC_PLUGIN.encode() in given.robot.description
     package, executable = spawn.CLASSIC if classic else spawn.GZ
-    words: list[str | File] = list(
-        (spawn.classic_arguments if classic else spawn.gz_arguments)(it)
-    )
+    words: list[str | File] = list((spawn.classic_arguments if classic else spawn.gz_arguments)(it))
     if given.robot.member.inventory.document.root.tag == "sdf":
         at = words.index("-topic")
         words[at : at + 2] = ["-file", File(_description(given.robot))]
@@ -251,7 +253,39 @@ def simulators(plan: FleetPlan) -> list[str]:
 
 
 def of_all(plan: FleetPlan, files: Collection[str]) -> tuple[Start, ...]:
-    """What runs once for all robots: the bridge of the clock."""
-    if BRIDGE not in files or MANAGER == "":
-        return ()
-    return (Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE)},)),)
+    """What runs once for all robots: the bridge of the clock, and nodes that all of them share."""
+    names = names_of(plan.fleet.table, "")
+    known = {it.name: it for one in plan.evidence.values() for it in one.nodes}
+    starts = [*_shared(plan, names, known)]
+    if BRIDGE in files:
+        starts.append(Start(*_BRIDGE[:2], "", "", ({"config_file": File(BRIDGE)},)))
+    return tuple(starts)
+
+
+def _shared(plan: FleetPlan, names: NodeNames, known: Mapping[str, NodeFacts]) -> Iterator[Start]:
+    """The shared nodes have their sections in the files of every robot, and they are alike."""
+    first = plan.robots[0]
+    for name, it in names.started.items():
+        facts = known.get(name)
+        program = program_of(facts) if facts and name not in _BY_HAND else None
+        if program is None or name == "ros_gz_bridge":
+            continue
+        files = [File(path_for(first, one)) for one in first.spec.companions.get("params", ())]
+        yield Start(*program[:2], it.node.namespace, it.node.name, tuple(files), it.rules)
+
+
+def windows(configs: Sequence[RvizOutput]) -> tuple[Start, ...]:
+    """The windows of RViz."""
+    return tuple(
+        Start(
+            "rviz2",
+            "rviz2",
+            window.namespace,
+            "",
+            (),
+            tuple(window.remaps),
+            ("-d", File(window_path(window, it.source))),
+        )
+        for it in configs
+        for window in it.windows
+    )

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from multibot_rewrite.fleets.launch_actions import Component, File, RobotStarts, Start, Text
 
 CLASSIC, GZ = "classic", "gz"
+_Files = tuple[File, ...]
 
 
 class FleetStarts(NamedTuple):
@@ -67,8 +68,8 @@ def _parts(it: FleetStarts) -> Iterator[Iterable[str]]:
     yield _imports(it)
     for robot in it.robots:
         yield ("", "", *_robot(robot, bool(it.simulators)))
-    names = ", ".join(f'"{robot.name}": {robot.name}' for robot in it.robots)
-    yield "", "", f"ROBOTS = {{{names}}}", "", "", *_CHOSEN.splitlines()
+    names = (f'    "{robot.name}": start_{robot.name},' for robot in it.robots)
+    yield "", "", "ROBOTS = {", *names, "}", "", "", *_CHOSEN.splitlines()
     yield "", "", *_description(it)
 
 
@@ -109,14 +110,17 @@ def _imports(it: FleetStarts) -> list[str]:
 
 
 def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
-    yield f"def {it.name}():"
+    yield f"def start_{it.name}():"
     yield f'    """{it.about}."""'
     for name, why in it.left:
         if why:
-            yield f"    # not started: {name} ({why})"
+            yield f"    # Not started: {name} ({why})"
+    if it.files:
+        yield f"    params = [{', '.join(_value(File(path)) for path in it.files)}]"
+    own = tuple(File(path) for path in it.files)
     yield "    return ["
     for start in it.starts:
-        yield from _process(start, 8)
+        yield from _process(start, 8, own)
     if it.spawned:
         yield "        GroupAction("
         yield "            ["
@@ -128,25 +132,25 @@ def _robot(it: RobotStarts, simulated: bool) -> Iterator[str]:
     yield "    ]"
 
 
-def _process(it: Start, indent: int) -> Iterator[str]:
+def _process(it: Start, indent: int, own: _Files = ()) -> Iterator[str]:
     space = " " * indent
     yield f"{space}{'ComposableNodeContainer' if it.components else 'Node'}("
-    yield from (f"{space}    {line}" for line in _keywords(it))
+    yield from (f"{space}    {line}" for line in _keywords(it, own))
     if it.components:
         yield f"{space}    composable_node_descriptions=["
         for one in it.components:
-            yield from _component(one, indent + 8)
+            yield from _component(one, indent + 8, own)
         yield f"{space}    ],"
     yield f"{space}),"
 
 
-def _keywords(it: Start) -> Iterator[str]:
+def _keywords(it: Start, own: _Files) -> Iterator[str]:
     yield f'package="{it.package}",'
     yield f'executable="{it.executable}",'
     yield from _names(it.namespace, it.name)
     if it.arguments:
         yield f"arguments=[{', '.join(_value(word) for word in it.arguments)}],"
-    yield from _given(it.parameters, it.remappings)
+    yield from _given(it.parameters, it.remappings, own)
     yield 'output="screen",'
 
 
@@ -158,9 +162,15 @@ def _names(namespace: str, name: str) -> Iterator[str]:
 
 
 def _given(
-    parameters: Iterable[File | Mapping[str, Any]], remappings: Iterable[tuple[str, str]]
+    parameters: Sequence[File | Mapping[str, Any]],
+    remappings: Iterable[tuple[str, str]],
+    own: _Files,
 ) -> Iterator[str]:
-    yield f"parameters=[{', '.join([*map(_value, parameters), 'CLOCK'])}],"
+    """``own`` are the files that the robot's function calls ``params``."""
+    common = bool(own) and tuple(parameters[: len(own)]) == own
+    words = ["*params"] if common else []
+    words += [_value(it) for it in parameters[len(own) * common :]]
+    yield f"parameters=[{', '.join([*words, 'CLOCK'])}],"
     pairs = list(remappings)
     if pairs:
         yield "remappings=["
@@ -168,12 +178,12 @@ def _given(
         yield "],"
 
 
-def _component(it: Component, indent: int) -> Iterator[str]:
+def _component(it: Component, indent: int, own: _Files) -> Iterator[str]:
     space = " " * indent
     yield f"{space}ComposableNode("
     yield f'{space}    package="{it.package}",'
     yield f'{space}    plugin="{it.plugin}",'
-    lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings))
+    lines = (*_names(it.namespace, it.name), *_given(it.parameters, it.remappings, own))
     yield from (f"{space}    {line}" for line in lines)
     yield f"{space}),"
 
@@ -203,7 +213,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield '    """The simulator, then robot by robot, then the windows."""'
     yield "    return LaunchDescription("
     yield "        ["
-    for name, default, about in _arguments(it):
+    for name, default, about in launch_arguments(it):
         yield f'            DeclareLaunchArgument("{name}", default_value="{default}",'
         yield f'                                  description="{about}"),'
     for simulator in it.simulators:
@@ -223,7 +233,7 @@ def _description(it: FleetStarts) -> Iterator[str]:
     yield "    )"
 
 
-def _arguments(it: FleetStarts) -> Iterator[tuple[str, str, str]]:
+def launch_arguments(it: FleetStarts) -> Iterator[tuple[str, str, str]]:
     """The launch arguments: name, default, what it is."""
     yield "robots", "", "only these: robot1,robot2"
     yield "use_sim_time", str(it.use_sim_time).lower(), "whether all nodes use /clock"
@@ -240,8 +250,9 @@ _SIMULATORS: Mapping[str, tuple[str, ...]] = {
         "IncludeLaunchDescription(",
         '    PathJoinSubstitution([FindPackageShare("ros_gz_sim"), "launch", "gz_sim.launch.py"]),',
         "    launch_arguments=[",
-        '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", LaunchConfiguration("headless"),',
-        '                     "\'.lower() == \'true\' else \'\'"]), LaunchConfiguration("world")]),',
+        '        ("gz_args", ["-r ", PythonExpression(["\'-s \' if \'", '
+        'LaunchConfiguration("headless"),',
+        "                     \"'.lower() == 'true' else ''\"]), LaunchConfiguration(\"world\")]),",
         "    ],",
         '    condition=IfCondition(LaunchConfiguration("simulator")),',
         "),",
@@ -251,7 +262,7 @@ _SIMULATORS: Mapping[str, tuple[str, ...]] = {
         '    PathJoinSubstitution([FindPackageShare("gazebo_ros"), "launch", "gazebo.launch.py"]),',
         "    launch_arguments=[",
         '        ("gui", PythonExpression(["\'false\' if \'", LaunchConfiguration("headless"),',
-        '                                  "\'.lower() == \'true\' else \'true\'"])),',
+        "                                  \"'.lower() == 'true' else 'true'\"])),",
         '        ("world", LaunchConfiguration("world")),',
         "    ],",
         '    condition=IfCondition(LaunchConfiguration("simulator")),',
