@@ -124,6 +124,8 @@ HOMES: tuple[Home, ...] = (
             "fleets.closing_bridges",
             "fleets.closing_controllers",
             "fleets.closing_semantics",
+            "fleets.srdf_of_another",
+            "fleets.devices",
             "fleets.closing_topics",
         ),
     ),

@@ -17,6 +17,7 @@ from multibot_rewrite.fleets.commands_file import commands_file
 from multibot_rewrite.fleets.companion_files import companion_files
 from multibot_rewrite.fleets.consistency import consistency
 from multibot_rewrite.fleets.controller_files import with_own_controllers
+from multibot_rewrite.fleets.devices import one_device
 from multibot_rewrite.fleets.fleet import Fleet, expected, possible
 from multibot_rewrite.fleets.fleet_file import input_files
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
@@ -67,6 +68,7 @@ def make_outputs(plan: FleetPlan, folder: str = "") -> Outputs:
         findings = [it for it in made if isinstance(it, Finding)]
         for robot in plan.robots:
             findings += without_started(robot.findings, fleet.table, [robot.member.robot])
+        findings += one_device(plan.robots)
         for found in plan.evidence.values():
             findings += found.findings
         texts = texts_of(files)

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 from multibot_rewrite.companions.context import Context, make_context
-from multibot_rewrite.companions.moveit.rewrite import with_srdf
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import companion_nodes, node_sources, stack_nodes
@@ -40,5 +39,4 @@ def group_robots(plan: FleetPlan) -> Iterator[RobotGroup]:
         facts = tuple(companion_nodes(nodes, stack_nodes(spec, plan.file)))
         declared, naming, _, own = robots[0].names
         context = make_context(declared, naming, facts, plan.file.distro, own)
-        context = with_srdf(context, robots[0].semantics)
         yield RobotGroup(tuple(robots), facts, context)

@@ -20,6 +20,8 @@ from multibot_rewrite.fleets.output_file import FilesAndFindings, OutputFile, ya
 from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.start_poses import world_of
 
+RVIZ = "rviz2"
+
 
 class RvizOutput(NamedTuple):
     """The results of one RViz config, whose path is ``source``."""
@@ -52,7 +54,17 @@ def _as_rviz_robot(plan: FleetPlan) -> RvizRobot:
     names = robot.names._replace(robot=spec.tag)
     topics = robot.topics._replace(robot=spec.namespace)
     known = fleet_topics(plan.fleet.table, plan.fleet.facts, spec.namespace)
-    return RvizRobot(spec.name, names, topics, spec.colour, known)
+    rules = tuple(_own_rules(plan))
+    return RvizRobot(spec.name, names, topics, spec.colour, known, rules=rules)
+
+
+def _own_rules(plan: FleetPlan) -> Iterator[tuple[str, str]]:
+    """The name and the rules of an rviz2 that the robot's stacks start."""
+    table = plan.fleet.table
+    own = next((it for it in table.nodes if it.robot and it.node == RVIZ), None)
+    if own and not plan.fleet.naming.layout.namespaced:
+        yield "__node", own.name
+    yield from ((it.source, it.target) for it in (own.rules if own else ()))
 
 
 def rviz_files(configs: Iterable[RvizOutput]) -> FilesAndFindings:
