@@ -21,7 +21,7 @@ from multibot_rewrite.fleets.rewritten_robots import RewrittenRobot
 from multibot_rewrite.fleets.robot_nodes import node_sources
 from multibot_rewrite.fleets.rviz_outputs import RvizOutput, window_path
 from multibot_rewrite.remap.programs import MANAGER_KIND, Program, program_of
-from multibot_rewrite.remap.records import PUBLISHES, NodeFacts
+from multibot_rewrite.remap.records import PUBLISHES, EndpointName, NodeFacts
 from multibot_rewrite.remap.started import SPAWN, Started, spawner_arguments
 from multibot_rewrite.remap.ways import COMPONENT, SPAWNER
 
@@ -83,13 +83,14 @@ class RobotStarts(NamedTuple):
     left: tuple[tuple[str, str], ...]
 
 
-def of_robot(one: FleetPlan, files: Collection[str]) -> RobotStarts:
-    """What the one robot of a plan runs; ``files`` are the paths that the build writes."""
+def of_robot(one: FleetPlan, files: Collection[str], bridged: Collection[str]) -> RobotStarts:
+    """What the one robot of a plan runs; ``files`` are the paths that the build writes, ``bridged`` the
+    topics that bridges bring from a simulator."""
     (robot,) = one.robots
     names = names_of(one.fleet.table, robot.spec.namespace)
     facts = {it.name: it for it in one.evidence[node_sources(robot.spec)].nodes}
-    left = dict(_left(names, facts))
-    given = _Given(one, robot, names, facts, files)
+    given = _Given(one, robot, names, facts, files, bridged)
+    left = dict(_left(given))
     simulated = spawn.is_simulated(robot)
     starts = [it for name in names.started if name not in left for it in _started(given, name)]
     bridge = path_for(robot, BRIDGE)
@@ -111,6 +112,7 @@ class _Given(NamedTuple):
     names: NodeNames
     facts: Mapping[str, NodeFacts]
     files: Collection[str]
+    bridged: Collection[str]
 
 
 def _where(names: NodeNames) -> str:
@@ -118,30 +120,37 @@ def _where(names: NodeNames) -> str:
     return f"namespace {min(spaces, key=len)}" if spaces else "the root namespace"
 
 
-def _left(names: NodeNames, facts: Mapping[str, NodeFacts]) -> Iterator[tuple[str, str]]:
-    """The nodes that are not started, each with the reason."""
-    for name in names.started:
-        it = facts.get(name)
+def _left(given: _Given) -> Iterator[tuple[str, str]]:
+    """The nodes that are not started, each with the reason; it is empty for those that are started by
+    something else."""
+    plugins = {it.full_name for it in given.names.nodes.values() if it.home.plugin}
+    for name in given.names.started:
+        it = given.facts.get(name)
         if name in _BY_HAND:
-            yield name, "it is started by hand" if name != start_poses.NODE else ""
-        elif it is None or (it.when and not _is_needed(it, names, facts)):
-            yield name, it.when if it else "nothing is known of its program"
-        elif names.is_controller(name) or program_of(it) is not None:
-            continue
-        else:
+            yield name, ""
+        elif given.names.full_name(name) in plugins:
+            yield name, "a plugin of the simulator makes it"
+        elif it is None:
+            yield name, "nothing is known of its program"
+        elif it.when and not _is_needed(given, it):
+            yield name, it.when
+        elif not given.names.is_controller(name) and program_of(it) is None:
             yield name, f"the program of package {it.package} is not known"
 
 
-def _is_needed(it: NodeFacts, names: NodeNames, facts: Mapping[str, NodeFacts]) -> bool:
+def _is_needed(given: _Given, it: NodeFacts) -> bool:
     """A node under a condition: joint states that nobody else sends are needed."""
     if (it.known or it.name) != JOINT_STATES:
         return False
-    others = (facts[name] for name in names.nodes if name in facts and name != it.name)
-    return not any(
-        end.name == "joint_states" and end.role == PUBLISHES
-        for one in others
-        for end in one.endpoints
-    )
+    sent = [one for one in given.plan.fleet.table.names if _sends_joint_states(one)]
+    mine = {one.name for one in sent if one.node == given.names.full_name(it.name)}
+    others = {one.name for one in sent if one.node != given.names.full_name(it.name)}
+    return mine.isdisjoint({*others, *given.bridged})
+
+
+def _sends_joint_states(it: EndpointName) -> bool:
+    end = it.endpoint
+    return end.role == PUBLISHES and not end.when and end.name.endswith("joint_states")
 
 
 def _started(given: _Given, name: str) -> Iterator[Start]:

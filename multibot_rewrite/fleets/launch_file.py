@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from multibot_rewrite.fleets import launch_actions, teleop
 from multibot_rewrite.fleets.fleet_plan import FleetPlan
+from multibot_rewrite.fleets.launch_actions import RobotStarts
 from multibot_rewrite.fleets.launch_python import FleetStarts, to_python
 from multibot_rewrite.fleets.launch_xml import to_xml
 from multibot_rewrite.fleets.output_file import OutputFile
@@ -22,10 +23,13 @@ def launch_files(
     each: Sequence[FleetPlan],
     configs: Sequence[RvizOutput],
     files: Sequence[OutputFile],
+    bridged: Collection[str],
 ) -> Iterator[OutputFile]:
     """The launch files; ``each`` is every robot as a fleet of its own, ``configs`` are the windows of
-    RViz, ``files`` what else is built."""
-    starts = _starts(plan, each, configs, frozenset(it.path for it in files))
+    RViz, ``files`` what else is built, ``bridged`` the topics that bridges bring."""
+    paths = frozenset(it.path for it in files)
+    robots = [launch_actions.of_robot(one, paths, bridged) for one in each]
+    starts = _starts(plan, each, configs, paths, robots)
     yield OutputFile(PYTHON, to_python(starts).encode())
     yield OutputFile(XML, to_xml(starts).encode())
 
@@ -35,6 +39,7 @@ def _starts(
     each: Sequence[FleetPlan],
     configs: Sequence[RvizOutput],
     paths: frozenset[str],
+    robots: Sequence[RobotStarts],
 ) -> FleetStarts:
     simulators = launch_actions.simulators(plan)
     clocks = {it.spec.use_sim_time for it in plan.robots}
@@ -45,7 +50,7 @@ def _starts(
         f"Start {count} of {source}{facts_of_release(plan.file.distro)}.",
         simulators,
         launch_actions.of_all(plan, paths),
-        [launch_actions.of_robot(one, paths) for one in each],
+        robots,
         launch_actions.windows(configs),
         bool(simulators) if clock is None else clock,
         [teleop.command(it) for one in each for it in teleop.teleops(one)],
